@@ -1,0 +1,154 @@
+//! Balls, boxes and a rod with an exact distance field.
+//!
+//! The exact estimate makes every claim about cones testable without tolerance, and
+//! a formula so unlike the Mandelbox keeps the contract honest.
+//! Twin: `wgsl/formula/balls.wgsl`.
+
+use bytemuck::{Pod, Zeroable, bytes_of};
+use glam::{DVec3, DVec4, Vec4};
+
+use super::contract::{Bounds, Formula};
+use crate::key::{Fault, Key, Number};
+use crate::shader::Module;
+use crate::wgsl;
+
+/// The solids as WGSL reads them.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct BallsUniform {
+    /// Centre and radius.
+    pub ball0: Vec4,
+    /// Centre and radius.
+    pub ball1: Vec4,
+    /// Centre and radius.
+    pub ball2: Vec4,
+    /// Centre and half edge.
+    pub box0: Vec4,
+    /// Centre and half edge.
+    pub box1: Vec4,
+    /// x, y, half height, radius.
+    pub rod: Vec4,
+}
+
+/// Three balls, two boxes and a vertical rod.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Balls {
+    /// Radius of the rod, which can be made thinner than a pixel.
+    pub rod_radius: f64,
+    /// Half edge of the larger box.
+    pub box_size: f64,
+    /// Radius of the largest ball.
+    pub ball_radius: f64,
+}
+
+impl Default for Balls {
+    fn default() -> Self {
+        Self {
+            rod_radius: 0.05,
+            box_size: 0.7,
+            ball_radius: 1.0,
+        }
+    }
+}
+
+/// Every solid fits in a box of this half extent about the origin.
+const EXTENT: f64 = 3.0;
+
+impl Balls {
+    fn balls(&self) -> [DVec4; 3] {
+        [
+            DVec4::new(0.0, 0.0, 0.0, self.ball_radius),
+            DVec4::new(1.6, 0.4, -0.3, 0.45),
+            DVec4::new(-0.9, -1.3, 0.9, 0.25),
+        ]
+    }
+
+    fn boxes(&self) -> [DVec4; 2] {
+        [
+            DVec4::new(-1.6, 1.0, -0.4, self.box_size),
+            DVec4::new(1.2, -1.5, -0.7, 0.35),
+        ]
+    }
+
+    fn rod(&self) -> DVec4 {
+        DVec4::new(0.4, -2.0, 1.8, self.rod_radius)
+    }
+}
+
+impl Formula for Balls {
+    fn name(&self) -> &'static str {
+        "balls"
+    }
+
+    fn keys(&mut self) -> Vec<Key<'_>> {
+        vec![
+            Key::new(
+                "rod_radius",
+                Number(&mut self.rod_radius, 1e-6, 0.5),
+                "radius of the rod",
+            ),
+            Key::new(
+                "box_size",
+                Number(&mut self.box_size, 1e-3, 1.2),
+                "half edge of the larger box",
+            ),
+            Key::new(
+                "ball_radius",
+                Number(&mut self.ball_radius, 1e-3, 2.5),
+                "radius of the largest ball",
+            ),
+        ]
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn modules(&self) -> Vec<Module> {
+        vec![wgsl!("formula/balls.wgsl")]
+    }
+
+    fn uniforms(&self, _iterations: u32) -> Vec<(&'static str, Vec<u8>)> {
+        let [ball0, ball1, ball2] = self.balls().map(|b| b.as_vec4());
+        let [box0, box1] = self.boxes().map(|b| b.as_vec4());
+        let solids = BallsUniform {
+            ball0,
+            ball1,
+            ball2,
+            box0,
+            box1,
+            rod: self.rod().as_vec4(),
+        };
+        vec![("balls", bytes_of(&solids).to_vec())]
+    }
+
+    fn estimate(&self, p: DVec3, _most: u32) -> (f64, u32) {
+        let mut d = f64::INFINITY;
+        for s in self.balls() {
+            d = d.min((p - s.truncate()).length() - s.w);
+        }
+        for s in self.boxes() {
+            let q = (p - s.truncate()).abs() - DVec3::splat(s.w);
+            d = d.min(q.max(DVec3::ZERO).length() + q.max_element().min(0.0));
+        }
+        let s = self.rod();
+        let nearest = DVec3::new(s.x, s.y, p.z.clamp(-s.z, s.z));
+        (d.min((p - nearest).length() - s.w), 1)
+    }
+
+    fn trap(&self, p: DVec3, _most: u32) -> DVec3 {
+        (p - p.round()).abs() * 2.0
+    }
+
+    fn lipschitz(&self) -> f64 {
+        1.0
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds::cuboid(DVec3::splat(EXTENT))
+    }
+
+    fn iterations(&self, _eps: f64) -> u32 {
+        1
+    }
+}

@@ -1,0 +1,92 @@
+//! Typed buffers.
+
+use std::marker::PhantomData;
+
+use bytemuck::Pod;
+use wgpu::BufferUsages;
+
+use super::device::{Device, DeviceError};
+
+/// A storage buffer of `len` values of `T` on a device.
+pub struct Buffer<T> {
+    /// The wgpu buffer.
+    pub raw: wgpu::Buffer,
+    /// Number of values.
+    pub len: usize,
+    kind: PhantomData<T>,
+}
+
+impl<T: Pod> Buffer<T> {
+    /// An uninitialised buffer (wgpu clears it to zero).
+    pub fn new(device: &Device, name: &str, len: usize) -> Self {
+        let len = len.max(1);
+        let raw = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(name),
+            size: bytes_for::<T>(len),
+            usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self {
+            raw,
+            len,
+            kind: PhantomData,
+        }
+    }
+
+    /// The first `len` values of a buffer made elsewhere.
+    pub fn over(raw: wgpu::Buffer, len: usize) -> Self {
+        Self {
+            raw,
+            len,
+            kind: PhantomData,
+        }
+    }
+
+    /// Overwrites the first values.
+    pub fn write(&self, device: &Device, values: &[T]) {
+        let bytes = bytemuck::cast_slice(values);
+        device.queue.write_buffer(&self.raw, 0, bytes);
+    }
+
+    /// Copies the first `count` values back, waiting for the device.
+    pub fn read(&self, device: &Device, count: usize) -> Result<Vec<T>, DeviceError> {
+        let size = bytes_for::<T>(count.min(self.len));
+        let staging = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("staging"),
+            size,
+            usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&self.raw, 0, &staging, 0, size);
+        device.queue.submit([encoder.finish()]);
+        // Failure to map is reported by `wait`, or by the range below.
+        staging.map_async(wgpu::MapMode::Read, .., |_| {});
+        device.wait()?;
+        let view = staging.get_mapped_range(..);
+        let view = view.map_err(|e| DeviceError::Lost {
+            name: device.info.name.clone(),
+            why: e.to_string(),
+        })?;
+        let bytes = &view[..std::mem::size_of::<T>() * count.min(self.len)];
+        Ok(bytemuck::pod_collect_to_vec(bytes))
+    }
+}
+
+/// Size of a buffer: a multiple of the copy alignment.
+fn bytes_for<T>(len: usize) -> u64 {
+    let size = (std::mem::size_of::<T>() * len) as u64;
+    size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)
+}
+
+/// A uniform buffer filled with bytes.
+pub fn uniform(device: &Device, name: &str, bytes: &[u8]) -> wgpu::Buffer {
+    let raw = device.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(name),
+        size: (bytes.len() as u64).next_multiple_of(16),
+        usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    device.queue.write_buffer(&raw, 0, bytes);
+    raw
+}

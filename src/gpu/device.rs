@@ -1,0 +1,279 @@
+//! Choosing an adapter, opening it, and learning when it is lost.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use thiserror::Error;
+use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Features, Instance, Limits};
+
+/// What can go wrong between asking for a device and waiting for its work.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum DeviceError {
+    /// No adapter fits the choice.
+    #[error("no adapter matches `{choice}`; there is: {there_is}")]
+    NoMatch {
+        /// What was asked for.
+        choice: String,
+        /// What there is, in a line.
+        there_is: String,
+    },
+    /// The adapter refused to open.
+    #[error(
+        "adapter `{name}` could not be opened: {why}; choose another with --device, or use --device cpu"
+    )]
+    Open {
+        /// Its name.
+        name: String,
+        /// What it said.
+        why: String,
+    },
+    /// The device stopped working.
+    #[error(
+        "the device `{name}` was lost while rendering ({why}); nothing was written. Try a smaller --size, another --device, or --device cpu"
+    )]
+    Lost {
+        /// Its name.
+        name: String,
+        /// What the driver said.
+        why: String,
+    },
+    /// The device reported an error of memory or validation.
+    #[error("the device `{name}` reported: {why}")]
+    Reported {
+        /// Its name.
+        name: String,
+        /// What it said.
+        why: String,
+    },
+}
+
+/// Which device to render on.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// The best hardware adapter, else software, else the CPU executor.
+    #[default]
+    Auto,
+    /// Hardware, or an error.
+    Hardware,
+    /// A software Vulkan adapter, or an error.
+    Software,
+    /// The CPU executor.
+    Cpu,
+    /// Index of `conemarch devices`.
+    Index(usize),
+    /// Part of an adapter's name.
+    Named(String),
+}
+
+impl Choice {
+    /// Reads `auto`, `gpu`, `software`, `cpu`, an index or a part of a name.
+    pub fn read(text: &str) -> Self {
+        match text.trim() {
+            "auto" | "" => Self::Auto,
+            "gpu" => Self::Hardware,
+            "software" => Self::Software,
+            "cpu" => Self::Cpu,
+            other => match other.parse() {
+                Ok(index) => Self::Index(index),
+                Err(_) => Self::Named(other.to_string()),
+            },
+        }
+    }
+}
+
+/// All adapters of this machine, in the order of their indices.
+pub struct Adapters {
+    list: Vec<Adapter>,
+}
+
+impl Adapters {
+    /// Looks for adapters with compute: Vulkan, Metal and Direct3D 12.
+    pub fn find() -> Self {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = Backends::VULKAN | Backends::METAL | Backends::DX12;
+        // Nothing here dispatches indirectly; its validation would cost a dispatch
+        // and build pipelines at device creation.
+        descriptor.flags = wgpu::InstanceFlags::default()
+            .difference(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
+        let instance = Instance::new(descriptor);
+        let list = pollster::block_on(instance.enumerate_adapters(Backends::all()));
+        Self { list }
+    }
+
+    /// What is known of each adapter.
+    pub fn iter(&self) -> impl Iterator<Item = &Adapter> {
+        self.list.iter()
+    }
+
+    fn there_is(&self) -> String {
+        let mut names: Vec<String> = self
+            .list
+            .iter()
+            .enumerate()
+            .map(|(i, a)| {
+                let info = a.get_info();
+                format!("{i} {} ({})", info.name, kind(&info))
+            })
+            .collect();
+        names.push("cpu (the executor in f64, always there)".into());
+        names.join(", ")
+    }
+
+    /// The adapter that a choice means, with the reason; `None` for the CPU executor.
+    pub fn choose(&self, choice: &Choice) -> Result<Option<(&Adapter, String)>, DeviceError> {
+        let infos: Vec<AdapterInfo> = self.list.iter().map(Adapter::get_info).collect();
+        let best = |wanted: fn(&AdapterInfo) -> bool| {
+            let rank = |info: &AdapterInfo| match info.device_type {
+                DeviceType::DiscreteGpu => 0,
+                DeviceType::IntegratedGpu => 1,
+                _ => 2,
+            };
+            let fit = infos.iter().enumerate().filter(|(_, info)| wanted(info));
+            fit.min_by_key(|(_, info)| rank(info)).map(|(i, _)| i)
+        };
+        let hardware: fn(&AdapterInfo) -> bool = |i| i.device_type != DeviceType::Cpu;
+        let software: fn(&AdapterInfo) -> bool = |i| i.device_type == DeviceType::Cpu;
+        let (found, reason, asked) = match choice {
+            Choice::Cpu => return Ok(None),
+            Choice::Auto => match (best(hardware), best(software)) {
+                (Some(i), _) => (Some(i), "the best hardware adapter", "auto"),
+                (None, Some(i)) => (
+                    Some(i),
+                    "software Vulkan, as there is no hardware adapter",
+                    "auto",
+                ),
+                (None, None) => return Ok(None),
+            },
+            Choice::Hardware => (best(hardware), "as asked", "gpu"),
+            Choice::Software => (best(software), "as asked", "software"),
+            Choice::Index(i) => (Some(*i).filter(|i| *i < infos.len()), "as asked", ""),
+            Choice::Named(part) => {
+                let part = part.to_lowercase();
+                let fit = |i: &AdapterInfo| i.name.to_lowercase().contains(&part);
+                (infos.iter().position(fit), "as asked", "")
+            }
+        };
+        let asked = match choice {
+            Choice::Index(i) => i.to_string(),
+            Choice::Named(part) => part.clone(),
+            _ => asked.to_string(),
+        };
+        match found {
+            Some(i) => Ok(Some((&self.list[i], reason.to_string()))),
+            None => Err(DeviceError::NoMatch {
+                choice: asked,
+                there_is: self.there_is(),
+            }),
+        }
+    }
+}
+
+/// `discrete`, `integrated`, `virtual`, `software` or `other`.
+pub fn kind(info: &AdapterInfo) -> &'static str {
+    match info.device_type {
+        DeviceType::DiscreteGpu => "discrete",
+        DeviceType::IntegratedGpu => "integrated",
+        DeviceType::VirtualGpu => "virtual",
+        DeviceType::Cpu => "software",
+        DeviceType::Other => "other",
+    }
+}
+
+/// An open device with its queue.
+pub struct Device {
+    /// The wgpu device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// What the adapter says of itself.
+    pub info: AdapterInfo,
+    /// Nanoseconds per timestamp tick, where the adapter has timestamps.
+    pub tick_ns: Option<f32>,
+    trouble: Arc<Mutex<Option<DeviceError>>>,
+}
+
+impl Device {
+    /// Opens an adapter with its own limits, timestamps and f64 where it has them.
+    pub fn open(adapter: &Adapter) -> Result<Self, DeviceError> {
+        let info = adapter.get_info();
+        let wanted = Features::TIMESTAMP_QUERY | Features::SHADER_F64;
+        let features = adapter.features() & wanted;
+        let limits = adapter.limits();
+        let required_limits = Limits {
+            max_buffer_size: limits.max_buffer_size,
+            max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+            ..Limits::default()
+        };
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("conemarch"),
+            required_features: features,
+            required_limits,
+            ..Default::default()
+        };
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&descriptor)).map_err(|e| {
+                DeviceError::Open {
+                    name: info.name.clone(),
+                    why: e.to_string(),
+                }
+            })?;
+        let trouble = Arc::new(Mutex::new(None));
+        let note = |trouble: &Arc<Mutex<Option<DeviceError>>>, error| {
+            if let Ok(mut slot) = trouble.lock() {
+                slot.get_or_insert(error);
+            }
+        };
+        let (slot, name) = (trouble.clone(), info.name.clone());
+        device.set_device_lost_callback(move |reason, why| {
+            let why = format!("{reason:?}: {why}").to_lowercase();
+            let name = name.clone();
+            note(&slot, DeviceError::Lost { name, why });
+        });
+        let (slot, name) = (trouble.clone(), info.name.clone());
+        device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
+            let (name, why) = (name.clone(), e.to_string());
+            note(&slot, DeviceError::Reported { name, why });
+        }));
+        let timed = features.contains(Features::TIMESTAMP_QUERY);
+        Ok(Self {
+            tick_ns: timed.then(|| queue.get_timestamp_period()),
+            device,
+            queue,
+            info,
+            trouble,
+        })
+    }
+
+    /// `software Vulkan llvmpipe (...)`-like: name and backend for people.
+    pub fn name(&self) -> String {
+        format!("{} ({:?})", self.info.name, self.info.backend)
+    }
+
+    /// Waits until everything submitted has run, and reports a device that was lost or
+    /// complained meanwhile.
+    pub fn wait(&self) -> Result<(), DeviceError> {
+        let polled = self.device.poll(wgpu::PollType::Wait {
+            submission_index: None,
+            // No pass submits more than a bounded number of steps; a device that
+            // needs longer than this for them has hung.
+            timeout: Some(Duration::from_secs(120)),
+        });
+        self.trouble()?;
+        polled.map(|_| ()).map_err(|e| DeviceError::Lost {
+            name: self.info.name.clone(),
+            why: e.to_string(),
+        })
+    }
+
+    /// The first loss or complaint so far.
+    pub fn trouble(&self) -> Result<(), DeviceError> {
+        match self.trouble.lock() {
+            Ok(slot) => slot.clone().map_or(Ok(()), Err),
+            // A poisoned note means that a callback died: treat it as a loss.
+            Err(_) => Err(DeviceError::Lost {
+                name: self.info.name.clone(),
+                why: "its error report was interrupted".into(),
+            }),
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! A compiled program: pipeline, layouts, and its resources by name.
+//!
+//! The layouts are read from the WGSL itself, so that a binding is said in one place,
+//! and resources are bound by the name of the variable, so that none can be swapped.
+
+use thiserror::Error;
+use wgpu::naga::{self, AddressSpace, StorageAccess};
+
+use super::device::Device;
+use crate::shader::{Program, ShaderError};
+
+/// Why a kernel could not be made or bound.
+#[derive(Debug, Error)]
+pub enum KernelError {
+    /// The text is wrong.
+    #[error(transparent)]
+    Shader(#[from] ShaderError),
+    /// The driver refused the pipeline.
+    #[error("the device `{device}` refused the program `{entry}`: {why}")]
+    Refused {
+        /// Its name.
+        device: String,
+        /// The program.
+        entry: &'static str,
+        /// What it said.
+        why: String,
+    },
+    /// A variable of the program was given no buffer.
+    #[error("the program `{entry}` needs a buffer for `{name}`")]
+    Unbound {
+        /// The program.
+        entry: &'static str,
+        /// The variable.
+        name: String,
+    },
+}
+
+/// One resource variable of a program.
+struct Binding {
+    group: u32,
+    index: u32,
+    name: String,
+    uniform: bool,
+    read_only: bool,
+}
+
+/// A compiled program.
+pub struct Kernel {
+    entry: &'static str,
+    pipeline: wgpu::ComputePipeline,
+    layouts: Vec<wgpu::BindGroupLayout>,
+    bindings: Vec<Binding>,
+    /// Array strides in bytes of the storage variables, by name.
+    strides: Vec<(String, u32)>,
+}
+
+impl Kernel {
+    /// Validates and compiles a program.
+    pub fn new(device: &Device, program: &Program) -> Result<Self, KernelError> {
+        let mut capabilities = naga::valid::Capabilities::default();
+        if device
+            .device
+            .features()
+            .contains(wgpu::Features::SHADER_F64)
+        {
+            capabilities |= naga::valid::Capabilities::FLOAT64;
+        }
+        let (module, _) = program.validate(capabilities)?;
+        let bindings = bindings_of(&module);
+        let strides = strides_of(&module);
+        let scope = device
+            .device
+            .push_error_scope(wgpu::ErrorFilter::Validation);
+        let groups = bindings.iter().map(|b| b.group + 1).max().unwrap_or(0);
+        let layouts: Vec<_> = (0..groups)
+            .map(|group| {
+                let entries: Vec<_> = bindings
+                    .iter()
+                    .filter(|b| b.group == group)
+                    .map(layout_entry)
+                    .collect();
+                let descriptor = wgpu::BindGroupLayoutDescriptor {
+                    label: Some(program.entry),
+                    entries: &entries,
+                };
+                device.device.create_bind_group_layout(&descriptor)
+            })
+            .collect();
+        let refs: Vec<_> = layouts.iter().map(Some).collect();
+        let layout = device
+            .device
+            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(program.entry),
+                bind_group_layouts: &refs,
+                immediate_size: 0,
+            });
+        let shader = device
+            .device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(program.entry),
+                source: wgpu::ShaderSource::Wgsl(program.source().into()),
+            });
+        let pipeline = device
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(program.entry),
+                layout: Some(&layout),
+                module: &shader,
+                entry_point: Some(program.entry),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &program.constants(),
+                    ..Default::default()
+                },
+                cache: None,
+            });
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            return Err(KernelError::Refused {
+                device: device.info.name.clone(),
+                entry: program.entry,
+                why: error.to_string(),
+            });
+        }
+        Ok(Self {
+            entry: program.entry,
+            pipeline,
+            layouts,
+            bindings,
+            strides,
+        })
+    }
+
+    /// Bytes per element of a storage array, if the program has it.
+    pub fn stride(&self, name: &str) -> Option<u32> {
+        let found = self.strides.iter().find(|(n, _)| n == name);
+        found.map(|(_, s)| *s)
+    }
+
+    /// Binds every variable of the program by its name.
+    pub fn bind<'a>(
+        &self,
+        device: &Device,
+        buffer: impl Fn(&str) -> Option<&'a wgpu::Buffer>,
+    ) -> Result<Vec<wgpu::BindGroup>, KernelError> {
+        let mut groups = Vec::new();
+        for (group, layout) in (0u32..).zip(&self.layouts) {
+            let mut entries = Vec::new();
+            for b in self.bindings.iter().filter(|b| b.group == group) {
+                let raw = buffer(&b.name).ok_or_else(|| KernelError::Unbound {
+                    entry: self.entry,
+                    name: b.name.clone(),
+                })?;
+                entries.push(wgpu::BindGroupEntry {
+                    binding: b.index,
+                    resource: raw.as_entire_binding(),
+                });
+            }
+            groups.push(device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(self.entry),
+                layout,
+                entries: &entries,
+            }));
+        }
+        Ok(groups)
+    }
+
+    /// Encodes one dispatch of so many workgroups.
+    pub fn dispatch(
+        &self,
+        pass: &mut wgpu::ComputePass,
+        groups: &[wgpu::BindGroup],
+        count: [u32; 2],
+    ) {
+        pass.set_pipeline(&self.pipeline);
+        for (i, group) in (0u32..).zip(groups) {
+            pass.set_bind_group(i, group, &[]);
+        }
+        pass.dispatch_workgroups(count[0], count[1], 1);
+    }
+}
+
+fn bindings_of(module: &naga::Module) -> Vec<Binding> {
+    let of = |(_, v): (_, &naga::GlobalVariable)| {
+        let at = v.binding?;
+        let uniform = v.space == AddressSpace::Uniform;
+        let read_only = match v.space {
+            AddressSpace::Storage { access } => !access.contains(StorageAccess::STORE),
+            _ => true,
+        };
+        Some(Binding {
+            group: at.group,
+            index: at.binding,
+            name: v.name.clone().unwrap_or_default(),
+            uniform,
+            read_only,
+        })
+    };
+    module.global_variables.iter().filter_map(of).collect()
+}
+
+fn strides_of(module: &naga::Module) -> Vec<(String, u32)> {
+    let of = |(_, v): (_, &naga::GlobalVariable)| match module.types[v.ty].inner {
+        naga::TypeInner::Array { stride, .. } => Some((v.name.clone()?, stride)),
+        _ => None,
+    };
+    module.global_variables.iter().filter_map(of).collect()
+}
+
+fn layout_entry(b: &Binding) -> wgpu::BindGroupLayoutEntry {
+    let ty = if b.uniform {
+        wgpu::BufferBindingType::Uniform
+    } else {
+        wgpu::BufferBindingType::Storage {
+            read_only: b.read_only,
+        }
+    };
+    wgpu::BindGroupLayoutEntry {
+        binding: b.index,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}

@@ -1,0 +1,75 @@
+//! The colour pass: key light with shadow, sky and bounce with occlusion, fog.
+//! Twin: `wgsl/pass/color.wgsl`.
+
+use glam::DVec3;
+
+use super::look::Light;
+use super::{fog, occlusion, shadow};
+use crate::frame::State;
+use crate::scene::{Hit, Solid, Surface};
+use crate::shader::Module;
+use crate::view::{Beam, footprint};
+use crate::wgsl;
+
+/// The WGSL module of the pass; normals are written out only where they are asked for.
+pub fn module(keeps_normals: bool) -> Module {
+    wgsl!(
+        "pass/color.wgsl",
+        "COLOR_KEEPS_NORMALS" = f64::from(u8::from(keeps_normals))
+    )
+}
+
+/// Radiance that leaves a surface towards the eye.
+pub fn shade<S: Solid>(
+    solid: &S,
+    light: &Light,
+    ray: &Beam,
+    q: DVec3,
+    surface: &Surface,
+    grain: f64,
+) -> DVec3 {
+    let n = surface.normal;
+    let albedo = light.pigment_color(surface.pigment);
+    let facing = n.dot(light.light);
+    let lit = if facing > 0.0 && light.shadowed {
+        facing * shadow::shadow(solid, light, q, n, grain)
+    } else {
+        facing.max(0.0)
+    };
+    let open = if light.occlusion_strength > 0.0 {
+        occlusion::occlusion(solid, light, q, n, grain)
+    } else {
+        1.0
+    };
+    let up = 0.5 + 0.5 * n.dot(light.world_up);
+    let ambient = (0.45 * light.sky_low).lerp(light.sky_high, up) * light.fill;
+    // Light thrown back by lit neighbours: warm, from below and behind.
+    let bounce = light.light_color * (0.12 * light.fill * (1.0 - up));
+    let half_way = (light.light - ray.axis).normalize_or_zero();
+    let shine = n.dot(half_way).max(0.0).powi(40);
+    albedo * (light.light_color * (light.key * lit) + (ambient + bounce) * open)
+        + light.light_color * (light.gloss * lit * shine)
+}
+
+/// Radiance and normal of a pixel.
+pub fn color<S: Solid>(
+    solid: &S,
+    light: &Light,
+    ray: &Beam,
+    hit: &Hit,
+    state: State,
+) -> (DVec3, DVec3) {
+    if state == State::Sky {
+        return (light.sky(ray.axis), DVec3::ZERO);
+    }
+    let surface = solid.surface(ray, hit);
+    if state == State::Unconverged && light.flag {
+        return (DVec3::new(1.0, 0.0, 1.0), surface.normal);
+    }
+    let grain = footprint(ray, hit.t);
+    let mut c = shade(solid, light, ray, ray.at(hit.t), &surface, grain);
+    if light.fog > 0.0 {
+        c = fog::fog(light, c, ray.axis, hit.t);
+    }
+    (c, surface.normal)
+}

@@ -1,0 +1,315 @@
+//! Everything that decides a picture, as one value.
+//!
+//! A [`Plan`] can be printed, compared, written as a preset and tested without a GPU.
+//! It resolves to a [`Scene`], a [`View`], a [`Pyramid`] and a list of [`Pass`]es, each
+//! with its [`Program`]. Nothing in it depends on a measurement.
+
+use std::fmt::Write as _;
+
+use glam::DVec3;
+
+use crate::formula::Shape;
+use crate::key::{AutoCount, Fault, Key, Size};
+use crate::mode::Marching;
+use crate::pass::look::{self, Light, Look};
+use crate::pass::{color, fog, march, occlusion, shadow, trace};
+use crate::pyramid::{Level, Pyramid};
+use crate::scene::Scene;
+use crate::scene::distance::Distance;
+use crate::scene::slab::{Slab, SlabShape};
+use crate::shader::{Module, Program};
+use crate::view::{self, Camera, View};
+use crate::wgsl;
+
+/// Most iterations that a formula may run: past them `auto` stops following the
+/// footprint.
+pub const MOST_ITERATIONS: u32 = 1000;
+/// Longest image edge.
+pub const MOST_PIXELS: u32 = 65_536;
+
+/// What is in the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    /// A formula; iterations follow the finest footprint where none are given.
+    Distance {
+        /// The formula and its parameters.
+        shape: Shape,
+        /// Iteration limit.
+        iterations: Option<u32>,
+    },
+    /// A slab.
+    Slab(SlabShape),
+}
+
+impl Subject {
+    /// The keys of `[scene]`, beside `kind` and `formula`.
+    pub fn keys(&mut self) -> Vec<Key<'_>> {
+        match self {
+            Self::Distance { shape, iterations } => {
+                let mut keys = shape.keys();
+                keys.push(Key::new(
+                    "iterations",
+                    AutoCount(iterations, 1, MOST_ITERATIONS),
+                    "iteration limit; auto follows the finest footprint",
+                ));
+                keys
+            }
+            Self::Slab(shape) => shape.keys(),
+        }
+    }
+
+    /// `kind`, and `formula` where there is one.
+    pub fn words(&self) -> (&'static str, Option<&'static str>) {
+        match self {
+            Self::Distance { shape, .. } => ("distance", Some(shape.name())),
+            Self::Slab(_) => ("slab", None),
+        }
+    }
+}
+
+/// Everything that decides a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// A line for people.
+    pub title: String,
+    /// What is in the picture.
+    pub subject: Subject,
+    /// Where it is seen from.
+    pub camera: Camera,
+    /// How it is marched.
+    pub march: Marching,
+    /// How it looks.
+    pub look: Look,
+    /// Pixels along each axis.
+    pub size: [u32; 2],
+}
+
+impl Plan {
+    /// A plan of a subject with defaults for everything else.
+    pub fn new(subject: Subject) -> Self {
+        Self {
+            title: String::new(),
+            subject,
+            camera: Camera::default(),
+            march: Marching::default(),
+            look: Look::default(),
+            size: [1280, 720],
+        }
+    }
+
+    /// The keys of a section other than `scene`; `None` for an unknown one.
+    pub fn keys(&mut self, section: &str) -> Option<Vec<Key<'_>>> {
+        Some(match section {
+            "scene" => self.subject.keys(),
+            "camera" => self.camera.keys(),
+            "march" => self.march.keys(),
+            "look" => self.look.keys(),
+            "image" => vec![Key::new(
+                "size",
+                Size(&mut self.size, MOST_PIXELS),
+                "width and height in pixels",
+            )],
+            _ => return None,
+        })
+    }
+
+    /// Whether all settings fit together.
+    pub fn check(&self) -> Result<(), Fault> {
+        match &self.subject {
+            Subject::Distance { shape, .. } => shape.check()?,
+            Subject::Slab(shape) => shape.check()?,
+        }
+        self.camera.check()?;
+        self.march.check()?;
+        self.look.check()
+    }
+
+    /// The camera fitted to the image.
+    pub fn view(&self) -> View {
+        View::new(&self.camera, self.size)
+    }
+
+    /// The cone levels.
+    pub fn pyramid(&self) -> Pyramid {
+        self.march.pyramid()
+    }
+
+    /// The scene with everything resolved.
+    pub fn scene(&self) -> Scene {
+        let eye = self.camera.eye;
+        let stepping = self.march.stepping();
+        match &self.subject {
+            Subject::Distance { shape, iterations } => {
+                let most = iterations.unwrap_or_else(|| self.auto_iterations(shape));
+                Scene::Distance(Distance::new(shape.clone(), most, eye, stepping))
+            }
+            Subject::Slab(shape) => Scene::Slab(Slab::new(shape, eye, stepping.rule)),
+        }
+    }
+
+    fn auto_iterations(&self, shape: &Shape) -> u32 {
+        // A quarter of the hit threshold: the skin of an unconverged estimate must not
+        // move the surface by what a comparison could see.
+        let eps = 0.25 * self.march.detail * self.finest_footprint(shape);
+        shape.iterations(eps).min(MOST_ITERATIONS)
+    }
+
+    /// The smallest footprint that any hit can have: that of the nearest point that
+    /// could be hit, seen through the corner of the image.
+    fn finest_footprint(&self, shape: &Shape) -> f64 {
+        let eye = self.camera.eye;
+        let view = self.view();
+        let corner = view.view_ray([0, 0]);
+        let bounds = shape.bounds();
+        let (raw, _) = shape.estimate(eye, MOST_ITERATIONS);
+        let clear = bounds.distance(eye).max(raw / shape.lipschitz());
+        // A camera on the surface would ask for infinitely fine work.
+        let least = 1e-7 * bounds.farthest(eye);
+        corner.grain * clear.max(least)
+    }
+
+    /// A sentence about precision where f32 cannot hold what the plan asks for.
+    ///
+    /// The estimate's noise in f32 is about 2e-8 of the size of the coordinates
+    /// (METHOD 6: 1e-7 at 5); a footprint under a hundred times that is damaged.
+    pub fn precision_warning(&self) -> Option<String> {
+        let Subject::Distance { shape, .. } = &self.subject else {
+            return None;
+        };
+        let finest = self.finest_footprint(shape);
+        let floor = 2e-6 * shape.bounds().half.max_element().min(5.0).max(1e-3);
+        (finest < 0.99 * floor).then(|| {
+            format!(
+                "the finest footprint, {finest:.1e}, is under the f32 floor of about {floor:.0e}: details that near are noise. Move the camera away, or render with --device cpu"
+            )
+        })
+    }
+
+    /// The look with lengths and colours resolved.
+    pub fn light(&self) -> Light {
+        let distance = (self.camera.target - self.camera.eye).length();
+        let up = self.camera.up.try_normalize().unwrap_or(DVec3::Z);
+        self.look.light(up, distance)
+    }
+
+    /// The passes, in order.
+    pub fn passes(&self) -> Vec<Pass> {
+        let levels = self.pyramid().levels.into_iter().map(Pass::March);
+        levels.chain([Pass::Trace, Pass::Color]).collect()
+    }
+
+    /// What would be run, without a GPU: passes, programs, modules and constants.
+    pub fn explain(&self) -> String {
+        let scene = self.scene();
+        let mut text = String::new();
+        let [w, h] = self.size;
+        let _ = writeln!(text, "{w} x {h}, mode {}", self.march.mode.name());
+        if let Scene::Distance(d) = &scene {
+            let _ = writeln!(
+                text,
+                "{}: {} iterations, lipschitz {}",
+                d.shape.name(),
+                d.iterations,
+                d.shape.lipschitz()
+            );
+        }
+        let mut programs: Vec<Program> = Vec::new();
+        text.push_str("passes\n");
+        for pass in self.passes() {
+            let (cells, limit) = match pass {
+                Pass::March(level) => (level.cells(self.size), level.steps.to_string()),
+                Pass::Trace => (self.size, self.march.ray_steps().to_string()),
+                Pass::Color => (self.size, "-".into()),
+            };
+            let name = pass.name();
+            let _ = writeln!(
+                text,
+                "  {name:<12} {:>6} x {:<6} steps {limit}",
+                cells[0], cells[1]
+            );
+            let program = self.program(&scene, pass, Extras::default());
+            if !programs.contains(&program) {
+                programs.push(program);
+            }
+        }
+        text.push_str("programs\n");
+        for program in &programs {
+            let _ = write!(text, "  {}\n{}", program.entry, program.describe());
+        }
+        text
+    }
+
+    /// The program of a pass.
+    pub fn program(&self, scene: &Scene, pass: Pass, extras: Extras) -> Program {
+        let mut modules = scene.twin().modules();
+        modules.extend([view::module(), wgsl!("pass/shared.wgsl")]);
+        let counted = extras.count && pass != Pass::Color;
+        modules.push(counters(counted));
+        let entry = match pass {
+            Pass::March(_) => {
+                modules.push(march::module());
+                "march"
+            }
+            Pass::Trace => {
+                modules.push(trace::module());
+                "trace"
+            }
+            Pass::Color => {
+                modules.extend([
+                    look::module(),
+                    shadow::module(self.look.shadow),
+                    occlusion::module(self.look.occlusion > 0.0),
+                    fog::module(self.look.fog > 0.0),
+                    color::module(extras.normals),
+                ]);
+                "color"
+            }
+        };
+        Program::new(entry, modules)
+    }
+}
+
+fn counters(on: bool) -> Module {
+    if on {
+        wgsl!("counters.wgsl")
+    } else {
+        wgsl!("counters_off.wgsl")
+    }
+}
+
+/// One step of a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pass {
+    /// Cones of one level.
+    March(Level),
+    /// Rays at full size.
+    Trace,
+    /// Light and colour.
+    Color,
+}
+
+impl Pass {
+    /// `march 1/16`, `trace` or `color`.
+    pub fn name(&self) -> String {
+        match self {
+            Self::March(level) => format!("march 1/{}", level.divisor),
+            Self::Trace => "trace".into(),
+            Self::Color => "color".into(),
+        }
+    }
+}
+
+/// What a render yields beside colour and depth. It never changes a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    /// Count evaluations and iterations.
+    pub count: bool,
+    /// Keep normals.
+    pub normals: bool,
+    /// Keep the fronts and states of every cone level.
+    pub levels: bool,
+    /// Leave the colour pass out.
+    pub depth_only: bool,
+    /// Ask the device for its time per pass.
+    pub time: bool,
+}

@@ -1,0 +1,80 @@
+//! The questions that a pass may ask a scene (and nothing else may be asked).
+
+use glam::DVec3;
+
+use crate::frame::Work;
+use crate::key::Fault;
+use crate::shader::Module;
+use crate::view::Beam;
+
+/// What one step of a walk came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Go on.
+    Moving,
+    /// The surface is met.
+    Hit,
+    /// Past the end: nothing there.
+    Out,
+}
+
+/// Where a ray met the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray.
+    pub t: f64,
+    /// What was met: a face, a cell.
+    pub id: u32,
+    /// Where on it.
+    pub uv: [f64; 2],
+}
+
+/// What the colour pass needs to know of a hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Unit normal.
+    pub normal: DVec3,
+    /// Three numbers in 0..1 to look the palette up with.
+    pub pigment: DVec3,
+}
+
+/// A scene in f64. Points `q` are relative to the eye; functions of the same names
+/// answer in WGSL. `work` gains what the answer cost.
+pub trait Solid: Sync {
+    /// A ray on its way.
+    type Walk: Copy;
+
+    /// The new proven front of a cone, or the old one where no more can be proven.
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> f64;
+
+    /// Starts a ray at a proven front; nothing beyond `t_max` counts.
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Self::Walk;
+
+    /// One step.
+    fn walk_step(&self, ray: &Beam, walk: &mut Self::Walk, work: &mut Work) -> Step;
+
+    /// Where a walk stands: its hit, once it has one.
+    fn walk_hit(&self, walk: &Self::Walk) -> Hit;
+
+    /// Radius of the last ball that the walk found empty, about where it stands.
+    fn walk_radius(&self, walk: &Self::Walk) -> f64;
+
+    /// Radius of a surely empty ball about a point.
+    fn clearance(&self, q: DVec3) -> f64;
+
+    /// Normal and pigment of a hit.
+    fn surface(&self, ray: &Beam, hit: &Hit) -> Surface;
+
+    /// The distance from the eye past which there is nothing.
+    fn bounds_far(&self) -> f64;
+}
+
+/// The GPU's side of a scene: modules to join and values to bind.
+pub trait Twin {
+    /// The scene's modules, its formula's included.
+    fn modules(&self) -> Vec<Module>;
+    /// Bytes of the uniforms by the names of the WGSL variables.
+    fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)>;
+    /// Whether the parameters fit together.
+    fn check(&self) -> Result<(), Fault>;
+}

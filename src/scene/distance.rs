@@ -1,0 +1,337 @@
+//! A scene given by a distance estimate.
+//!
+//! Cones advance by the exact step, rays by sphere tracing with relaxation (METHOD 2).
+//! A step keeps clear of a share of the hit threshold, the *shell*, so that a long one
+//! does not jump over the thin skin in which small steps would find a hit.
+//! Twin: `wgsl/scene/distance.wgsl`.
+
+use bytemuck::{Pod, Zeroable, bytes_of};
+use glam::{DVec3, Vec3};
+
+use super::contract::{Hit, Solid, Step, Surface, Twin};
+use crate::cone::ConeRule;
+use crate::formula::{Bounds, Shape};
+use crate::frame::Work;
+use crate::key::Fault;
+use crate::shader::Module;
+use crate::view::{Beam, footprint};
+use crate::wgsl;
+
+/// A cone that gains less than this share of its ball leaves the rest to its four
+/// children, whose thinner cones gain more from a ball at the same place.
+const DISTANCE_ENOUGH: f64 = 0.3;
+/// Weight of the newest slope in the automatic relaxation.
+const DISTANCE_SMOOTHING: f64 = 0.3;
+/// The longest automatic step, in radii of the last ball.
+const DISTANCE_MOST_RELAXED: f64 = 3.0;
+
+/// The scene as WGSL reads it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct DistanceUniform {
+    /// Camera position.
+    pub eye: Vec3,
+    /// Hit threshold in footprints.
+    pub detail: f32,
+    /// Centre of the bounds.
+    pub centre: Vec3,
+    /// Radius of the bounds.
+    pub radius: f32,
+    /// Half extents of the bounds.
+    pub half: Vec3,
+    /// Nothing is farther from the eye.
+    pub far: f32,
+    /// The estimate's largest slope.
+    pub lipschitz: f32,
+    /// Share of the threshold that steps keep clear of.
+    pub shell: f32,
+    /// 0 automatic, 1 off, else a factor.
+    pub relaxation: f32,
+    /// Factor on ray steps.
+    pub stride: f32,
+    /// Iteration limit of the formula.
+    pub iterations: u32,
+    /// Unused.
+    pub pad0: u32,
+    /// Unused.
+    pub pad1: u32,
+    /// Unused.
+    pub pad2: u32,
+}
+
+/// How rays may stretch their steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Relaxation {
+    /// Steps are the radius of the empty ball.
+    Off,
+    /// Steps follow the measured slope of the radius.
+    #[default]
+    Auto,
+    /// Steps are this many radii, 1 to 2.
+    Factor(f64),
+}
+
+impl Relaxation {
+    fn code(self) -> f64 {
+        match self {
+            Self::Off => 1.0,
+            Self::Auto => 0.0,
+            Self::Factor(f) => f,
+        }
+    }
+}
+
+/// A formula as it is marched: everything resolved to numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distance {
+    /// The shape.
+    pub shape: Shape,
+    /// Iteration limit.
+    pub iterations: u32,
+    /// Camera position.
+    pub eye: DVec3,
+    /// Hit where `estimate <= detail * footprint`.
+    pub detail: f64,
+    /// Steps keep clear of `shell * detail * footprint`, 0 <= shell < 1.
+    pub shell: f64,
+    /// How rays stretch their steps.
+    pub relaxation: Relaxation,
+    /// Factor on ray steps: 1, or less for the truth.
+    pub stride: f64,
+    /// Which rule carries cones.
+    pub rule: ConeRule,
+    bounds: Bounds,
+    lipschitz: f64,
+    far: f64,
+}
+
+/// Numbers that a [`Distance`] is made from, beside its shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stepping {
+    /// See [`Distance::detail`].
+    pub detail: f64,
+    /// See [`Distance::shell`].
+    pub shell: f64,
+    /// See [`Distance::relaxation`].
+    pub relaxation: Relaxation,
+    /// See [`Distance::stride`].
+    pub stride: f64,
+    /// See [`Distance::rule`].
+    pub rule: ConeRule,
+}
+
+impl Distance {
+    /// A shape seen from an eye.
+    pub fn new(shape: Shape, iterations: u32, eye: DVec3, stepping: Stepping) -> Self {
+        let bounds = shape.bounds();
+        Self {
+            iterations,
+            eye,
+            detail: stepping.detail,
+            shell: stepping.shell,
+            relaxation: stepping.relaxation,
+            stride: stepping.stride,
+            rule: stepping.rule,
+            bounds,
+            lipschitz: shape.lipschitz(),
+            far: bounds.farthest(eye),
+            shape,
+        }
+    }
+
+    fn estimate_at(&self, q: DVec3, work: &mut Work) -> f64 {
+        let (d, n) = self.shape.estimate(self.eye + q, self.iterations);
+        work.evaluations += 1;
+        work.iterations += n;
+        d
+    }
+
+    /// The part of a ray inside the bounds as (near, far); near > far if it misses.
+    pub fn bounds_interval(&self, ray: &Beam) -> (f64, f64) {
+        let p = self.eye - self.bounds.centre + ray.origin;
+        let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
+        for i in 0..3 {
+            let a = if ray.axis[i].abs() < 1e-18 {
+                1e-18_f64.copysign(ray.axis[i])
+            } else {
+                ray.axis[i]
+            };
+            let (one, two) = (
+                (-self.bounds.half[i] - p[i]) / a,
+                (self.bounds.half[i] - p[i]) / a,
+            );
+            near = near.max(one.min(two));
+            far = far.min(one.max(two));
+        }
+        let b = p.dot(ray.axis);
+        let off = p - b * ray.axis;
+        let q = self.bounds.radius.powi(2) - off.length_squared();
+        if q < 0.0 {
+            return (1.0, -1.0);
+        }
+        (near.max(-b - q.sqrt()), far.min(-b + q.sqrt()))
+    }
+}
+
+impl Twin for Distance {
+    fn modules(&self) -> Vec<Module> {
+        let mut all = vec![
+            wgsl!("real.wgsl"),
+            self.rule.module(),
+            wgsl!(
+                "scene/distance.wgsl",
+                "DISTANCE_ENOUGH" = DISTANCE_ENOUGH,
+                "DISTANCE_SMOOTHING" = DISTANCE_SMOOTHING,
+                "DISTANCE_MOST_RELAXED" = DISTANCE_MOST_RELAXED,
+                "HIT_CARRIES_MARK" = 0.0
+            ),
+        ];
+        all.extend(self.shape.modules());
+        all
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
+    fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {
+        let scene = DistanceUniform {
+            eye: self.eye.as_vec3(),
+            detail: self.detail as f32,
+            centre: self.bounds.centre.as_vec3(),
+            radius: self.bounds.radius as f32,
+            half: self.bounds.half.as_vec3(),
+            // Rounded up: the corner itself must not count as past everything.
+            far: (self.far * (1.0 + 1e-6)) as f32,
+            lipschitz: self.lipschitz as f32,
+            shell: self.shell as f32,
+            relaxation: self.relaxation.code() as f32,
+            stride: self.stride as f32,
+            iterations: self.iterations,
+            pad0: 0,
+            pad1: 0,
+            pad2: 0,
+        };
+        let mut all = vec![("distance_scene", bytes_of(&scene).to_vec())];
+        all.extend(self.shape.uniforms(self.iterations));
+        all
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        self.shape.check()
+    }
+}
+
+/// The state of a ray between two steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Walk {
+    t: f64,
+    radius: f64,
+    pace: f64,
+    slope: f64,
+    end: f64,
+}
+
+impl Solid for Distance {
+    type Walk = Walk;
+
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> f64 {
+        let q = cone.at(front);
+        let eps = self.detail * footprint(cone, front);
+        let mut d = self.bounds.distance(self.eye + q) - cone.r0;
+        // Outside the bounds their distance will do, while it carries the cone.
+        if d <= 2.0 * cone.k * front {
+            let e = (self.estimate_at(q, work) - self.shell * eps) / self.lipschitz;
+            d = d.max(e - cone.r0);
+        }
+        let next = self.rule.cone_front(front, front, d, cone.k);
+        // A short gain is better left to the four thinner children.
+        if next - front < DISTANCE_ENOUGH * d {
+            return front;
+        }
+        next
+    }
+
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Work) -> Walk {
+        let (near, far) = self.bounds_interval(ray);
+        Walk {
+            t: front.max(near),
+            radius: 0.0,
+            pace: 0.0,
+            slope: -1.0,
+            end: far.min(t_max),
+        }
+    }
+
+    fn walk_step(&self, ray: &Beam, walk: &mut Walk, work: &mut Work) -> Step {
+        let w = *walk;
+        if w.t + w.radius > w.end {
+            return Step::Out;
+        }
+        let t = (w.t + w.pace).min(w.end);
+        let gone = t - w.t;
+        let raw = self.estimate_at(ray.at(t), work);
+        let eps = self.detail * footprint(ray, t);
+        let radius = (raw - self.shell * eps) * (self.stride / self.lipschitz);
+        if gone > w.radius && gone > w.radius + radius.max(0.0) {
+            walk.pace = w.radius;
+            walk.slope = -1.0;
+            return Step::Moving;
+        }
+        walk.t = t;
+        if raw <= eps {
+            return Step::Hit;
+        }
+        let factor = match self.relaxation {
+            Relaxation::Off => 1.0,
+            Relaxation::Factor(f) => f,
+            Relaxation::Auto => {
+                if gone > 0.0 && w.radius > 0.0 {
+                    let slope = (radius - w.radius) / gone;
+                    walk.slope += DISTANCE_SMOOTHING * (slope - walk.slope);
+                }
+                (2.0 / (1.0 - walk.slope).max(1e-3)).clamp(1.0, DISTANCE_MOST_RELAXED)
+            }
+        };
+        walk.radius = radius;
+        walk.pace = radius * factor;
+        Step::Moving
+    }
+
+    fn walk_hit(&self, walk: &Walk) -> Hit {
+        Hit {
+            t: walk.t,
+            ..Hit::default()
+        }
+    }
+
+    fn walk_radius(&self, walk: &Walk) -> f64 {
+        walk.radius
+    }
+
+    fn clearance(&self, q: DVec3) -> f64 {
+        let e = self.estimate_at(q, &mut Work::default()).max(0.0);
+        self.bounds.distance(self.eye + q).max(e / self.lipschitz)
+    }
+
+    fn surface(&self, ray: &Beam, hit: &Hit) -> Surface {
+        let q = ray.at(hit.t);
+        let h = 0.5 * footprint(ray, hit.t) + self.far * 1e-7;
+        let corners = [
+            DVec3::new(1.0, -1.0, -1.0),
+            DVec3::new(-1.0, -1.0, 1.0),
+            DVec3::new(-1.0, 1.0, -1.0),
+            DVec3::new(1.0, 1.0, 1.0),
+        ];
+        let work = &mut Work::default();
+        let g: DVec3 = corners
+            .iter()
+            .map(|&c| c * self.estimate_at(q + h * c, work))
+            .sum();
+        Surface {
+            normal: g.try_normalize().unwrap_or(-ray.axis),
+            pigment: self.shape.trap(self.eye + q, self.iterations),
+        }
+    }
+
+    fn bounds_far(&self) -> f64 {
+        self.far
+    }
+}

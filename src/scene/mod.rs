@@ -1,0 +1,42 @@
+//! What there is to see. The only place that tells one kind of scene from another.
+
+mod contract;
+pub mod distance;
+pub mod slab;
+
+pub use contract::{Hit, Solid, Step, Surface, Twin};
+
+/// A scene made ready for one view.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Scene {
+    /// A distance-estimated formula.
+    Distance(distance::Distance),
+    /// A slab between two planes.
+    Slab(slab::Slab),
+}
+
+/// Work that is the same for every kind of scene.
+pub trait Task {
+    /// What it yields.
+    type Output;
+    /// Does it on one kind.
+    fn run<S: Solid>(self, solid: &S) -> Self::Output;
+}
+
+impl Scene {
+    /// Does a task on the scene, whatever its kind.
+    pub fn run<T: Task>(&self, task: T) -> T::Output {
+        match self {
+            Self::Distance(s) => task.run(s),
+            Self::Slab(s) => task.run(s),
+        }
+    }
+
+    /// The GPU's side of the scene.
+    pub fn twin(&self) -> &dyn Twin {
+        match self {
+            Self::Distance(s) => s,
+            Self::Slab(s) => s,
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! A round slab between two parallel planes, solved in closed form: the smallest
+//! complete scene, and the proof that passes do not know what they march.
+//! Twin: `wgsl/scene/slab.wgsl`.
+
+use bytemuck::{Pod, Zeroable, bytes_of};
+use glam::{DVec2, DVec3, Vec3};
+
+use super::contract::{Hit, Solid, Step, Surface, Twin};
+use crate::cone::ConeRule;
+use crate::frame::Work;
+use crate::key::{Fault, Key, Number, Triple};
+use crate::shader::Module;
+use crate::view::Beam;
+use crate::wgsl;
+
+/// The slab as WGSL reads it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct SlabUniform {
+    /// Camera position.
+    pub eye: Vec3,
+    /// Half thickness.
+    pub half: f32,
+    /// Unit normal of the planes.
+    pub normal: Vec3,
+    /// Radius of the disc.
+    pub radius: f32,
+    /// Unit direction in the plane.
+    pub side: Vec3,
+    /// Nothing is farther from the eye.
+    pub far: f32,
+    /// The other unit direction in the plane.
+    pub other: Vec3,
+    /// Unused.
+    pub pad: f32,
+}
+
+/// Shape of a slab, centred on the origin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlabShape {
+    /// Direction of the planes' normal.
+    pub normal: DVec3,
+    /// Half the distance between the planes.
+    pub half: f64,
+    /// Radius of the disc that it ends at.
+    pub radius: f64,
+}
+
+impl Default for SlabShape {
+    fn default() -> Self {
+        Self {
+            normal: DVec3::Z,
+            half: 0.5,
+            radius: 6.0,
+        }
+    }
+}
+
+impl SlabShape {
+    /// The keys that a slab reads in `[scene]`.
+    pub fn keys(&mut self) -> Vec<Key<'_>> {
+        vec![
+            Key::new(
+                "normal",
+                Triple(&mut self.normal, -1e6, 1e6),
+                "direction of the planes' normal",
+            ),
+            Key::new(
+                "half",
+                Number(&mut self.half, 1e-6, 1e6),
+                "half the thickness",
+            ),
+            Key::new(
+                "radius",
+                Number(&mut self.radius, 1e-6, 1e6),
+                "radius of the disc",
+            ),
+        ]
+    }
+
+    /// Whether the normal is a direction.
+    pub fn check(&self) -> Result<(), Fault> {
+        if self.normal.length() < 1e-9 {
+            return Err(Fault::new(
+                "scene.normal",
+                "the normal must not be zero; [0, 0, 1] would do",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// A slab seen from an eye.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slab {
+    eye: DVec3,
+    half: f64,
+    radius: f64,
+    normal: DVec3,
+    side: DVec3,
+    other: DVec3,
+    far: f64,
+    rule: ConeRule,
+}
+
+impl Slab {
+    /// A slab that passes [`SlabShape::check`], seen from an eye.
+    pub fn new(shape: &SlabShape, eye: DVec3, rule: ConeRule) -> Self {
+        let normal = shape.normal.normalize();
+        let side = normal.any_orthonormal_vector();
+        Self {
+            eye,
+            half: shape.half,
+            radius: shape.radius,
+            normal,
+            side,
+            other: normal.cross(side),
+            far: eye.length() + shape.half.hypot(shape.radius),
+            rule,
+        }
+    }
+
+    fn slab_distance(&self, q: DVec3) -> f64 {
+        let p = self.eye + q;
+        let z = p.dot(self.normal);
+        let o = DVec2::new(
+            (p - z * self.normal).length() - self.radius,
+            z.abs() - self.half,
+        );
+        o.max(DVec2::ZERO).length() + o.max_element().min(0.0)
+    }
+
+    /// The same coordinates as the WGSL: along the two sides.
+    fn along(&self, v: DVec3) -> DVec2 {
+        DVec2::new(v.dot(self.side), v.dot(self.other))
+    }
+}
+
+impl Twin for Slab {
+    fn modules(&self) -> Vec<Module> {
+        vec![
+            self.rule.module(),
+            wgsl!("scene/slab.wgsl", "HIT_CARRIES_MARK" = 1.0),
+        ]
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
+    fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {
+        let slab = SlabUniform {
+            eye: self.eye.as_vec3(),
+            half: self.half as f32,
+            normal: self.normal.as_vec3(),
+            radius: self.radius as f32,
+            side: self.side.as_vec3(),
+            far: (self.far * (1.0 + 1e-6)) as f32,
+            other: self.other.as_vec3(),
+            pad: 0.0,
+        };
+        vec![("slab", bytes_of(&slab).to_vec())]
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        Ok(())
+    }
+}
+
+/// A ray whose meeting with the slab is already solved.
+#[derive(Clone, Copy, Debug)]
+pub struct Walk {
+    t: f64,
+    hit: Option<Hit>,
+    end: f64,
+}
+
+impl Solid for Slab {
+    type Walk = Walk;
+
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> f64 {
+        work.evaluations += 1;
+        let d = self.slab_distance(cone.at(front)) - cone.r0;
+        self.rule.cone_front(front, front, d, cone.k)
+    }
+
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Walk {
+        work.evaluations += 1;
+        let p = self.eye + ray.origin;
+        let (z, dz) = (p.dot(self.normal), ray.axis.dot(self.normal));
+        let (s, ds) = (self.along(p), self.along(ray.axis));
+        let found = |t: f64, id| {
+            let at = s + t * ds;
+            Hit {
+                t,
+                id,
+                uv: at.to_array(),
+            }
+        };
+        let mut hit = None;
+        if self.slab_distance(ray.at(front)) <= 0.0 {
+            hit = Some(found(front, 0));
+        }
+        if hit.is_none() && z.abs() > self.half && dz.abs() > 1e-12 {
+            let t = (self.half.copysign(z) - z) / dz;
+            if t >= front && (s + t * ds).length() <= self.radius {
+                hit = Some(found(t, u32::from(z > 0.0)));
+            }
+        }
+        let a = ds.length_squared();
+        if hit.is_none() && a > 1e-12 {
+            let middle = -s.dot(ds) / a;
+            let q = self.radius.powi(2) - (s + middle * ds).length_squared();
+            let t = middle - (q.max(0.0) / a).sqrt();
+            if q > 0.0 && t >= front && (z + t * dz).abs() <= self.half {
+                hit = Some(found(t, 2));
+            }
+        }
+        Walk {
+            t: front,
+            hit,
+            end: self.far.min(t_max),
+        }
+    }
+
+    fn walk_step(&self, _ray: &Beam, walk: &mut Walk, _work: &mut Work) -> Step {
+        match walk.hit {
+            Some(hit) if hit.t <= walk.end => {
+                walk.t = hit.t;
+                Step::Hit
+            }
+            _ => Step::Out,
+        }
+    }
+
+    fn walk_hit(&self, walk: &Walk) -> Hit {
+        let at = Hit {
+            t: walk.t,
+            ..Hit::default()
+        };
+        walk.hit.map_or(at, |hit| Hit { t: walk.t, ..hit })
+    }
+
+    fn walk_radius(&self, _walk: &Walk) -> f64 {
+        0.0
+    }
+
+    fn clearance(&self, q: DVec3) -> f64 {
+        self.slab_distance(q).max(0.0)
+    }
+
+    fn surface(&self, _ray: &Beam, hit: &Hit) -> Surface {
+        let uv = DVec2::from_array(hit.uv);
+        let normal = match hit.id {
+            0 => -self.normal,
+            1 => self.normal,
+            _ => (uv.x * self.side + uv.y * self.other) / self.radius,
+        };
+        let square = uv.floor().element_sum();
+        let light = square - 2.0 * (0.5 * square).floor();
+        Surface {
+            normal,
+            pigment: DVec3::new(0.15 + 0.7 * light, 0.5, 0.5),
+        }
+    }
+
+    fn bounds_far(&self) -> f64 {
+        self.far
+    }
+}

@@ -1,0 +1,22 @@
+// A rotation between the folds of a formula, as three rows computed on the CPU
+// (WGSL's sine and cosine are too coarse). `rotation_none.wgsl` takes its place
+// where there is none.
+
+struct RotationUniform {
+    row0: vec3<f32>,
+    pad0: f32,
+    row1: vec3<f32>,
+    pad1: f32,
+    row2: vec3<f32>,
+    pad2: f32,
+}
+
+@group(0) @binding(2) var<uniform> rotation: RotationUniform;
+
+fn rotate(v: real3) -> real3 {
+    return real3(
+        dot(real3(rotation.row0), v),
+        dot(real3(rotation.row1), v),
+        dot(real3(rotation.row2), v),
+    );
+}

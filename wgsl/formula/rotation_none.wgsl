@@ -1,0 +1,5 @@
+// The stand-in of `rotation.wgsl` where nothing is rotated.
+
+fn rotate(v: real3) -> real3 {
+    return v;
+}

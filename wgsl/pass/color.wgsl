@@ -1,0 +1,66 @@
+// The colour pass: every hit is lit by a key light with its shadow, a sky above and
+// a faint bounce from below, both as far as the point sees out. Linear light; tone
+// and sRGB come when the picture is written.
+
+@group(2) @binding(0) var<storage, read> depth: array<f32>;
+@group(2) @binding(1) var<storage, read> state: array<u32>;
+@group(2) @binding(2) var<storage, read> marks: array<Mark>;
+@group(2) @binding(4) var<storage, read_write> radiance: array<vec4<f32>>;
+@group(2) @binding(5) var<storage, read_write> normals: array<vec4<f32>>;
+
+override COLOR_KEEPS_NORMALS: bool;
+
+fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec3<f32> {
+    let n = surface.normal;
+    let albedo = pigment_color(surface.pigment);
+    let facing = dot(n, look.light);
+    var lit = 0.0;
+    if facing > 0.0 {
+        lit = facing * shadow(q, n, grain);
+    }
+    let open = occlusion(q, n, grain);
+    let up = 0.5 + 0.5 * dot(n, look.world_up);
+    let ambient = mix(0.45 * look.sky_low, look.sky_high, up) * look.fill;
+    // Light thrown back by lit neighbours: warm, from below and behind.
+    let bounce = look.light_color * (0.12 * look.fill * (1.0 - up));
+    var c = albedo * (look.light_color * (look.key * lit) + (ambient + bounce) * open);
+    let half_way = normalize(look.light - ray.axis);
+    let shine = pow(max(0.0, dot(n, half_way)), 40.0);
+    c += look.light_color * (look.gloss * lit * shine);
+    return c;
+}
+
+@compute @workgroup_size(64)
+fn color(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let local = tile_cell(group.xy, lane);
+    if any(local >= view.block_size) {
+        return;
+    }
+    let index = local.y * view.block_size.x + local.x;
+    let ray = view_ray(view.block_origin + local);
+    let s = state[index];
+    var c = sky(ray.axis);
+    var n = vec3<f32>(0.0);
+    if s != STATE_SKY {
+        var hit = Hit(depth[index], 0u, vec2<f32>(0.0));
+        if HIT_CARRIES_MARK {
+            let mark = marks[index];
+            hit.id = mark.id;
+            hit.uv = vec2<f32>(mark.u, mark.v);
+        }
+        let at = surface(ray, hit);
+        let grain = footprint(ray, hit.t);
+        c = fog(shade(ray, ray.origin + hit.t * ray.axis, at, grain), ray.axis, hit.t);
+        n = at.normal;
+        if s == STATE_UNCONVERGED && look.flag == 1u {
+            c = vec3<f32>(1.0, 0.0, 1.0);
+        }
+    }
+    radiance[index] = vec4<f32>(c, 1.0);
+    if COLOR_KEEPS_NORMALS {
+        normals[index] = vec4<f32>(n, 0.0);
+    }
+}

@@ -1,0 +1,7 @@
+// Exponential fog towards the sky's colour, over the distance past the nearest
+// point of the bounds.
+
+fn fog(color: vec3<f32>, axis: vec3<f32>, t: f32) -> vec3<f32> {
+    let seen = exp(-look.fog * t);
+    return mix(sky(axis), color, seen);
+}

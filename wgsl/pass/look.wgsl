@@ -1,0 +1,59 @@
+// Light, palette and tone: what a picture's look is made of, without geometry.
+
+struct LookUniform {
+    /// Unit vector to the light, and the light's strength.
+    light: vec3<f32>,
+    key: f32,
+    light_color: vec3<f32>,
+    fill: f32,
+    sky_high: vec3<f32>,
+    /// Extinction per unit of length.
+    fog: f32,
+    sky_low: vec3<f32>,
+    /// Specular share.
+    gloss: f32,
+    world_up: vec3<f32>,
+    /// Tangent of the light's angular radius.
+    softness: f32,
+    /// Length over which occlusion looks for neighbours.
+    occlusion_reach: f32,
+    occlusion_strength: f32,
+    shadow_steps: u32,
+    stops: u32,
+    palette_cycles: f32,
+    /// 1 to paint unconverged pixels in magenta.
+    flag: u32,
+    pad: vec2<u32>,
+    palette: array<vec4<f32>, 8>,
+}
+
+@group(1) @binding(1) var<uniform> look: LookUniform;
+
+fn sky(axis: vec3<f32>) -> vec3<f32> {
+    let height = dot(axis, look.world_up);
+    let blend = smoothstep(-0.6, 0.8, height);
+    var c = mix(look.sky_low, look.sky_high, blend);
+    // A wide, faint glow about the light.
+    let near = max(0.0, dot(axis, look.light));
+    c += look.light_color * (0.12 * pow(near, 6.0));
+    return c;
+}
+
+/// The palette at x, its stops evenly spaced over 0..1, blended smoothly.
+fn palette_at(x: f32) -> vec3<f32> {
+    let last = f32(look.stops - 1u);
+    // Triangle wave: cycles without a seam.
+    let phase = abs(x * look.palette_cycles - 2.0 * round(0.5 * x * look.palette_cycles));
+    let at = clamp(phase, 0.0, 1.0) * last;
+    let i = min(u32(at), look.stops - 1u);
+    let j = min(i + 1u, look.stops - 1u);
+    let f = at - f32(i);
+    return mix(look.palette[i].rgb, look.palette[j].rgb, f * f * (3.0 - 2.0 * f));
+}
+
+fn pigment_color(pigment: vec3<f32>) -> vec3<f32> {
+    // The orbit's nearness to the origin picks the hue, the planes darken the
+    // creases, the sphere lifts the ridges.
+    let base = palette_at(pigment.x);
+    return base * (0.55 + 0.45 * pigment.y) * (0.85 + 0.3 * pigment.z);
+}

@@ -1,0 +1,5 @@
+// The stand-in of `shadow.wgsl`: everything is lit.
+
+fn shadow(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> f32 {
+    return 1.0;
+}

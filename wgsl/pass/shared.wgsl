@@ -1,0 +1,37 @@
+// What every pass and every scene agree on: states, hits, surfaces, and which cell
+// an invocation works on.
+
+const STATE_SKY = 0u;
+const STATE_HIT = 1u;
+const STATE_UNCONVERGED = 2u;
+/// Not finished: runs on in the next dispatch. Never leaves the executor.
+const STATE_MOVING = 3u;
+
+/// Where a ray met the scene: the distance, what it met, and where on that.
+struct Hit {
+    t: f32,
+    id: u32,
+    uv: vec2<f32>,
+}
+
+/// What of a hit is kept between the passes, beside its distance: only scenes whose
+/// hits name something keep any.
+struct Mark {
+    id: u32,
+    u: f32,
+    v: f32,
+}
+
+struct Surface {
+    normal: vec3<f32>,
+    /// Three numbers in 0..1 that the palette is looked up with.
+    pigment: vec3<f32>,
+}
+
+/// Square tiles of 8 x 8 cells, walked in Morton order: neighbouring invocations are
+/// neighbouring cells, in groups of 8 (4 x 2) as in groups of 32 (8 x 4).
+fn tile_cell(group: vec2<u32>, lane: u32) -> vec2<u32> {
+    let x = (lane & 1u) | ((lane >> 1u) & 2u) | ((lane >> 2u) & 4u);
+    let y = ((lane >> 1u) & 1u) | ((lane >> 2u) & 2u) | ((lane >> 3u) & 4u);
+    return group * 8u + vec2<u32>(x, y);
+}

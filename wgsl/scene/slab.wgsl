@@ -1,0 +1,124 @@
+// A slab between two parallel planes, solved in closed form: the smallest complete
+// scene. It has no distance estimate and no formula, its hits name a face and carry
+// coordinates on it, and it proves that the passes do not know what they march.
+
+struct SlabUniform {
+    eye: vec3<f32>,
+    /// Half thickness.
+    half: f32,
+    /// Unit normal of the planes; the slab is centred on the origin.
+    normal: vec3<f32>,
+    /// Radius of the disc that the slab ends at.
+    radius: f32,
+    /// Two unit directions in the plane.
+    side: vec3<f32>,
+    far: f32,
+    other: vec3<f32>,
+    pad: f32,
+}
+
+struct Walk {
+    t: f32,
+    radius: f32,
+    hit: f32,
+    end: f32,
+    face: u32,
+    u: f32,
+    v: f32,
+}
+
+override HIT_CARRIES_MARK: bool;
+
+@group(0) @binding(0) var<uniform> slab: SlabUniform;
+
+fn bounds_far() -> f32 {
+    return slab.far;
+}
+
+/// Distance to the solid disc with flat faces.
+fn slab_distance(q: vec3<f32>) -> f32 {
+    let p = slab.eye + q;
+    let z = dot(p, slab.normal);
+    let o = vec2<f32>(length(p - z * slab.normal) - slab.radius, abs(z) - slab.half);
+    return length(max(o, vec2<f32>(0.0))) + min(max(o.x, o.y), 0.0);
+}
+
+fn advance(cone: Beam, front: f32) -> f32 {
+    count_evaluation();
+    let d = slab_distance(cone.origin + front * cone.axis) - cone.r0;
+    return cone_front(front, front, d, cone.k);
+}
+
+/// The ray against both planes and the rim; the first that it meets from outside.
+fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
+    count_evaluation();
+    let p = slab.eye + ray.origin;
+    let z = dot(p, slab.normal);
+    let dz = dot(ray.axis, slab.normal);
+    let s = vec2<f32>(dot(p, slab.side), dot(p, slab.other));
+    let ds = vec2<f32>(dot(ray.axis, slab.side), dot(ray.axis, slab.other));
+    var walk = Walk(front, 0.0, -1.0, min(slab.far, t_max), 0u, 0.0, 0.0);
+    // Already inside: the surface is where the ray starts.
+    if slab_distance(ray.origin + front * ray.axis) <= 0.0 {
+        walk.hit = front;
+    }
+    let face = select(-slab.half, slab.half, z > 0.0);
+    if walk.hit < 0.0 && abs(z) > slab.half && abs(dz) > 1e-12 {
+        let t = (face - z) / dz;
+        let at = s + t * ds;
+        if t >= front && length(at) <= slab.radius {
+            walk.hit = t;
+            walk.face = select(0u, 1u, z > 0.0);
+        }
+    }
+    let a = dot(ds, ds);
+    if walk.hit < 0.0 && a > 1e-12 {
+        // Nearest approach first: b^2 - a c would cancel for a far eye.
+        let middle = -dot(s, ds) / a;
+        let nearest = s + middle * ds;
+        let q = slab.radius * slab.radius - dot(nearest, nearest);
+        let t = middle - sqrt(max(q, 0.0) / a);
+        if q > 0.0 && t >= front && abs(z + t * dz) <= slab.half {
+            walk.hit = t;
+            walk.face = 2u;
+        }
+    }
+    if walk.hit >= 0.0 {
+        let at = s + walk.hit * ds;
+        walk.u = at.x;
+        walk.v = at.y;
+    }
+    return walk;
+}
+
+fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
+    let hit = (*walk).hit;
+    if hit < 0.0 || hit > (*walk).end {
+        return STATE_SKY;
+    }
+    (*walk).t = hit;
+    return STATE_HIT;
+}
+
+fn walk_hit(walk: Walk) -> Hit {
+    return Hit(walk.t, walk.face, vec2<f32>(walk.u, walk.v));
+}
+
+fn clearance(q: vec3<f32>) -> f32 {
+    count_evaluation();
+    return max(0.0, slab_distance(q));
+}
+
+fn surface(ray: Beam, hit: Hit) -> Surface {
+    var normal = slab.normal;
+    if hit.id == 0u {
+        normal = -slab.normal;
+    }
+    if hit.id == 2u {
+        normal = (hit.uv.x * slab.side + hit.uv.y * slab.other) / slab.radius;
+    }
+    // A board of unit squares.
+    let square = floor(hit.uv.x) + floor(hit.uv.y);
+    let light = square - 2.0 * floor(0.5 * square);
+    return Surface(normal, vec3<f32>(0.15 + 0.7 * light, 0.5, 0.5));
+}
