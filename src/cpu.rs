@@ -209,3 +209,34 @@ fn color_pass<S: Solid>(
         frame.normal = pixels.iter().map(|(_, n)| n.as_vec3().to_array()).collect();
     }
 }
+
+/// Traces every so many pixels of a plan without cones: index, distance and state.
+pub fn sample(plan: &Plan, every: usize) -> Vec<(usize, f64, State)> {
+    plan.scene().run(Sample { plan, every })
+}
+
+struct Sample<'a> {
+    plan: &'a Plan,
+    every: usize,
+}
+
+impl Task for Sample<'_> {
+    type Output = Vec<(usize, f64, State)>;
+
+    fn run<S: Solid>(self, solid: &S) -> Self::Output {
+        let view = self.plan.view();
+        let limit = self.plan.march.ray_steps();
+        let width = view.size[0] as usize;
+        let pixels = width * view.size[1] as usize;
+        (0..pixels.div_ceil(self.every))
+            .into_par_iter()
+            .map(|n| {
+                let i = n * self.every;
+                let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
+                let work = &mut Work::default();
+                let (hit, state) = trace::trace(solid, &ray, 0.0, limit, work);
+                (i, hit.t, state)
+            })
+            .collect()
+    }
+}

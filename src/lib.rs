@@ -1,4 +1,6 @@
 //! Multi-pass cone marching of distance-estimated fractals.
+pub mod command;
+pub mod compare;
 pub mod cone;
 pub mod cpu;
 pub mod formula;
@@ -6,8 +8,10 @@ pub mod frame;
 pub mod gpu;
 pub mod key;
 pub mod mode;
+pub mod output;
 pub mod pass;
 pub mod plan;
+pub mod preset;
 pub mod pyramid;
 pub mod render;
 pub mod scene;

@@ -74,6 +74,9 @@ pub struct Marching {
     pub steps: u32,
     /// Factor on ray steps; auto is 1, and 0.1 for the truth.
     pub stride: Option<f64>,
+    /// Whether rays start where they enter the bounds; auto is yes after cones, no
+    /// where rays are marched alone.
+    pub clip: Option<bool>,
 }
 
 impl Default for Marching {
@@ -87,6 +90,7 @@ impl Default for Marching {
             fudge: vec![1.0],
             steps: 256,
             stride: None,
+            clip: None,
         }
     }
 }
@@ -182,6 +186,14 @@ impl Marching {
                 AutoNumber(&mut self.stride, 1e-3, 1.0),
                 "factor on ray steps; auto is 1, and 0.1 for the truth",
             ),
+            Key::new(
+                "clip",
+                Word(
+                    &mut self.clip,
+                    &[("auto", None), ("on", Some(true)), ("off", Some(false))],
+                ),
+                "start rays where they enter the bounds; auto: on after cones",
+            ),
         ]
     }
 
@@ -252,6 +264,7 @@ impl Marching {
                 self.relaxation
             },
             stride: self.stride(),
+            clip: self.clip.unwrap_or(self.mode.cones()),
             rule: if self.mode.slides() {
                 ConeRule::Slides
             } else {

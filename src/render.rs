@@ -62,8 +62,9 @@ impl Default for Cutting {
             // 16 MiB for the widest channel, and well under a second per dispatch on
             // slow devices.
             block: 1024,
-            // Most cells of most scenes stop within 64 steps.
-            chunk: 64,
+            // One dispatch holds the default step limit; a second costs a software
+            // device as much as a sixth of a whole picture.
+            chunk: 256,
         }
     }
 }
@@ -80,8 +81,6 @@ pub struct Progress {
 /// Told after every pass over a block; `false` cancels the render.
 pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 
-/// Dispatches submitted before the count of what still moves is read back.
-const DISPATCHES_AT_ONCE: u32 = 4;
 /// A state that no shader writes: what unwritten pixels are found by.
 const UNWRITTEN: u32 = u32::MAX;
 
@@ -103,7 +102,7 @@ impl Renderer {
     /// A renderer on an open device.
     pub fn new(device: Device) -> Self {
         let queries = device.tick_ns.map(|_| {
-            let count = 2 * DISPATCHES_AT_ONCE;
+            let count = 2;
             let set = device.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("passes"),
                 ty: wgpu::QueryType::Timestamp,
@@ -245,40 +244,35 @@ impl Renderer {
         let mut gpu_ns = None;
         let mut done = 0;
         loop {
-            let mut used = 0;
-            while used < DISPATCHES_AT_ONCE && done < setup.limit {
-                if let Some((raw, bytes)) = &level {
-                    let data = bytes(self.cutting.chunk, done);
-                    self.device.queue.write_buffer(raw, 0, &data);
-                }
-                let mut encoder = self
-                    .device
-                    .device
-                    .create_command_encoder(&Default::default());
-                if let Some(moving) = &moving {
-                    encoder.clear_buffer(moving, 0, None);
-                }
-                let timed = self.queries.as_ref().filter(|_| job.extras.time);
-                let writes = timed.map(|(set, _)| wgpu::ComputePassTimestampWrites {
-                    query_set: set,
-                    beginning_of_pass_write_index: Some(2 * used),
-                    end_of_pass_write_index: Some(2 * used + 1),
-                });
-                let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: None,
-                    timestamp_writes: writes,
-                });
-                kernel.dispatch(&mut compute, &groups, count);
-                drop(compute);
-                self.device.queue.submit([encoder.finish()]);
-                used += 1;
-                done = done.saturating_add(self.cutting.chunk);
+            if let Some((raw, bytes)) = &level {
+                let data = bytes(self.cutting.chunk, done);
+                self.device.queue.write_buffer(raw, 0, &data);
             }
+            let mut encoder = self
+                .device
+                .device
+                .create_command_encoder(&Default::default());
+            if let Some(moving) = &moving {
+                encoder.clear_buffer(moving, 0, None);
+            }
+            let timed = self.queries.as_ref().filter(|_| job.extras.time);
+            let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: None,
+                timestamp_writes: timed.map(|(set, _)| wgpu::ComputePassTimestampWrites {
+                    query_set: set,
+                    beginning_of_pass_write_index: Some(0),
+                    end_of_pass_write_index: Some(1),
+                }),
+            });
+            kernel.dispatch(&mut compute, &groups, count);
+            drop(compute);
+            self.device.queue.submit([encoder.finish()]);
             self.device.wait()?;
             if job.extras.time {
-                let ns = self.read_timestamps(used)?;
+                let ns = self.read_timestamps()?;
                 gpu_ns = ns.map(|ns| gpu_ns.unwrap_or(0.0) + ns);
             }
+            done = done.saturating_add(self.cutting.chunk);
             if done >= setup.limit {
                 break;
             }
@@ -369,7 +363,8 @@ impl Renderer {
         self.kernels.iter().any(of)
     }
 
-    fn read_timestamps(&self, dispatches: u32) -> Result<Option<f64>, DeviceError> {
+    /// Device time of the last dispatch in nanoseconds.
+    fn read_timestamps(&self) -> Result<Option<f64>, DeviceError> {
         let (Some((set, buffer)), Some(tick)) = (&self.queries, self.device.tick_ns) else {
             return Ok(None);
         };
@@ -377,10 +372,10 @@ impl Renderer {
             .device
             .device
             .create_command_encoder(&Default::default());
-        encoder.resolve_query_set(set, 0..2 * dispatches, buffer, 0);
+        encoder.resolve_query_set(set, 0..2, buffer, 0);
         self.device.queue.submit([encoder.finish()]);
-        let stamps: Vec<u64> = read_raw(&self.device, buffer, 2 * dispatches as usize)?;
-        let ticks: u64 = stamps.chunks(2).map(|p| p[1].saturating_sub(p[0])).sum();
+        let stamps: Vec<u64> = read_raw(&self.device, buffer, 2)?;
+        let ticks = stamps[1].saturating_sub(stamps[0]);
         #[allow(clippy::cast_precision_loss, reason = "a time for reading")]
         Ok(Some(ticks as f64 * f64::from(tick)))
     }

@@ -1,7 +1,10 @@
 //! A scene given by a distance estimate.
 //!
 //! Cones advance by the exact step, rays by sphere tracing with relaxation (METHOD 2).
-//! A step keeps clear of a share of the hit threshold, the *shell*, so that a long one
+//! The bounds are part of the field: its value is the larger of the estimate and the
+//! distance to the bounds, for steps, hits and normals alike. So the surface that is
+//! seen is closed and within the hit threshold of the bounds, instead of being cut by
+//! them. A step keeps clear of a share of the hit threshold, the *shell*, so that a long one
 //! does not jump over the thin skin in which small steps would find a hit.
 //! Twin: `wgsl/scene/distance.wgsl`.
 
@@ -51,12 +54,12 @@ pub struct DistanceUniform {
     pub stride: f32,
     /// Iteration limit of the formula.
     pub iterations: u32,
+    /// 1 to start rays where they enter the bounds.
+    pub clip: u32,
     /// Unused.
     pub pad0: u32,
     /// Unused.
     pub pad1: u32,
-    /// Unused.
-    pub pad2: u32,
 }
 
 /// How rays may stretch their steps.
@@ -100,6 +103,8 @@ pub struct Distance {
     pub stride: f64,
     /// Which rule carries cones.
     pub rule: ConeRule,
+    /// Whether rays start where they enter the bounds.
+    pub clip: bool,
     bounds: Bounds,
     lipschitz: f64,
     far: f64,
@@ -118,6 +123,8 @@ pub struct Stepping {
     pub stride: f64,
     /// See [`Distance::rule`].
     pub rule: ConeRule,
+    /// See [`Distance::clip`].
+    pub clip: bool,
 }
 
 impl Distance {
@@ -132,6 +139,7 @@ impl Distance {
             relaxation: stepping.relaxation,
             stride: stepping.stride,
             rule: stepping.rule,
+            clip: stepping.clip,
             bounds,
             lipschitz: shape.lipschitz(),
             far: bounds.farthest(eye),
@@ -146,8 +154,17 @@ impl Distance {
         d
     }
 
-    /// The part of a ray inside the bounds as (near, far); near > far if it misses.
-    pub fn bounds_interval(&self, ray: &Beam) -> (f64, f64) {
+    /// Value of the field, and a ball's radius in which it exceeds `clear`.
+    fn field(&self, q: DVec3, clear: f64, work: &mut Work) -> (f64, f64) {
+        let outside = self.bounds.distance(self.eye + q);
+        let inside = self.estimate_at(q, work);
+        let ball = ((inside - clear) / self.lipschitz).max(outside - clear);
+        (inside.max(outside), ball)
+    }
+
+    /// The part of a ray within `margin` of the bounds, or a little more, as
+    /// (near, far); near > far if it misses.
+    pub fn bounds_interval(&self, ray: &Beam, margin: f64) -> (f64, f64) {
         let p = self.eye - self.bounds.centre + ray.origin;
         let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
         for i in 0..3 {
@@ -157,15 +174,15 @@ impl Distance {
                 ray.axis[i]
             };
             let (one, two) = (
-                (-self.bounds.half[i] - p[i]) / a,
-                (self.bounds.half[i] - p[i]) / a,
+                (-self.bounds.half[i] - margin - p[i]) / a,
+                (self.bounds.half[i] + margin - p[i]) / a,
             );
             near = near.max(one.min(two));
             far = far.min(one.max(two));
         }
         let b = p.dot(ray.axis);
         let off = p - b * ray.axis;
-        let q = self.bounds.radius.powi(2) - off.length_squared();
+        let q = (self.bounds.radius + margin).powi(2) - off.length_squared();
         if q < 0.0 {
             return (1.0, -1.0);
         }
@@ -205,9 +222,9 @@ impl Twin for Distance {
             relaxation: self.relaxation.code() as f32,
             stride: self.stride as f32,
             iterations: self.iterations,
+            clip: u32::from(self.clip),
             pad0: 0,
             pad1: 0,
-            pad2: 0,
         };
         let mut all = vec![("distance_scene", bytes_of(&scene).to_vec())];
         all.extend(self.shape.uniforms(self.iterations));
@@ -235,7 +252,7 @@ impl Solid for Distance {
     fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> f64 {
         let q = cone.at(front);
         let eps = self.detail * footprint(cone, front);
-        let mut d = self.bounds.distance(self.eye + q) - cone.r0;
+        let mut d = self.bounds.distance(self.eye + q) - cone.r0 - self.shell * eps;
         // Outside the bounds their distance will do, while it carries the cone.
         if d <= 2.0 * cone.k * front {
             let e = (self.estimate_at(q, work) - self.shell * eps) / self.lipschitz;
@@ -250,13 +267,19 @@ impl Solid for Distance {
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Work) -> Walk {
-        let (near, far) = self.bounds_interval(ray);
+        let margin = |t| self.detail * footprint(ray, t);
+        let (near, far) = self.bounds_interval(ray, margin(self.far.min(t_max)));
+        let mut t = front;
+        if self.clip {
+            // The margin where the ray enters, not the wider one where it might leave.
+            t = t.max(self.bounds_interval(ray, margin(near.max(0.0))).0);
+        }
         Walk {
-            t: front.max(near),
+            t,
             radius: 0.0,
             pace: 0.0,
             slope: -1.0,
-            end: far.min(t_max),
+            end: if near > far { -1.0 } else { far.min(t_max) },
         }
     }
 
@@ -267,16 +290,16 @@ impl Solid for Distance {
         }
         let t = (w.t + w.pace).min(w.end);
         let gone = t - w.t;
-        let raw = self.estimate_at(ray.at(t), work);
         let eps = self.detail * footprint(ray, t);
-        let radius = (raw - self.shell * eps) * (self.stride / self.lipschitz);
+        let (value, ball) = self.field(ray.at(t), self.shell * eps, work);
+        let radius = ball * self.stride;
         if gone > w.radius && gone > w.radius + radius.max(0.0) {
             walk.pace = w.radius;
             walk.slope = -1.0;
             return Step::Moving;
         }
         walk.t = t;
-        if raw <= eps {
+        if value <= eps {
             return Step::Hit;
         }
         let factor = match self.relaxation {
@@ -307,8 +330,7 @@ impl Solid for Distance {
     }
 
     fn clearance(&self, q: DVec3) -> f64 {
-        let e = self.estimate_at(q, &mut Work::default()).max(0.0);
-        self.bounds.distance(self.eye + q).max(e / self.lipschitz)
+        self.field(q, 0.0, &mut Work::default()).1.max(0.0)
     }
 
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface {
@@ -323,7 +345,7 @@ impl Solid for Distance {
         let work = &mut Work::default();
         let g: DVec3 = corners
             .iter()
-            .map(|&c| c * self.estimate_at(q + h * c, work))
+            .map(|&c| c * self.field(q + h * c, 0.0, work).0)
             .sum();
         Surface {
             normal: g.try_normalize().unwrap_or(-ray.axis),

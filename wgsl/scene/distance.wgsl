@@ -1,5 +1,10 @@
 // A scene given by a distance estimate: cones by the exact step, rays by sphere
 // tracing with relaxation (METHOD 2). Positions come relative to the eye.
+//
+// The bounds are part of the field: its value is the larger of the estimate and the
+// distance to the bounds, for steps, hits and normals alike. So the surface that is
+// seen, {value = eps}, is closed and within eps of the bounds, instead of being cut by
+// them.
 
 struct DistanceUniform {
     eye: vec3<f32>,
@@ -20,9 +25,10 @@ struct DistanceUniform {
     /// Factor on every ray step; 1 but for the truth.
     stride: f32,
     iterations: u32,
+    /// 1 to start rays where they enter the bounds, 0 at their front.
+    clip: u32,
     pad0: u32,
     pad1: u32,
-    pad2: u32,
 }
 
 /// A ray on its way: the last accepted point, the ball proven empty about it, the
@@ -53,19 +59,28 @@ fn bounds_distance(q: vec3<f32>) -> f32 {
     return max(length(o), max(0.0, length(p) - distance_scene.radius));
 }
 
+/// Value of the field, and a ball's radius in which it exceeds `clear`.
+fn field(q: vec3<f32>, clear: f32) -> vec2<f32> {
+    let outside = bounds_distance(q);
+    let inside = estimate_at(q);
+    let ball = max((inside - clear) / distance_scene.lipschitz, outside - clear);
+    return vec2<f32>(max(inside, outside), ball);
+}
+
 /// The distance past which there is nothing.
 fn bounds_far() -> f32 {
     return distance_scene.far;
 }
 
-/// The part of a ray inside the bounds as (near, far); near > far if it misses.
-fn bounds_interval(ray: Beam) -> vec2<f32> {
+/// The part of a ray within `margin` of the bounds, or a little more, as (near, far);
+/// near > far if it misses.
+fn bounds_interval(ray: Beam, margin: f32) -> vec2<f32> {
     let p = (distance_scene.eye - distance_scene.centre) + ray.origin;
     // A vanishing component divides to a huge number, never to an infinity.
     let tiny = select(vec3<f32>(-1e-18), vec3<f32>(1e-18), ray.axis >= vec3<f32>(0.0));
     let a = select(ray.axis, tiny, abs(ray.axis) < vec3<f32>(1e-18));
     // Widened by the rounding of p and of the quotient.
-    let room = distance_scene.half + 1e-6 * (abs(p) + distance_scene.half);
+    let room = distance_scene.half + margin + 1e-6 * (abs(p) + distance_scene.half);
     let one = (-room - p) / a;
     let two = (room - p) / a;
     let low = min(one, two);
@@ -73,7 +88,7 @@ fn bounds_interval(ray: Beam) -> vec2<f32> {
     var near = max(low.x, max(low.y, low.z));
     var far = min(high.x, min(high.y, high.z));
     let b = dot(p, ray.axis);
-    let r = distance_scene.radius * (1.0 + 1e-6);
+    let r = (distance_scene.radius + margin) * (1.0 + 1e-6);
     // Squared distance of the ray's line from the centre, without b^2 - |p|^2.
     let off = p - b * ray.axis;
     let q = r * r - dot(off, off);
@@ -89,7 +104,7 @@ fn bounds_interval(ray: Beam) -> vec2<f32> {
 fn advance(cone: Beam, front: f32) -> f32 {
     let q = cone.origin + front * cone.axis;
     let eps = distance_scene.detail * footprint(cone, front);
-    var d = bounds_distance(q) - cone.r0;
+    var d = bounds_distance(q) - cone.r0 - distance_scene.shell * eps;
     // Outside the bounds their distance will do, while it carries the cone.
     if d <= 2.0 * cone.k * front {
         let e = (estimate_at(q) - distance_scene.shell * eps) / distance_scene.lipschitz;
@@ -104,8 +119,20 @@ fn advance(cone: Beam, front: f32) -> f32 {
 }
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
-    let span = bounds_interval(ray);
-    return Walk(max(front, span.x), 0.0, 0.0, -1.0, min(span.y, t_max));
+    let far = min(t_max, bounds_far());
+    let margin = distance_scene.detail * footprint(ray, far);
+    let span = bounds_interval(ray, margin);
+    var t = front;
+    if distance_scene.clip == 1u {
+        // The margin where the ray enters, not the wider one where it might leave.
+        let near = bounds_interval(ray, distance_scene.detail * footprint(ray, max(span.x, 0.0))).x;
+        t = max(front, near);
+    }
+    var end = min(span.y, t_max);
+    if span.x > span.y {
+        end = -1.0;
+    }
+    return Walk(t, 0.0, 0.0, -1.0, end);
 }
 
 /// One step along a ray: STATE_MOVING, STATE_HIT, or STATE_SKY when past the end.
@@ -121,16 +148,16 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     }
     let t = min(w.t + w.pace, w.end);
     let gone = t - w.t;
-    let raw = estimate_at(ray.origin + t * ray.axis);
     let eps = distance_scene.detail * footprint(ray, t);
-    let radius = (raw - distance_scene.shell * eps) * (distance_scene.stride / distance_scene.lipschitz);
+    let f = field(ray.origin + t * ray.axis, distance_scene.shell * eps);
+    let radius = f.y * distance_scene.stride;
     if gone > w.radius && gone > w.radius + max(radius, 0.0) {
         (*walk).pace = w.radius;
         (*walk).slope = -1.0;
         return STATE_MOVING;
     }
     (*walk).t = t;
-    if raw <= eps {
+    if f.x <= eps {
         return STATE_HIT;
     }
     var slope = w.slope;
@@ -154,7 +181,7 @@ fn walk_hit(walk: Walk) -> Hit {
 
 /// Radius of a surely empty ball about a point.
 fn clearance(q: vec3<f32>) -> f32 {
-    return max(bounds_distance(q), max(0.0, estimate_at(q)) / distance_scene.lipschitz);
+    return max(0.0, field(q, 0.0).y);
 }
 
 /// Normal by the estimate's gradient over the corners of a tetrahedron half a pixel
@@ -166,8 +193,8 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
     let b = vec3<f32>(-1.0, -1.0, 1.0);
     let c = vec3<f32>(-1.0, 1.0, -1.0);
     let d = vec3<f32>(1.0, 1.0, 1.0);
-    let g = a * estimate_at(q + h * a) + b * estimate_at(q + h * b)
-        + c * estimate_at(q + h * c) + d * estimate_at(q + h * d);
+    let g = a * field(q + h * a, 0.0).x + b * field(q + h * b, 0.0).x
+        + c * field(q + h * c, 0.0).x + d * field(q + h * d, 0.0).x;
     let n = length(g);
     // A flat estimate has no gradient: turn such a point to the viewer.
     var normal = -ray.axis;

@@ -1,0 +1,80 @@
+//! One executor out of two: a renderer on a device, or the CPU.
+
+use crate::cpu;
+use crate::frame::Frame;
+use crate::gpu::device::{Adapters, Choice, Device, DeviceError};
+use crate::plan::{Extras, Plan};
+use crate::render::{RenderError, Renderer, Watch};
+
+/// Who runs a plan.
+pub enum Executor {
+    /// The GPU executor on an open device.
+    Gpu(Box<Renderer>),
+    /// The f64 executor on all cores.
+    Cpu,
+}
+
+impl Executor {
+    /// Opens what a choice means, and says in a line who it is and why.
+    ///
+    /// # Errors
+    /// The choice matches nothing, or the adapter does not open. `auto` has the CPU
+    /// executor left for both.
+    pub fn open(choice: &Choice) -> Result<(Self, String), DeviceError> {
+        if *choice == Choice::Cpu {
+            return Ok(Self::cpu("as asked"));
+        }
+        let adapters = Adapters::find();
+        let Some((adapter, why)) = adapters.choose(choice)? else {
+            return Ok(Self::cpu("as there is no adapter"));
+        };
+        match Device::open(adapter) {
+            Ok(device) => {
+                let who = format!("{} ({why})", device.info.name);
+                Ok((Self::Gpu(Box::new(Renderer::new(device))), who))
+            }
+            Err(e) if *choice == Choice::Auto => {
+                let why = format!("as {} did not open: {e}", adapter.get_info().name);
+                Ok(Self::cpu(&why))
+            }
+            Err(e) => Err(e),
+        }
+    }
+
+    fn cpu(why: &str) -> (Self, String) {
+        let who = format!("{} ({why})", Self::Cpu.name());
+        (Self::Cpu, who)
+    }
+
+    /// Renders a plan that passes [`Plan::check`].
+    ///
+    /// # Errors
+    /// The device failed, or `watch` returned `false`.
+    pub fn render(
+        &mut self,
+        plan: &Plan,
+        extras: Extras,
+        watch: Watch<'_>,
+    ) -> Result<Frame, RenderError> {
+        match self {
+            Self::Gpu(renderer) => renderer.render(plan, extras, watch),
+            Self::Cpu => cpu::render(plan, extras, watch),
+        }
+    }
+
+    /// The device's name.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Gpu(renderer) => renderer.device.info.name.clone(),
+            Self::Cpu => format!("the CPU, f64 on {} threads", rayon::current_num_threads()),
+        }
+    }
+
+    /// `vulkan`, `metal`, `dx12` or `cpu`.
+    pub fn backend(&self) -> String {
+        match self {
+            Self::Gpu(renderer) => format!("{:?}", renderer.device.info.backend).to_lowercase(),
+            Self::Cpu => "cpu".into(),
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! Ctrl-C: the render stops at its next opportunity and leaves no file.
+
+use std::process::exit;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use super::failure::CANCELLED;
+use crate::output;
+
+static ASKED: AtomicBool = AtomicBool::new(false);
+
+/// How long a render has to notice: a single pass may take much longer, and nobody
+/// waits for that.
+const PATIENCE: Duration = Duration::from_millis(700);
+
+/// From now on an interrupt is noted. A second one ends the process at once.
+pub fn listen() {
+    // Without a handler an interrupt still ends the process; it only leaves the
+    // temporary file. That is no reason not to render.
+    let _ = ctrlc::set_handler(|| {
+        if ASKED.swap(true, Ordering::SeqCst) {
+            end();
+        }
+        thread::spawn(|| {
+            thread::sleep(PATIENCE);
+            end();
+        });
+    });
+}
+
+/// Whether to stop.
+pub fn asked() -> bool {
+    ASKED.load(Ordering::SeqCst)
+}
+
+/// Ends the process without a trace of files.
+fn end() -> ! {
+    let _kept = output::clear();
+    eprintln!("error: {CANCELLED}");
+    exit(1);
+}

@@ -1,0 +1,99 @@
+//! The command line as a whole: verbs, exit codes, and errors as one sentence.
+
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
+use std::process::ExitCode;
+use std::sync::Mutex;
+
+use anyhow::Result;
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+
+use super::{completions, devices, failure, presets, render};
+
+/// Renders distance-estimated fractals by multi-pass cone marching.
+///
+/// Exit codes: 0 done, 1 failed, 2 wrong usage.
+#[derive(Debug, Parser)]
+#[command(name = "conemarch", version, about)]
+pub struct Line {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Render a preset to a PNG or EXR file
+    Render(Box<render::Render>),
+    /// List the built-in presets, or print one
+    Presets(presets::Presets),
+    /// List the devices that can render
+    Devices,
+    /// Print a completion script for a shell
+    Completions(completions::Completions),
+}
+
+/// What a panic said, and where.
+static PANIC: Mutex<Option<String>> = Mutex::new(None);
+
+/// Runs the command line of this process.
+pub fn run() -> ExitCode {
+    let line = match Line::try_parse() {
+        Ok(line) => line,
+        Err(e) => return refuse(&e),
+    };
+    // A panic is a fault of this program, and still no reason for a backtrace or for
+    // a temporary file that stays.
+    set_hook(Box::new(|info| {
+        if let Ok(mut said) = PANIC.lock() {
+            let text = info.to_string();
+            let words: Vec<&str> = text.split_whitespace().collect();
+            said.get_or_insert(words.join(" "));
+        }
+    }));
+    match catch_unwind(AssertUnwindSafe(|| line.run())) {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(e)) => {
+            eprintln!("error: {}", failure::sentence(&e));
+            ExitCode::from(failure::code(&e))
+        }
+        Err(_) => {
+            let said = PANIC
+                .lock()
+                .ok()
+                .and_then(|s| s.clone())
+                .unwrap_or_default();
+            eprintln!("error: a fault in conemarch itself, please report it: {said}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Help and version, or what is wrong with the arguments.
+fn refuse(error: &clap::Error) -> ExitCode {
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            // Help that nobody reads on is no failure.
+            let _ = error.print();
+            ExitCode::SUCCESS
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            eprintln!("error: a command is missing; `conemarch --help` lists the commands");
+            ExitCode::from(2)
+        }
+        _ => {
+            eprintln!("error: {}", failure::flatten(error));
+            ExitCode::from(2)
+        }
+    }
+}
+
+impl Line {
+    fn run(&self) -> Result<()> {
+        match &self.verb {
+            Verb::Render(args) => render::run(args),
+            Verb::Presets(args) => presets::run(args),
+            Verb::Devices => devices::run(),
+            Verb::Completions(args) => completions::run(args),
+        }
+    }
+}

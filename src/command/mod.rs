@@ -1,0 +1,14 @@
+//! The command line: one verb in each file.
+
+pub mod completions;
+pub mod devices;
+pub mod executor;
+pub mod failure;
+pub mod interrupt;
+pub mod line;
+pub mod memory;
+pub mod presets;
+pub mod print;
+pub mod render;
+pub mod size;
+pub mod stats;

@@ -1,0 +1,292 @@
+//! `conemarch render PRESET`
+
+use std::io::{Cursor, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueHint};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::executor::Executor;
+use super::failure::usage;
+use super::print::print;
+use super::stats::{Stats, shares};
+use super::{interrupt, memory, size};
+use crate::frame::Frame;
+use crate::gpu::device::Choice;
+use crate::output::{BitDepth, Layer, Place, Shades, commit, write_exr, write_png};
+use crate::plan::{Extras, Plan};
+use crate::preset::{self, Override, Preset};
+use crate::render::{Progress, RenderError};
+
+/// What `render` takes.
+#[derive(Args, Debug)]
+pub struct Render {
+    /// A built-in preset, a .toml file, or a .png that this program wrote
+    #[arg(value_name = "PRESET", value_hint = ValueHint::FilePath)]
+    preset: String,
+
+    /// Where to write: a .png or .exr file, or - for PNG on standard output
+    ///
+    /// Left out, it is the preset's name with .png in the current folder. A PNG carries
+    /// its preset and can be rendered again. An EXR has the channels R, G, B (linear),
+    /// depth.Z, normal.X/Y/Z, position.X/Y/Z, state.Y (0 sky, 1 hit, 2 unconverged), and
+    /// steps.Y with --stats.
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    output: Option<PathBuf>,
+
+    /// Width and height in pixels, in place of the preset's
+    #[arg(long, value_name = "WxH", value_parser = size::read)]
+    size: Option<[u32; 2]>,
+
+    /// Set one value of the preset; may be given again
+    ///
+    /// Values are TOML; a bare word is a string. Another scene.kind or scene.formula
+    /// drops the preset's other values of the scene.
+    #[arg(long, value_name = "SECTION.KEY=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+
+    /// auto, gpu, software, cpu, an index, or part of a name
+    #[arg(long, value_name = "DEVICE", default_value = "auto")]
+    device: String,
+
+    /// What the PNG shows
+    #[arg(long, value_name = "LAYER", default_value = "color", value_parser = layers())]
+    layer: Layer,
+
+    /// Bits per channel of the PNG [default: 8]
+    #[arg(long, value_name = "BITS", value_parser = depths())]
+    depth: Option<BitDepth>,
+
+    /// Count work and write the figures as JSON, - for standard output
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    stats: Option<PathBuf>,
+
+    /// Print the passes and programs, and render nothing
+    #[arg(long)]
+    explain: bool,
+}
+
+const LAYERS: [(&str, Layer, &str); 6] = [
+    ("color", Layer::Color, "light, tone-mapped"),
+    (
+        "depth",
+        Layer::Depth,
+        "grey: nearest black, farthest 95 % white, linear between, sky white",
+    ),
+    (
+        "normal",
+        Layer::Normal,
+        "world normals, x y z as red green blue, -1..1 to 0..1; sky mid grey",
+    ),
+    (
+        "position",
+        Layer::Position,
+        "world positions, each axis from its least to its greatest in the picture; sky black",
+    ),
+    (
+        "steps",
+        Layer::Steps,
+        "evaluations: violet none, yellow the 99th percentile and above",
+    ),
+    (
+        "state",
+        Layer::State,
+        "sky dark blue, hit light grey, unconverged magenta",
+    ),
+];
+
+fn layers() -> impl TypedValueParser<Value = Layer> {
+    let values = LAYERS.map(|(name, _, help)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(values).map(|name| {
+        let found = LAYERS.iter().find(|(n, _, _)| *n == name);
+        found.map_or(Layer::Color, |(_, layer, _)| *layer)
+    })
+}
+
+fn depths() -> impl TypedValueParser<Value = BitDepth> {
+    PossibleValuesParser::new(["8", "16"]).map(|bits| match bits.as_str() {
+        "16" => BitDepth::Sixteen,
+        _ => BitDepth::Eight,
+    })
+}
+
+/// What becomes of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Png,
+    Exr,
+}
+
+/// Where the picture or the figures go.
+enum Sink {
+    Stdout,
+    File(Place),
+}
+
+impl Sink {
+    fn prepare(path: &Path) -> Result<Self> {
+        Ok(match path.as_os_str() == "-" {
+            true => Self::Stdout,
+            false => Self::File(Place::prepare(path)?),
+        })
+    }
+}
+
+/// Renders a preset.
+pub fn run(args: &Render) -> Result<()> {
+    let overrides: Result<Vec<Override>, _> = args.set.iter().map(|s| Override::read(s)).collect();
+    let Preset { name, mut plan } = preset::load(&args.preset, &overrides?)?;
+    if let Some(size) = args.size {
+        plan.size = size;
+    }
+    if args.explain {
+        return print(plan.explain().as_bytes());
+    }
+    let output = match &args.output {
+        Some(path) => path.clone(),
+        None => PathBuf::from(format!("{name}.png")),
+    };
+    let format = format(args, &output)?;
+    if let Some(stats) = &args.stats
+        && *stats == output
+    {
+        return Err(usage(format!(
+            "the picture and the figures cannot both go to `{}`; give --stats another name",
+            stats.display()
+        )));
+    }
+    let choice = Choice::read(&args.device);
+    let per_pixel = bytes_per_pixel(format, choice == Choice::Cpu);
+    if let Some(why) = memory::lacking(plan.size, per_pixel, memory::available()) {
+        anyhow::bail!(why);
+    }
+    interrupt::listen();
+    let picture = Sink::prepare(&output)?;
+    let figures = args.stats.as_deref().map(Sink::prepare).transpose()?;
+    if let Some(warning) = plan.precision_warning() {
+        eprintln!("warning: {warning}");
+    }
+    let (mut executor, who) = Executor::open(&choice)?;
+    eprintln!("rendering on {who}");
+    let frame = march(&mut executor, &plan, extras(args, format))?;
+    let preset = preset::write(&plan);
+    let draw = || Shades::new(args.layer, &frame, &plan);
+    let depth = args.depth.unwrap_or_default();
+    let mut places = Vec::new();
+    let mut printed = Vec::new();
+    match picture {
+        Sink::Stdout => write_png(&mut Cursor::new(&mut printed), &draw(), depth, &preset)?,
+        Sink::File(mut place) => {
+            place.write(|to| match format {
+                Format::Png => write_png(to, &draw(), depth, &preset),
+                Format::Exr => write_exr(to, &frame, &plan),
+            })?;
+            places.push(place);
+        }
+    }
+    if let Some(figures) = figures {
+        let stats = Stats::new(&name, &plan, &executor, &frame);
+        let mut text = serde_json::to_vec_pretty(&stats)?;
+        text.push(b'\n');
+        match figures {
+            Sink::Stdout => printed = text,
+            Sink::File(mut place) => {
+                place.write_all(&text)?;
+                places.push(place);
+            }
+        }
+    }
+    if interrupt::asked() {
+        return Err(RenderError::Cancelled.into());
+    }
+    print(&printed)?;
+    commit(places)?;
+    eprintln!("{}", summary(&output, &frame));
+    Ok(())
+}
+
+/// The format that a name asks for, if everything else fits it.
+fn format(args: &Render, output: &Path) -> Result<Format> {
+    let ending = output.extension().and_then(|e| e.to_str());
+    let ending = ending.unwrap_or_default().to_lowercase();
+    let format = match ending.as_str() {
+        _ if output.as_os_str() == "-" => Format::Png,
+        "png" => Format::Png,
+        "exr" => Format::Exr,
+        _ => {
+            return Err(usage(format!(
+                "`{}` ends in neither .png nor .exr, which say what to write; - would be PNG on standard output",
+                output.display()
+            )));
+        }
+    };
+    if format == Format::Exr && args.layer != Layer::Color {
+        return Err(usage(
+            "an EXR has all layers; leave --layer out, or write a .png",
+        ));
+    }
+    if format == Format::Exr && args.depth.is_some() {
+        return Err(usage(
+            "an EXR has 32 bits per channel; leave --depth out, or write a .png",
+        ));
+    }
+    Ok(format)
+}
+
+/// Most memory that a render takes at once, per pixel.
+fn bytes_per_pixel(format: Format, cpu: bool) -> u64 {
+    // Measured on 8 million pixels, and rounded up. The CPU executor holds every
+    // pixel's hit in f64 on its way; an EXR its channels beside the frame.
+    let rendering = if cpu { 140 } else { 60 };
+    let writing = match format {
+        Format::Png => 60,
+        Format::Exr => 115,
+    };
+    rendering.max(writing)
+}
+
+fn extras(args: &Render, format: Format) -> Extras {
+    let mut extras = args.layer.extras();
+    extras.normals |= format == Format::Exr;
+    extras.count |= args.stats.is_some();
+    extras.time = args.stats.is_some();
+    extras
+}
+
+/// Renders with a bar on terminals, until done or interrupted.
+fn march(executor: &mut Executor, plan: &Plan, extras: Extras) -> Result<Frame> {
+    let bar = if std::io::stderr().is_terminal() {
+        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
+        ProgressBar::new(1000).with_style(style.context("the progress bar")?)
+    } else {
+        ProgressBar::hidden()
+    };
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let mut watch = |progress: &Progress| {
+        bar.set_position((progress.done * 1000.0) as u64);
+        bar.set_message(progress.pass.clone());
+        !interrupt::asked()
+    };
+    let frame = executor.render(plan, extras, &mut watch);
+    bar.finish_and_clear();
+    Ok(frame?)
+}
+
+/// One line about a finished picture.
+fn summary(output: &Path, frame: &Frame) -> String {
+    let [w, h] = frame.size;
+    let color = frame.passes.iter().find(|p| p.name == "color");
+    let color = color.map_or(String::new(), |p| format!(", colour {:.0} ms", p.wall_ms));
+    let [sky, hit, unconverged] = shares(frame).map(|s| 100.0 * s);
+    let name = match output.to_str() {
+        Some("-") => "standard output".into(),
+        _ => output.display().to_string(),
+    };
+    format!(
+        "{name}  {w} x {h}  march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %",
+        frame.march_ms
+    )
+}

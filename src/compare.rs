@@ -1,0 +1,173 @@
+//! Two Frames to an error report, and the truth to compare with (METHOD 5).
+//!
+//! Errors are in footprints: `e = (t - t_ref) / footprint(t_ref)`, where a footprint is
+//! half a pixel's width at the reference's distance.
+
+use crate::cpu;
+use crate::frame::{Frame, State};
+use crate::mode::Mode;
+use crate::plan::{Extras, Plan};
+use crate::render::{RenderError, Watch};
+use crate::view::View;
+
+/// A cell whose inherited front lies this many footprints beyond the reference hit
+/// has skipped it; the rounding of either side stays under it.
+const VIOLATION: f64 = 2.0;
+
+/// How far one frame's depth is from another's. Shares are of all pixels.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// |e| over pixels that both hit: median, 95 %, 99 %, largest.
+    pub depth_error: [f64; 4],
+    /// Share with e > 2.
+    pub behind: f64,
+    /// Share with e < -2.
+    pub front: f64,
+    /// Share with e > 8.
+    pub behind8: f64,
+    /// Share with e < -8.
+    pub front8: f64,
+    /// Share of hits of the reference that are shown as sky.
+    pub holes: f64,
+    /// Share of sky of the reference that is shown as a hit.
+    pub false_hits: f64,
+    /// Share that reached a limit.
+    pub unconverged: f64,
+    /// Share whose state, hit or not, differs.
+    pub mask: f64,
+    /// Per cone level: divisor, and pixels whose front lies beyond the reference hit.
+    pub start_violations: Vec<(u32, u64)>,
+}
+
+/// Compares a frame with a reference of the same view.
+pub fn compare(frame: &Frame, reference: &Frame, view: &View) -> Report {
+    let width = frame.size[0] as usize;
+    let hit = State::Hit as u8;
+    let sky = State::Sky as u8;
+    let mut report = Report::default();
+    let mut errors = Vec::new();
+    for i in 0..frame.state.len().min(reference.state.len()) {
+        let (s, r) = (frame.state[i], reference.state[i]);
+        report.unconverged += f64::from(u8::from(s == State::Unconverged as u8));
+        report.holes += f64::from(u8::from(r == hit && s == sky));
+        report.false_hits += f64::from(u8::from(r == sky && s == hit));
+        report.mask += f64::from(u8::from((r == hit) != (s == hit)));
+        if s != hit || r != hit {
+            continue;
+        }
+        let t_ref = f64::from(reference.depth[i]);
+        let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
+        let e = (f64::from(frame.depth[i]) - t_ref) / (ray.grain * t_ref).max(f64::MIN_POSITIVE);
+        report.behind += f64::from(u8::from(e > 2.0));
+        report.front += f64::from(u8::from(e < -2.0));
+        report.behind8 += f64::from(u8::from(e > 8.0));
+        report.front8 += f64::from(u8::from(e < -8.0));
+        errors.push(e.abs());
+    }
+    let n = frame.state.len().max(1) as f64;
+    for share in [
+        &mut report.behind,
+        &mut report.front,
+        &mut report.behind8,
+        &mut report.front8,
+        &mut report.holes,
+        &mut report.false_hits,
+        &mut report.unconverged,
+        &mut report.mask,
+    ] {
+        *share /= n;
+    }
+    errors.sort_by(f64::total_cmp);
+    report.depth_error = [0.5, 0.95, 0.99, 1.0].map(|q| quantile(&errors, q));
+    report.start_violations = violations(frame, reference, view);
+    report
+}
+
+/// The q-quantile of sorted values; 0 of none.
+pub fn quantile(sorted: &[f64], q: f64) -> f64 {
+    let last = sorted.len().saturating_sub(1) as f64;
+    sorted
+        .get((q * last).round() as usize)
+        .copied()
+        .unwrap_or(0.0)
+}
+
+/// Per kept cone level, pixels whose cell's front lies beyond their reference hit.
+fn violations(frame: &Frame, reference: &Frame, view: &View) -> Vec<(u32, u64)> {
+    let width = frame.size[0] as usize;
+    let kept = frame.levels.iter().filter(|l| !l.front.is_empty());
+    kept.map(|level| {
+        let mut count = 0;
+        for (i, (&t, &s)) in reference.depth.iter().zip(&reference.state).enumerate() {
+            if s != State::Hit as u8 {
+                continue;
+            }
+            let (x, y) = (i % width, i / width);
+            let d = level.divisor as usize;
+            let front = level.front[(y / d) * level.cells[0] as usize + x / d];
+            let grain = view.view_ray([x as u32, y as u32]).grain;
+            let t = f64::from(t);
+            count += u64::from(f64::from(front) > t + VIOLATION * grain * t);
+        }
+        (level.divisor, count)
+    })
+    .collect()
+}
+
+/// The reference frame of a plan, and how sure it is.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// Depth and states.
+    pub frame: Frame,
+    /// Factor on the estimate's steps.
+    pub stride: f64,
+    /// Share of sampled pixels that move by over 2 footprints, or change state, when
+    /// the stride is halved.
+    pub moved: f64,
+}
+
+/// Share of moved pixels under which the truth counts as converged.
+const CONVERGED: f64 = 5e-5;
+/// The last check looks at every so many pixels.
+const SAMPLE: usize = 16;
+/// The stride is not halved below this: a picture that still moves is reported so.
+const LEAST_STRIDE: f64 = 1.0 / 160.0;
+
+/// Renders a plan's truth in f64: no cones, no relaxation, the same hit rule, steps of
+/// a small factor times the estimate, halved from 0.1 until the picture stands.
+pub fn truth(plan: &Plan, watch: Watch<'_>) -> Result<Truth, RenderError> {
+    let mut plan = plan.clone();
+    plan.march.mode = Mode::Truth;
+    let extras = Extras {
+        depth_only: true,
+        ..Extras::default()
+    };
+    let view = plan.view();
+    let width = plan.size[0] as usize;
+    let mut stride = 0.1;
+    loop {
+        plan.march.stride = Some(stride);
+        let frame = cpu::render(&plan, extras, watch)?;
+        let mut finer = plan.clone();
+        finer.march.stride = Some(0.5 * stride);
+        let sample = cpu::sample(&finer, SAMPLE);
+        let mut moved = 0;
+        for &(i, t, state) in &sample {
+            let before = f64::from(frame.depth[i]);
+            let grain = view
+                .view_ray([(i % width) as u32, (i / width) as u32])
+                .grain;
+            let far = state == State::Hit && (before - t).abs() > 2.0 * grain * t;
+            moved += u32::from(frame.state[i] != state as u8 || far);
+        }
+        let moved = f64::from(moved) / sample.len().max(1) as f64;
+        if moved < CONVERGED || stride <= LEAST_STRIDE {
+            return Ok(Truth {
+                frame,
+                stride,
+                moved,
+            });
+        }
+        stride *= 0.5;
+    }
+}

@@ -1,0 +1,13 @@
+//! Pictures on their way out: layers as pixels, file formats, and safe places.
+
+mod error;
+mod exr;
+mod layer;
+mod place;
+mod png;
+
+pub use error::OutputError;
+pub use exr::write_exr;
+pub use layer::{Layer, Shades};
+pub use place::{Place, clear, commit};
+pub use png::{BitDepth, write_png};

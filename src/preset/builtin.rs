@@ -1,0 +1,26 @@
+//! The presets that are compiled in, by one list.
+
+/// Makes the list out of the names of the files in `presets/`.
+macro_rules! presets {
+    ($($name:literal),* $(,)?) => {
+        /// Name and text of every built-in preset, in alphabetical order.
+        pub const BUILTIN: &[(&str, &str)] = &[
+            $(($name, include_str!(concat!("../../presets/", $name, ".toml")))),*
+        ];
+    };
+}
+
+presets![
+    "bench-far",
+    "bench-graze",
+    "bench-inside",
+    "bench-outside",
+    "bench-thin",
+    "mandelbox",
+];
+
+/// The text of a built-in preset.
+pub fn builtin(name: &str) -> Option<&'static str> {
+    let found = BUILTIN.iter().find(|(n, _)| *n == name);
+    found.map(|(_, text)| *text)
+}

@@ -1,0 +1,240 @@
+//! Presets and overrides as flat lists of entries: section, key, value, and where
+//! each was said.
+
+use toml::Value;
+use toml::de::{DeTable, DeValue};
+
+use super::error::PresetError;
+use super::nearest::nearest;
+
+/// The sections of a preset, in the order in which they are written.
+pub(super) const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
+
+/// Where an entry was said.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Said {
+    /// At a byte of the preset's text.
+    File(usize),
+    /// In an override, as it was given.
+    Set(String),
+}
+
+/// One value of a preset.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    /// Its section; empty at the top level.
+    pub section: String,
+    /// Its key.
+    pub key: String,
+    /// Its value.
+    pub value: Value,
+    /// The value as it was said, shortened.
+    pub shown: String,
+    /// Where.
+    pub said: Said,
+}
+
+impl Entry {
+    /// `section.key`, or the key alone at the top level.
+    pub fn path(&self) -> String {
+        path(&self.section, &self.key)
+    }
+}
+
+fn path(section: &str, key: &str) -> String {
+    if section.is_empty() {
+        key.to_string()
+    } else {
+        format!("{section}.{key}")
+    }
+}
+
+/// A value that takes precedence over a preset's: `section.key=value`.
+#[derive(Clone, Debug)]
+pub struct Override {
+    pub(super) entry: Entry,
+}
+
+impl Override {
+    /// Reads `section.key=value`. Values are TOML; a bare word is a string.
+    ///
+    /// # Errors
+    /// The text has another form. Whether the key exists and takes the value is found
+    /// out with the preset.
+    pub fn read(text: &str) -> Result<Self, PresetError> {
+        let fail = |why: String| PresetError::Override {
+            overrides: given(text),
+            why,
+        };
+        let form = "write section.key=value, like camera.fov=30";
+        let Some((name, value)) = text.split_once('=') else {
+            return Err(fail(format!("there is no `=`; {form}")));
+        };
+        let name = name.trim();
+        let (section, key) = match name.split_once('.') {
+            Some((section, key)) => (section, key),
+            None if name == "title" => ("", name),
+            None => return Err(fail(format!("`{}` names no section; {form}", brief(name)))),
+        };
+        let value = value.trim();
+        let read = match DeValue::parse(value) {
+            Ok(read) => convert(read.get_ref()).map_err(fail)?,
+            // A title is text in any case; elsewhere only a word needs no quotes.
+            Err(_) if section.is_empty() || bare(value) => Value::String(value.into()),
+            Err(e) => {
+                let why = sentence(e.message());
+                return Err(fail(format!("the value is not TOML: {why}")));
+            }
+        };
+        Ok(Self {
+            entry: Entry {
+                section: section.into(),
+                key: key.into(),
+                value: read,
+                shown: brief(value),
+                said: Said::Set(given(text)),
+            },
+        })
+    }
+}
+
+/// `--set` with its text.
+fn given(text: &str) -> String {
+    format!("--set {}", brief(text))
+}
+
+/// A word that may be said without quotes.
+fn bare(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_alphabetic())
+        && text
+            .chars()
+            .all(|c| c.is_alphanumeric() || c == '-' || c == '_')
+}
+
+/// A text short enough, and tame enough, to stand in a sentence.
+pub(super) fn brief(text: &str) -> String {
+    const MOST: usize = 60;
+    let words = text.split_whitespace();
+    let mut line = String::new();
+    for word in words {
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line.extend(word.chars().flat_map(|c| {
+            let escaped: Vec<char> = if c.is_control() {
+                c.escape_default().collect()
+            } else {
+                vec![c]
+            };
+            escaped
+        }));
+        if line.len() > 4 * MOST {
+            break;
+        }
+    }
+    if line.chars().count() > MOST {
+        line = line.chars().take(MOST - 3).chain("...".chars()).collect();
+    }
+    line
+}
+
+/// A message of the TOML parser as a part of a sentence.
+fn sentence(message: &str) -> String {
+    let lines: Vec<&str> = message.lines().map(str::trim).collect();
+    lines.join(", ").trim_end_matches('.').to_string()
+}
+
+/// A parsed value without its places in the text.
+fn convert(value: &DeValue<'_>) -> Result<Value, String> {
+    Ok(match value {
+        DeValue::String(s) => Value::String(s.to_string()),
+        DeValue::Integer(i) => {
+            let read = i64::from_str_radix(i.as_str(), i.radix());
+            Value::Integer(read.map_err(|_| format!("{} is too large", brief(i.as_str())))?)
+        }
+        DeValue::Float(x) => {
+            let read = x.as_str().parse();
+            Value::Float(read.map_err(|_| format!("{} is no number", brief(x.as_str())))?)
+        }
+        DeValue::Boolean(b) => Value::Boolean(*b),
+        DeValue::Datetime(d) => Value::Datetime(*d),
+        DeValue::Array(list) => {
+            let items = list.iter().map(|v| convert(v.get_ref()));
+            Value::Array(items.collect::<Result<_, _>>()?)
+        }
+        // No key takes a table: that it is one is all that matters.
+        DeValue::Table(_) => Value::Table(toml::Table::new()),
+    })
+}
+
+/// The line that a byte of a text is in, from 1.
+pub(super) fn line_of(text: &str, at: usize) -> usize {
+    let before = &text.as_bytes()[..at.min(text.len())];
+    1 + before.iter().filter(|b| **b == b'\n').count()
+}
+
+/// The entries of a preset's text, in the order of the text.
+pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError> {
+    let content = |at: usize, why: String| PresetError::Content {
+        origin: origin.to_string(),
+        line: Some(line_of(text, at)),
+        why,
+    };
+    let table = DeTable::parse(text).map_err(|e| {
+        let at = e.span().map_or(0, |s| s.start);
+        content(at, format!("this is not TOML: {}", sentence(e.message())))
+    })?;
+    let mut entries = Vec::new();
+    for (name, value) in table.get_ref() {
+        let at = name.span().start;
+        let name: &str = name.get_ref();
+        let shown = brief(text.get(value.span()).unwrap_or_default());
+        if name == "title" {
+            let value = convert(value.get_ref()).map_err(|why| content(at, why))?;
+            entries.push(Entry {
+                section: String::new(),
+                key: name.into(),
+                value,
+                shown,
+                said: Said::File(at),
+            });
+            continue;
+        }
+        if !SECTIONS.contains(&name) {
+            return Err(content(at, unknown_section(name)));
+        }
+        let DeValue::Table(section) = value.get_ref() else {
+            let why = format!("{name} = {shown}: must be a section, like [{name}]");
+            return Err(content(at, why));
+        };
+        for (key, value) in section {
+            let at = key.span().start;
+            let shown = brief(text.get(value.span()).unwrap_or_default());
+            let path = path(name, &brief(key.get_ref()));
+            let value = convert(value.get_ref())
+                .map_err(|why| content(at, format!("{path} = {shown}: {why}")))?;
+            entries.push(Entry {
+                section: name.into(),
+                key: key.get_ref().to_string(),
+                value,
+                shown,
+                said: Said::File(at),
+            });
+        }
+    }
+    entries.sort_by_key(|e| match e.said {
+        Said::File(at) => at,
+        Said::Set(_) => usize::MAX,
+    });
+    Ok(entries)
+}
+
+/// That a section does not exist, and which one may have been meant.
+pub(super) fn unknown_section(name: &str) -> String {
+    let there = format!("there are title, {}", SECTIONS.join(", "));
+    let name_shown = brief(name);
+    match nearest(name, SECTIONS.into_iter().chain(["title"])) {
+        Some(near) => format!("unknown section `{name_shown}`, perhaps `{near}`; {there}"),
+        None => format!("unknown section `{name_shown}`; {there}"),
+    }
+}

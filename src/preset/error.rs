@@ -1,0 +1,69 @@
+//! Why a preset is no Plan: one sentence that says where, what, and what would do.
+
+use thiserror::Error;
+
+/// What can be wrong with a preset, with an override, or with the argument that names
+/// one.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PresetError {
+    /// The text is wrong.
+    #[error("{}: {why}", place(.origin, *.line))]
+    Content {
+        /// File or built-in preset.
+        origin: String,
+        /// Line in it, from 1; none where something is missing.
+        line: Option<usize>,
+        /// What is wrong and what would do.
+        why: String,
+    },
+    /// An override is wrong, alone or together with the preset.
+    #[error("{overrides}: {why}")]
+    Override {
+        /// The overrides to blame, as they were given.
+        overrides: String,
+        /// What is wrong and what would do.
+        why: String,
+    },
+    /// No built-in preset and no file has this name.
+    #[error(
+        "no preset is called `{name}`{}; `conemarch presets` lists the built-in ones, and the path of a .toml file or of a .png that this program wrote would do as well",
+        perhaps(.nearest)
+    )]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// Built-in presets with a similar name.
+        nearest: Vec<String>,
+    },
+    /// The file could not be read, or is not what it should be.
+    #[error("{path}: {why}")]
+    File {
+        /// Its path.
+        path: String,
+        /// What is wrong and what would do.
+        why: String,
+    },
+}
+
+impl PresetError {
+    /// Whether the command line is wrong, rather than a file.
+    pub fn is_usage(&self) -> bool {
+        matches!(self, Self::Override { .. } | Self::Unknown { .. })
+    }
+}
+
+/// `file:line`, or the file alone.
+pub(super) fn place(origin: &str, line: Option<usize>) -> String {
+    match line {
+        Some(line) => format!("{origin}:{line}"),
+        None => origin.to_string(),
+    }
+}
+
+/// `, perhaps ...` in the middle of a sentence, or nothing.
+fn perhaps(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        names => format!(", perhaps `{}`", names.join("`, `")),
+    }
+}

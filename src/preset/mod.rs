@@ -1,0 +1,17 @@
+//! Presets: the text of a Plan.
+
+mod builtin;
+mod document;
+mod error;
+mod nearest;
+mod read;
+mod source;
+mod write;
+
+pub use builtin::{BUILTIN, builtin};
+pub use document::Override;
+pub use error::PresetError;
+pub use nearest::nearest;
+pub use read::{read, read_with};
+pub use source::{MOST_BYTES, PNG_KEYWORD, Preset, load};
+pub use write::write;

@@ -1,0 +1,272 @@
+//! Text and overrides to a Plan, every value checked.
+
+use toml::Value;
+
+use super::document::{Entry, Override, SECTIONS, Said, brief, line_of, parse, unknown_section};
+use super::error::{PresetError, place};
+use super::nearest::nearest;
+use crate::formula::Shape;
+use crate::key::{Fault, Key, Slot, Text};
+use crate::plan::{Plan, Subject};
+use crate::scene::slab::SlabShape;
+
+/// Kinds of scene.
+const KINDS: [&str; 2] = ["distance", "slab"];
+
+/// Reads a preset. `origin` is what errors call it: a file's path, mostly.
+///
+/// # Errors
+/// Anything that is not a preset: syntax, unknown names, wrong types, impossible
+/// values. The error names file, line, key, value and what would do.
+pub fn read(text: &str, origin: &str) -> Result<Plan, PresetError> {
+    let entries = parse(text, origin)?;
+    Reader { text, origin }.plan(&entries)
+}
+
+/// Reads a preset with overrides. The preset must be right without them, too.
+///
+/// An override of `scene.kind` or `scene.formula` that changes it drops the preset's
+/// other values of the scene: they were those of another shape.
+///
+/// # Errors
+/// As [`read`]; faults that only the overrides bring are theirs.
+pub fn read_with(text: &str, origin: &str, overrides: &[Override]) -> Result<Plan, PresetError> {
+    let reader = Reader { text, origin };
+    let mut entries = parse(text, origin)?;
+    let alone = reader.plan(&entries)?;
+    if overrides.is_empty() {
+        return Ok(alone);
+    }
+    let sets = overrides.iter().map(|o| o.entry.clone());
+    let changed: Vec<Entry> = sets
+        .clone()
+        .filter(|e| e.section == "scene" && matches!(e.key.as_str(), "kind" | "formula"))
+        .filter(|e| {
+            let (kind, formula) = alone.subject.words();
+            let now = if e.key == "kind" { Some(kind) } else { formula };
+            e.value.as_str() != now
+        })
+        .collect();
+    if !changed.is_empty() {
+        let slab = changed
+            .iter()
+            .any(|e| e.key == "kind" && e.value.as_str() == Some("slab"));
+        let keeps = |e: &Entry| match e.key.as_str() {
+            "kind" => true,
+            "formula" | "iterations" => !slab,
+            _ => false,
+        };
+        entries.retain(|e| e.section != "scene" || keeps(e));
+    }
+    entries.extend(sets);
+    reader.plan(&entries)
+}
+
+/// Turns entries into a Plan, and knows how to call their places.
+struct Reader<'a> {
+    text: &'a str,
+    origin: &'a str,
+}
+
+impl Reader<'_> {
+    fn plan(&self, entries: &[Entry]) -> Result<Plan, PresetError> {
+        for entry in entries {
+            if !entry.section.is_empty() && !SECTIONS.contains(&entry.section.as_str()) {
+                return Err(self.at(entry, unknown_section(&entry.section)));
+            }
+        }
+        let mut plan = Plan::new(self.subject(entries)?);
+        for entry in entries {
+            self.put(&mut plan, entry)?;
+        }
+        plan.check()
+            .map_err(|fault| self.fault(&mut plan, entries, fault))?;
+        Ok(plan)
+    }
+
+    /// The subject that `scene.kind` and `scene.formula` choose.
+    fn subject(&self, entries: &[Entry]) -> Result<Subject, PresetError> {
+        let Some(kind) = last(entries, "kind") else {
+            return Err(self.missing("scene.kind is missing; kind = \"distance\" with a formula would do, or kind = \"slab\""));
+        };
+        match self.word(kind, &KINDS)? {
+            "distance" => {
+                let names = Shape::all();
+                let names: Vec<&str> = names.iter().map(|s| s.name()).collect();
+                let Some(formula) = last(entries, "formula") else {
+                    let why = format!("scene.formula is missing; it is one of {}", quoted(&names));
+                    return Err(self.missing(&why));
+                };
+                let shape = Shape::named(self.word(formula, &names)?);
+                let shape = shape.ok_or_else(|| self.at(formula, "no such formula".into()))?;
+                Ok(Subject::Distance {
+                    shape,
+                    iterations: None,
+                })
+            }
+            _ => Ok(Subject::Slab(SlabShape::default())),
+        }
+    }
+
+    /// The word of a few that an entry's value is.
+    fn word<'w>(&self, entry: &Entry, words: &[&'w str]) -> Result<&'w str, PresetError> {
+        let given = entry.value.as_str();
+        if let Some(word) = words.iter().find(|w| given == Some(w)) {
+            return Ok(word);
+        }
+        let near = given.and_then(|g| nearest(g, words.iter().copied()));
+        let near = near.map_or(String::new(), |n| format!(", perhaps \"{n}\""));
+        let one = format!("must be one of {}", quoted(words));
+        Err(self.value(entry, &format!("{one}{near}")))
+    }
+
+    /// Puts one entry into the plan.
+    fn put(&self, plan: &mut Plan, entry: &Entry) -> Result<(), PresetError> {
+        if entry.section.is_empty() {
+            let set = Text(&mut plan.title).set(&entry.value);
+            return set.map_err(|why| self.value(entry, &format!("must be {why}")));
+        }
+        let (kind, formula) = plan.subject.words();
+        if entry.section == "scene" {
+            match (entry.key.as_str(), formula) {
+                ("kind", _) | ("formula", Some(_)) => return Ok(()),
+                ("formula", None) => {
+                    let why = format!("a {kind} has no formula; leave it out");
+                    return Err(self.value(entry, &why));
+                }
+                _ => {}
+            }
+        }
+        let mut keys = plan.keys(&entry.section).unwrap_or_default();
+        match keys.iter_mut().find(|k| k.name == entry.key) {
+            Some(key) => {
+                let set = key.slot.set(&entry.value);
+                set.map_err(|why| self.value(entry, &format!("must be {why}")))
+            }
+            None => {
+                let of = match entry.section.as_str() {
+                    "scene" => format!(" of {}", formula.unwrap_or(kind)),
+                    _ => String::new(),
+                };
+                Err(self.value(entry, &unknown_key(entry, &keys, &of)))
+            }
+        }
+    }
+
+    /// A fault that the whole plan has: said at its key, or at the overrides that
+    /// brought it.
+    fn fault(&self, plan: &mut Plan, entries: &[Entry], fault: Fault) -> PresetError {
+        let said = entries.iter().rev().find(|e| e.path() == fault.key);
+        if let Some(entry) = said
+            && matches!(entry.said, Said::Set(_))
+        {
+            return self.value(entry, &fault.why);
+        }
+        let now = value_of(plan, &fault.key);
+        let sets = overrides_to_blame(entries, &fault.key);
+        let what = match said {
+            Some(entry) => format!("{} = {}", fault.key, entry.shown),
+            None => format!("{} = {now} (the default)", fault.key),
+        };
+        let line = said.and_then(|e| self.line(e));
+        if sets.is_empty() {
+            return PresetError::Content {
+                origin: self.origin.to_string(),
+                line,
+                why: format!("{what}: {}", fault.why),
+            };
+        }
+        let place = place(self.origin, line);
+        PresetError::Override {
+            overrides: sets.join(" "),
+            why: format!("{place}: {what}: {}", fault.why),
+        }
+    }
+
+    fn line(&self, entry: &Entry) -> Option<usize> {
+        match entry.said {
+            Said::File(at) => Some(line_of(self.text, at)),
+            Said::Set(_) => None,
+        }
+    }
+
+    /// An error about an entry's value.
+    fn value(&self, entry: &Entry, why: &str) -> PresetError {
+        match entry.said {
+            Said::File(_) => {
+                let what = format!("{} = {}", brief(&entry.path()), entry.shown);
+                self.at(entry, format!("{what}: {why}"))
+            }
+            // The override's text has said key and value already.
+            Said::Set(_) => self.at(entry, why.into()),
+        }
+    }
+
+    fn at(&self, entry: &Entry, why: String) -> PresetError {
+        match &entry.said {
+            Said::File(_) => PresetError::Content {
+                origin: self.origin.to_string(),
+                line: self.line(entry),
+                why,
+            },
+            Said::Set(text) => PresetError::Override {
+                overrides: text.clone(),
+                why,
+            },
+        }
+    }
+
+    fn missing(&self, why: &str) -> PresetError {
+        PresetError::Content {
+            origin: self.origin.to_string(),
+            line: None,
+            why: why.into(),
+        }
+    }
+}
+
+/// The last entry of `[scene]` with a key.
+fn last<'e>(entries: &'e [Entry], key: &str) -> Option<&'e Entry> {
+    let fits = |e: &&Entry| e.section == "scene" && e.key == key;
+    entries.iter().rev().find(fits)
+}
+
+/// What a plan has at `section.key`.
+fn value_of(plan: &mut Plan, path: &str) -> Value {
+    let found = path.split_once('.').and_then(|(section, key)| {
+        let keys = plan.keys(section)?;
+        let key = keys.into_iter().find(|k| k.name == key)?;
+        Some(key.slot.get())
+    });
+    found.unwrap_or_else(|| Value::String(String::new()))
+}
+
+/// The overrides in the section of a fault, or all where it has none.
+fn overrides_to_blame(entries: &[Entry], path: &str) -> Vec<String> {
+    let section = path.split_once('.').map_or("", |(section, _)| section);
+    let sets = entries.iter().filter_map(|e| match &e.said {
+        Said::Set(text) => Some((e.section.as_str(), text.clone())),
+        Said::File(_) => None,
+    });
+    let (near, far): (Vec<_>, Vec<_>) = sets.partition(|(s, _)| *s == section);
+    let blamed = if near.is_empty() { far } else { near };
+    blamed.into_iter().map(|(_, text)| text).collect()
+}
+
+fn unknown_key(entry: &Entry, keys: &[Key<'_>], of: &str) -> String {
+    let mut names: Vec<&str> = keys.iter().map(|k| k.name).collect();
+    if entry.section == "scene" {
+        // A distance scene has `iterations` beside its formula's keys.
+        let formula = names.contains(&"iterations").then_some("formula");
+        names.splice(0..0, ["kind"].into_iter().chain(formula));
+    }
+    let near = nearest(&entry.key, names.iter().copied());
+    let near = near.map_or(String::new(), |n| format!(", perhaps `{n}`"));
+    let list = names.join(", ");
+    format!("unknown key{near}; [{}]{of} has {list}", entry.section)
+}
+
+fn quoted(words: &[&str]) -> String {
+    let words: Vec<String> = words.iter().map(|w| format!("\"{w}\"")).collect();
+    words.join(", ")
+}

@@ -1,0 +1,34 @@
+//! A Plan as the text of a preset: every key, in the order of the lists.
+
+use std::fmt::Write as _;
+
+use toml::Value;
+
+use super::document::SECTIONS;
+use crate::plan::Plan;
+
+/// The preset of a plan. Reading it gives the same plan again, to the last bit.
+pub fn write(plan: &Plan) -> String {
+    let mut plan = plan.clone();
+    let mut text = String::new();
+    line(&mut text, "title", &Value::String(plan.title.clone()));
+    let (kind, formula) = plan.subject.words();
+    for section in SECTIONS {
+        // Writing to a string cannot fail, here and below.
+        let _ = writeln!(text, "\n[{section}]");
+        if section == "scene" {
+            line(&mut text, "kind", &Value::String(kind.into()));
+            if let Some(formula) = formula {
+                line(&mut text, "formula", &Value::String(formula.into()));
+            }
+        }
+        for key in plan.keys(section).unwrap_or_default() {
+            line(&mut text, key.name, &key.slot.get());
+        }
+    }
+    text
+}
+
+fn line(text: &mut String, name: &str, value: &Value) {
+    let _ = writeln!(text, "{name} = {value}");
+}
