@@ -334,11 +334,11 @@ impl Slot for Text<'_> {
     fn set(&mut self, value: &Value) -> Result<(), String> {
         let text = value
             .as_str()
-            .filter(|t| t.len() <= 200 && !t.contains('\n'));
+            .filter(|t| t.len() <= 200 && !t.contains(char::is_control));
         *self.0 = text.ok_or_else(|| self.expects())?.to_string();
         Ok(())
     }
     fn expects(&self) -> String {
-        "a line of text of at most 200 bytes".into()
+        "a line of text of at most 200 bytes, without control characters".into()
     }
 }

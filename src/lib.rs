@@ -1,4 +1,10 @@
-//! Multi-pass cone marching of distance-estimated fractals.
+//! Multi-pass cone marching of distance-estimated fractals on wgpu compute.
+//!
+//! One value, the [`plan::Plan`], goes to either of two executors, the GPU
+//! ([`render::Renderer`], f32) or the CPU ([`cpu::render`], f64), and both return the
+//! same value, a [`frame::Frame`]. Presets are the text of a Plan, the truth is a Plan,
+//! and every claim about error is a comparison of two Frames ([`compare`]).
+
 pub mod command;
 pub mod compare;
 pub mod cone;

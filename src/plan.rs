@@ -12,7 +12,7 @@ use crate::formula::Shape;
 use crate::key::{AutoCount, Fault, Key, Size};
 use crate::mode::Marching;
 use crate::pass::look::{self, Light, Look};
-use crate::pass::{color, fog, march, occlusion, shadow, trace};
+use crate::pass::{color, fog, march, occlusion, queue, shadow, trace};
 use crate::pyramid::{Level, Pyramid};
 use crate::scene::Scene;
 use crate::scene::distance::Distance;
@@ -177,7 +177,7 @@ impl Plan {
             return None;
         };
         let finest = self.finest_footprint(shape);
-        let floor = 2e-6 * shape.bounds().half.max_element().min(5.0).max(1e-3);
+        let floor = 2e-6 * shape.bounds().half.max_element().clamp(1e-3, 5.0);
         (finest < 0.99 * floor).then(|| {
             format!(
                 "the finest footprint, {finest:.1e}, is under the f32 floor of about {floor:.0e}: details that near are noise. Move the camera away, or render with --device cpu"
@@ -247,11 +247,11 @@ impl Plan {
         modules.push(counters(counted));
         let entry = match pass {
             Pass::March(_) => {
-                modules.push(march::module());
+                modules.extend([queue::module(), march::module()]);
                 "march"
             }
             Pass::Trace => {
-                modules.push(trace::module());
+                modules.extend([queue::module(), trace::module()]);
                 "trace"
             }
             Pass::Color => {

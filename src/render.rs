@@ -17,9 +17,9 @@ use crate::gpu::buffer::{Buffer, uniform};
 use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::kernel::{Kernel, KernelError};
 use crate::pass::march::LevelUniform;
-use crate::pass::trace::TraceUniform;
+use crate::pass::queue::{COUNT_AT, Turn};
 use crate::plan::{Extras, Pass, Plan};
-use crate::pyramid::{Block, Level};
+use crate::pyramid::Block;
 use crate::scene::Scene;
 use crate::shader::Program;
 
@@ -52,7 +52,7 @@ pub enum RenderError {
 pub struct Cutting {
     /// Longest edge of a block in pixels.
     pub block: u32,
-    /// Steps per dispatch.
+    /// Steps of the first dispatch of a pass; each later one does four times as many.
     pub chunk: u32,
 }
 
@@ -62,9 +62,9 @@ impl Default for Cutting {
             // 16 MiB for the widest channel, and well under a second per dispatch on
             // slow devices.
             block: 1024,
-            // One dispatch holds the default step limit; a second costs a software
-            // device as much as a sixth of a whole picture.
-            chunk: 256,
+            // Half of all rays end within two or three steps; what is left then is
+            // packed, and runs on in dispatches of 16, 64, 256 ...
+            chunk: 4,
         }
     }
 }
@@ -81,6 +81,11 @@ pub struct Progress {
 /// Told after every pass over a block; `false` cancels the render.
 pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 
+/// Steps of the longest dispatch: with a block of a million pixels still well under
+/// the time after which drivers give a device up.
+const MOST_STEPS_AT_ONCE: u32 = 256;
+/// Largest number of workgroups along an axis.
+const MOST_GROUPS: u32 = 65_535;
 /// A state that no shader writes: what unwritten pixels are found by.
 const UNWRITTEN: u32 = u32::MAX;
 
@@ -227,59 +232,57 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         let setup = Setup::new(job, pass);
         self.bind_pass(&setup, pass, at, kernel, bound, job.extras);
-        let level = setup.level.map(|bytes| {
-            let raw = Rc::new(uniform(
-                &self.device,
-                "level",
-                &bytes(self.cutting.chunk, 0),
-            ));
-            bound.insert("level".into(), raw.clone());
-            (raw, bytes)
+        if let Some(level) = &setup.level {
+            let raw = Rc::new(uniform(&self.device, "level", bytes_of(level)));
+            bound.insert("level".into(), raw);
+        }
+        // Two queues take turns: one is read while the other is filled.
+        let queues = [0, 1].map(|i| {
+            let bytes = COUNT_AT + 4 + 4 * u64::from(setup.cells[0]) * u64::from(setup.cells[1]);
+            self.storage(&format!("queue {i}"), bytes)
         });
-        let groups = kernel.bind(&self.device, |name| bound.get(name).map(|b| &**b))?;
-        let count = setup.cells.map(|c| c.div_ceil(8));
-        let moving = bound.get("moving").cloned();
+        let mut groups = Vec::new();
+        for i in 0..2 {
+            bound.insert("turn".into(), queues[i].clone());
+            bound.insert("queue".into(), queues[1 - i].clone());
+            groups.push(kernel.bind(&self.device, |name| bound.get(name).map(|b| &**b))?);
+        }
         self.device.wait()?;
         let start = Instant::now();
         let mut gpu_ns = None;
-        let mut done = 0;
-        loop {
-            if let Some((raw, bytes)) = &level {
-                let data = bytes(self.cutting.chunk, done);
-                self.device.queue.write_buffer(raw, 0, &data);
-            }
-            let mut encoder = self
-                .device
-                .device
-                .create_command_encoder(&Default::default());
-            if let Some(moving) = &moving {
-                encoder.clear_buffer(moving, 0, None);
-            }
-            let timed = self.queries.as_ref().filter(|_| job.extras.time);
-            let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: None,
-                timestamp_writes: timed.map(|(set, _)| wgpu::ComputePassTimestampWrites {
-                    query_set: set,
-                    beginning_of_pass_write_index: Some(0),
-                    end_of_pass_write_index: Some(1),
-                }),
-            });
-            kernel.dispatch(&mut compute, &groups, count);
-            drop(compute);
-            self.device.queue.submit([encoder.finish()]);
-            self.device.wait()?;
+        let mut now = Turn {
+            chunk: self.cutting.chunk.clamp(1, MOST_STEPS_AT_ONCE),
+            done: 0,
+            limit: setup.limit,
+            row: 0,
+            parent_width: setup.parent_width,
+        };
+        let mut count = setup.cells.map(|c| c.div_ceil(8));
+        for even in [true, false].into_iter().cycle() {
+            let (bind, read, filled) = if even {
+                (&groups[0], &queues[0], &queues[1])
+            } else {
+                (&groups[1], &queues[1], &queues[0])
+            };
+            self.device.queue.write_buffer(read, 0, bytes_of(&now));
+            self.dispatch(kernel, bind, count, filled, job.extras.time)?;
             if job.extras.time {
                 let ns = self.read_timestamps()?;
                 gpu_ns = ns.map(|ns| gpu_ns.unwrap_or(0.0) + ns);
             }
-            done = done.saturating_add(self.cutting.chunk);
-            if done >= setup.limit {
+            now.done = now.done.saturating_add(now.chunk);
+            if now.done >= now.limit {
                 break;
             }
-            let Some(moving) = &moving else { break };
-            if read_u32(&self.device, moving)? == 0 {
+            let left = read_raw::<[u32; 6]>(&self.device, filled, 1)?;
+            let left = left.first().map_or(0, |head| head[5]);
+            if left == 0 {
                 break;
             }
+            now.chunk = (now.chunk * 4).min(MOST_STEPS_AT_ONCE);
+            let workgroups = left.div_ceil(64);
+            now.row = workgroups.min(MOST_GROUPS);
+            count = [now.row, workgroups.div_ceil(now.row)];
         }
         let figures = &mut frame.passes[at];
         figures.cells += u64::from(setup.cells[0]) * u64::from(setup.cells[1]);
@@ -288,6 +291,35 @@ impl Renderer {
             *figures.gpu_ms.get_or_insert(0.0) += ns * 1e-6;
         }
         Ok(())
+    }
+
+    /// One dispatch, with the queue that it fills emptied before, and the wait for it.
+    fn dispatch(
+        &self,
+        kernel: &Kernel,
+        groups: &[wgpu::BindGroup],
+        count: [u32; 2],
+        filled: &wgpu::Buffer,
+        timed: bool,
+    ) -> Result<(), DeviceError> {
+        let mut encoder = self
+            .device
+            .device
+            .create_command_encoder(&Default::default());
+        encoder.clear_buffer(filled, COUNT_AT, Some(4));
+        let queries = self.queries.as_ref().filter(|_| timed);
+        let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: None,
+            timestamp_writes: queries.map(|(set, _)| wgpu::ComputePassTimestampWrites {
+                query_set: set,
+                beginning_of_pass_write_index: Some(0),
+                end_of_pass_write_index: Some(1),
+            }),
+        });
+        kernel.dispatch(&mut compute, groups, count);
+        drop(compute);
+        self.device.queue.submit([encoder.finish()]);
+        self.device.wait()
     }
 
     /// Storage of a pass: its own channels, and its parent's under their parent names.
@@ -301,17 +333,12 @@ impl Renderer {
         extras: Extras,
     ) {
         let cells = u64::from(setup.cells[0]) * u64::from(setup.cells[1]);
-        let parent = |what: &str| format!("{what} {}", at.wrapping_sub(1));
-        let (front, state) = if setup.has_parent {
-            (
-                self.storage(&parent("front"), 0),
-                self.storage(&parent("state"), 0),
-            )
+        let front = if setup.parent_width > 0 {
+            self.storage(&format!("front {}", at - 1), 0)
         } else {
-            (self.storage("none front", 4), self.storage("none state", 4))
+            self.storage("no front", 4)
         };
         bound.insert("parent_front".into(), front);
-        bound.insert("parent_state".into(), state);
         if pass == Pass::Color {
             let normals = if extras.normals { 16 * cells } else { 16 };
             let radiance = self.storage("radiance", 16 * cells);
@@ -333,7 +360,6 @@ impl Renderer {
         bound.insert(format!("front {at}"), front);
         bound.insert("state".into(), state.clone());
         bound.insert(format!("state {at}"), state);
-        bound.insert("moving".into(), self.storage("moving", 16));
         if pass == Pass::Trace {
             let walks = u64::from(kernel.stride("walks").unwrap_or(4)) * cells;
             bound.insert("walks".into(), self.storage("walks", walks));
@@ -485,78 +511,54 @@ struct Job<'a> {
     block: Block,
 }
 
-/// Makes the bytes of a pass's uniform, from chunk and steps done.
-type LevelBytes = Box<dyn Fn(u32, u32) -> Vec<u8>>;
-
 /// Numbers of one pass over one block.
 struct Setup {
     cells: [u32; 2],
     limit: u32,
-    has_parent: bool,
-    level: Option<LevelBytes>,
+    /// Cells per row of the parent level, 0 without one.
+    parent_width: u32,
+    level: Option<LevelUniform>,
 }
 
 impl Setup {
     fn new(job: &Job<'_>, pass: Pass) -> Self {
-        let pyramid = job.plan.pyramid();
         let cells_of = |divisor: u32| job.block.size.map(|n| n.div_ceil(divisor));
+        let parents = |divisor: u32| {
+            if divisor < job.plan.pyramid().coarsest() {
+                cells_of(2 * divisor)[0]
+            } else {
+                0
+            }
+        };
         match pass {
             Pass::March(level) => {
-                let has_parent = level.divisor < pyramid.coarsest();
+                let cells = cells_of(level.divisor);
                 Self {
-                    cells: cells_of(level.divisor),
+                    cells,
                     limit: level.steps,
-                    has_parent,
-                    level: Some(level_bytes(job.block, level, has_parent)),
+                    parent_width: parents(level.divisor),
+                    level: Some(LevelUniform {
+                        divisor: level.divisor,
+                        fudge: level.fudge as f32,
+                        origin: job.block.origin.map(|o| o / level.divisor),
+                        cells,
+                    }),
                 }
             }
-            Pass::Trace => {
-                let has_parent = !pyramid.levels.is_empty();
-                let width = if has_parent { cells_of(2)[0] } else { 0 };
-                let limit = job.plan.march.ray_steps();
-                Self {
-                    cells: job.block.size,
-                    limit,
-                    has_parent,
-                    level: Some(Box::new(move |chunk, done| {
-                        let uniform = TraceUniform {
-                            chunk,
-                            limit,
-                            done,
-                            parent_width: width,
-                        };
-                        bytes_of(&uniform).to_vec()
-                    })),
-                }
-            }
+            Pass::Trace => Self {
+                cells: job.block.size,
+                limit: job.plan.march.ray_steps(),
+                parent_width: parents(1),
+                level: None,
+            },
             Pass::Color => Self {
                 cells: job.block.size,
                 limit: 1,
-                has_parent: false,
+                parent_width: 0,
                 level: None,
             },
         }
     }
-}
-
-fn level_bytes(block: Block, level: Level, has_parent: bool) -> LevelBytes {
-    let cells = block.size.map(|n| n.div_ceil(level.divisor));
-    let parents = block.size[0].div_ceil(2 * level.divisor);
-    Box::new(move |chunk, done| {
-        let uniform = LevelUniform {
-            divisor: level.divisor,
-            chunk,
-            limit: level.steps,
-            done,
-            origin: block.origin.map(|o| o / level.divisor),
-            cells,
-            parent_width: if has_parent { parents } else { 0 },
-            fudge: level.fudge as f32,
-            pad0: 0,
-            pad1: 0,
-        };
-        bytes_of(&uniform).to_vec()
-    })
 }
 
 /// Where a block's rows go in a layer of the whole image.
@@ -616,10 +618,6 @@ pub(crate) fn blank(plan: &Plan, passes: &[Pass], extras: Extras) -> Frame {
         }
     }
     frame
-}
-
-fn read_u32(device: &Device, raw: &wgpu::Buffer) -> Result<u32, DeviceError> {
-    Ok(read_raw(device, raw, 1)?.first().copied().unwrap_or(0))
 }
 
 fn read_raw<T: bytemuck::Pod>(

@@ -33,7 +33,7 @@ struct Beam {
     grain: f32,
 }
 
-@group(1) @binding(0) var<uniform> view: ViewUniform;
+@group(1) @binding(0) var<storage, read> view: ViewUniform;
 
 /// Half a pixel's width at distance t, seen along the beam.
 fn footprint(beam: Beam, t: f32) -> f32 {

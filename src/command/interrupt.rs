@@ -1,5 +1,6 @@
 //! Ctrl-C: the render stops at its next opportunity and leaves no file.
 
+use std::io::{self, IsTerminal};
 use std::process::exit;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -37,6 +38,10 @@ pub fn asked() -> bool {
 /// Ends the process without a trace of files.
 fn end() -> ! {
     let _kept = output::clear();
+    if io::stderr().is_terminal() {
+        // The progress bar's line, which nobody else will clear now.
+        eprint!("\r\x1b[2K");
+    }
     eprintln!("error: {CANCELLED}");
     exit(1);
 }

@@ -166,11 +166,12 @@ pub fn run(args: &Render) -> Result<()> {
     interrupt::listen();
     let picture = Sink::prepare(&output)?;
     let figures = args.stats.as_deref().map(Sink::prepare).transpose()?;
-    if let Some(warning) = plan.precision_warning() {
-        eprintln!("warning: {warning}");
-    }
     let (mut executor, who) = Executor::open(&choice)?;
     eprintln!("rendering on {who}");
+    // The CPU executor has f64, and nothing to be warned of.
+    if let (Executor::Gpu(_), Some(warning)) = (&executor, plan.precision_warning()) {
+        eprintln!("warning: {warning}");
+    }
     let frame = march(&mut executor, &plan, extras(args, format))?;
     let preset = preset::write(&plan);
     let draw = || Shades::new(args.layer, &frame, &plan);

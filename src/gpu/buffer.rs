@@ -79,12 +79,12 @@ fn bytes_for<T>(len: usize) -> u64 {
     size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)
 }
 
-/// A uniform buffer filled with bytes.
+/// A buffer of parameters: the same for a whole dispatch, read as storage.
 pub fn uniform(device: &Device, name: &str, bytes: &[u8]) -> wgpu::Buffer {
     let raw = device.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
         size: (bytes.len() as u64).next_multiple_of(16),
-        usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+        usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
     device.queue.write_buffer(&raw, 0, bytes);

@@ -6,6 +6,10 @@ use std::time::Duration;
 use thiserror::Error;
 use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Features, Instance, Limits};
 
+/// Storage buffers that a program may use. Parameters are among them: steering branches
+/// by uniform buffers makes lavapipe of Mesa 22 inline them, at times past its stack.
+const STORAGE_BUFFERS: u32 = 14;
+
 /// What can go wrong between asking for a device and waiting for its work.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum DeviceError {
@@ -202,6 +206,7 @@ impl Device {
         let required_limits = Limits {
             max_buffer_size: limits.max_buffer_size,
             max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+            max_storage_buffers_per_shader_stage: STORAGE_BUFFERS,
             ..Limits::default()
         };
         let descriptor = wgpu::DeviceDescriptor {

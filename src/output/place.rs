@@ -115,11 +115,6 @@ impl Place {
         let fail = |e: io::Error| OutputError::io(&shown, "cannot be written", &e);
         self.write(|to| to.write_all(bytes).map_err(fail))
     }
-
-    /// The name that the caller gave.
-    pub fn shown(&self) -> &Path {
-        &self.shown
-    }
 }
 
 impl Drop for Place {

@@ -15,24 +15,12 @@ use crate::wgsl;
 pub struct LevelUniform {
     /// Pixels per cell along each axis.
     pub divisor: u32,
-    /// Steps that one dispatch may do.
-    pub chunk: u32,
-    /// Steps that all dispatches of the level may do.
-    pub limit: u32,
-    /// Steps done by earlier dispatches.
-    pub done: u32,
+    /// Factor on the chord.
+    pub fudge: f32,
     /// First cell of the block.
     pub origin: [u32; 2],
     /// Cells in the block.
     pub cells: [u32; 2],
-    /// Cells per row of the parent level; 0 for the first.
-    pub parent_width: u32,
-    /// Factor on the chord.
-    pub fudge: f32,
-    /// Unused.
-    pub pad0: u32,
-    /// Unused.
-    pub pad1: u32,
 }
 
 /// The WGSL module of the pass.
@@ -62,13 +50,13 @@ pub fn march<S: Solid>(
     let mut f = front;
     for _ in 0..limit {
         let next = solid.advance(cone, f, work);
-        if next > solid.bounds_far() {
-            return (next, Ended::Sky);
+        f = next.front;
+        if f > solid.bounds_far() {
+            return (f, Ended::Sky);
         }
-        if next <= f {
+        if !next.going {
             return (f, Ended::Stopped);
         }
-        f = next;
     }
     (f, Ended::Limited)
 }

@@ -5,5 +5,6 @@ pub mod fog;
 pub mod look;
 pub mod march;
 pub mod occlusion;
+pub mod queue;
 pub mod shadow;
 pub mod trace;

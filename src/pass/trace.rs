@@ -1,27 +1,11 @@
 //! The last level: one ray per pixel, from the front of its cell to the surface.
 //! Twin: `wgsl/pass/trace.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::frame::{State, Work};
 use crate::scene::{Hit, Solid, Step};
 use crate::shader::Module;
 use crate::view::Beam;
 use crate::wgsl;
-
-/// The pass as WGSL reads it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct TraceUniform {
-    /// Steps that one dispatch may do.
-    pub chunk: u32,
-    /// Steps that a ray may do.
-    pub limit: u32,
-    /// Steps done by earlier dispatches.
-    pub done: u32,
-    /// Cells per row of the last cone level; 0 where there is none.
-    pub parent_width: u32,
-}
 
 /// The WGSL module of the pass.
 pub fn module() -> Module {

@@ -91,14 +91,13 @@ impl Reader<'_> {
         };
         match self.word(kind, &KINDS)? {
             "distance" => {
-                let names = Shape::all();
-                let names: Vec<&str> = names.iter().map(|s| s.name()).collect();
                 let Some(formula) = last(entries, "formula") else {
+                    let names = Shape::all();
+                    let names: Vec<&str> = names.iter().map(|s| s.name()).collect();
                     let why = format!("scene.formula is missing; it is one of {}", quoted(&names));
                     return Err(self.missing(&why));
                 };
-                let shape = Shape::named(self.word(formula, &names)?);
-                let shape = shape.ok_or_else(|| self.at(formula, "no such formula".into()))?;
+                let shape = self.formula(formula)?;
                 Ok(Subject::Distance {
                     shape,
                     iterations: None,
@@ -106,6 +105,14 @@ impl Reader<'_> {
             }
             _ => Ok(Subject::Slab(SlabShape::default())),
         }
+    }
+
+    /// The formula that an entry names.
+    fn formula(&self, entry: &Entry) -> Result<Shape, PresetError> {
+        let shapes = Shape::all();
+        let names: Vec<&str> = shapes.iter().map(|s| s.name()).collect();
+        let name = self.word(entry, &names)?;
+        Shape::named(name).ok_or_else(|| self.value(entry, "there is no such formula"))
     }
 
     /// The word of a few that an entry's value is.
@@ -129,7 +136,9 @@ impl Reader<'_> {
         let (kind, formula) = plan.subject.words();
         if entry.section == "scene" {
             match (entry.key.as_str(), formula) {
-                ("kind", _) | ("formula", Some(_)) => return Ok(()),
+                // The last of each has chosen the subject; the others are checked, too.
+                ("kind", _) => return self.word(entry, &KINDS).map(|_| ()),
+                ("formula", Some(_)) => return self.formula(entry).map(|_| ()),
                 ("formula", None) => {
                     let why = format!("a {kind} has no formula; leave it out");
                     return Err(self.value(entry, &why));

@@ -18,6 +18,15 @@ pub enum Step {
     Out,
 }
 
+/// What one step of a cone came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Advance {
+    /// Distance up to which every ray of the cone is proven free.
+    pub front: f64,
+    /// Whether another step is worth its price.
+    pub going: bool,
+}
+
 /// Where a ray met the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hit {
@@ -44,8 +53,8 @@ pub trait Solid: Sync {
     /// A ray on its way.
     type Walk: Copy;
 
-    /// The new proven front of a cone, or the old one where no more can be proven.
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> f64;
+    /// The new proven front of a cone, never below the old one.
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance;
 
     /// Starts a ray at a proven front; nothing beyond `t_max` counts.
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Self::Walk;

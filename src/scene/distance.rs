@@ -11,7 +11,7 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3};
 
-use super::contract::{Hit, Solid, Step, Surface, Twin};
+use super::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::cone::ConeRule;
 use crate::formula::{Bounds, Shape};
 use crate::frame::Work;
@@ -21,8 +21,10 @@ use crate::view::{Beam, footprint};
 use crate::wgsl;
 
 /// A cone that gains less than this share of its ball leaves the rest to its four
-/// children, whose thinner cones gain more from a ball at the same place.
-const DISTANCE_ENOUGH: f64 = 0.3;
+/// children. A large share also keeps cones from creeping along surfaces that they
+/// graze, where short steps would find hits and long ones pass through the thin skin:
+/// at 0.3 such cones start pixels behind, at 0.8 none did on the five bench presets.
+const DISTANCE_ENOUGH: f64 = 0.8;
 /// Weight of the newest slope in the automatic relaxation.
 const DISTANCE_SMOOTHING: f64 = 0.3;
 /// The longest automatic step, in radii of the last ball.
@@ -249,7 +251,7 @@ pub struct Walk {
 impl Solid for Distance {
     type Walk = Walk;
 
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> f64 {
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance {
         let q = cone.at(front);
         let eps = self.detail * footprint(cone, front);
         let mut d = self.bounds.distance(self.eye + q) - cone.r0 - self.shell * eps;
@@ -259,11 +261,11 @@ impl Solid for Distance {
             d = d.max(e - cone.r0);
         }
         let next = self.rule.cone_front(front, front, d, cone.k);
-        // A short gain is better left to the four thinner children.
-        if next - front < DISTANCE_ENOUGH * d {
-            return front;
+        Advance {
+            front: next,
+            // After a short gain the rest is better left to the four thinner children.
+            going: next - front > DISTANCE_ENOUGH * d,
         }
-        next
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Work) -> Walk {

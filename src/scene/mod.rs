@@ -4,7 +4,7 @@ mod contract;
 pub mod distance;
 pub mod slab;
 
-pub use contract::{Hit, Solid, Step, Surface, Twin};
+pub use contract::{Advance, Hit, Solid, Step, Surface, Twin};
 
 /// A scene made ready for one view.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,7 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec2, DVec3, Vec3};
 
-use super::contract::{Hit, Solid, Step, Surface, Twin};
+use super::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::cone::ConeRule;
 use crate::frame::Work;
 use crate::key::{Fault, Key, Number, Triple};
@@ -175,10 +175,14 @@ pub struct Walk {
 impl Solid for Slab {
     type Walk = Walk;
 
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> f64 {
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance {
         work.evaluations += 1;
         let d = self.slab_distance(cone.at(front)) - cone.r0;
-        self.rule.cone_front(front, front, d, cone.k)
+        let next = self.rule.cone_front(front, front, d, cone.k);
+        Advance {
+            front: next,
+            going: next > front,
+        }
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Walk {

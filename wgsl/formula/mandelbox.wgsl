@@ -34,7 +34,7 @@ override MANDELBOX_CLASSIC: bool;
 /// product with the next fold's factor could overflow.
 const MANDELBOX_MOST_W = 1e30;
 
-@group(0) @binding(1) var<uniform> mandelbox: MandelboxUniform;
+@group(0) @binding(1) var<storage, read> mandelbox: MandelboxUniform;
 
 fn estimate(p: real3, most: u32) -> real {
     let limit = real(mandelbox.fold_limit);

@@ -11,7 +11,7 @@ struct RotationUniform {
     pad2: f32,
 }
 
-@group(0) @binding(2) var<uniform> rotation: RotationUniform;
+@group(0) @binding(2) var<storage, read> rotation: RotationUniform;
 
 fn rotate(v: real3) -> real3 {
     return real3(

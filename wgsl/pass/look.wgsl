@@ -27,7 +27,7 @@ struct LookUniform {
     palette: array<vec4<f32>, 8>,
 }
 
-@group(1) @binding(1) var<uniform> look: LookUniform;
+@group(1) @binding(1) var<storage, read> look: LookUniform;
 
 fn sky(axis: vec3<f32>) -> vec3<f32> {
     let height = dot(axis, look.world_up);

@@ -5,49 +5,35 @@
 struct LevelUniform {
     /// Pixels per cell, along each axis.
     divisor: u32,
-    /// Steps that one dispatch may do, and all dispatches of the level together.
-    chunk: u32,
-    limit: u32,
-    /// Steps done by earlier dispatches of this level.
-    done: u32,
+    /// Factor on the cone's chord.
+    fudge: f32,
     /// First cell of the block, and cells in the block.
     origin: vec2<u32>,
     cells: vec2<u32>,
-    /// Cells per row of the parent level in the block; 0 for the first level.
-    parent_width: u32,
-    /// Factor on the cone's chord.
-    fudge: f32,
-    pad0: u32,
-    pad1: u32,
 }
 
-@group(2) @binding(0) var<uniform> level: LevelUniform;
-@group(2) @binding(1) var<storage, read> parent_front: array<f32>;
-@group(2) @binding(2) var<storage, read> parent_state: array<u32>;
-@group(2) @binding(3) var<storage, read_write> front: array<f32>;
-@group(2) @binding(4) var<storage, read_write> state: array<u32>;
-@group(2) @binding(5) var<storage, read_write> moving: array<atomic<u32>>;
+@group(2) @binding(0) var<storage, read> level: LevelUniform;
+@group(2) @binding(4) var<storage, read> parent_front: array<f32>;
+@group(2) @binding(5) var<storage, read_write> front: array<f32>;
+@group(2) @binding(6) var<storage, read_write> state: array<u32>;
 
 @compute @workgroup_size(64)
 fn march(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let local = tile_cell(group.xy, lane);
-    if any(local >= level.cells) {
+    let index = queue_take(group.xy, lane, level.cells);
+    if index == QUEUE_NONE {
         return;
     }
-    let index = local.y * level.cells.x + local.x;
+    let local = vec2<u32>(index % level.cells.x, index / level.cells.x);
     var f = 0.0;
-    if level.done > 0u {
-        if state[index] != STATE_MOVING {
-            return;
-        }
+    if turn.done > 0u {
         f = front[index];
-    } else if level.parent_width > 0u {
-        let parent = (local.y / 2u) * level.parent_width + local.x / 2u;
-        f = parent_front[parent];
-        if parent_state[parent] == STATE_SKY {
+    } else if turn.parent_width > 0u {
+        f = parent_front[(local.y / 2u) * turn.parent_width + local.x / 2u];
+        // A sky parent's front lies past everything.
+        if f > bounds_far() {
             front[index] = f;
             state[index] = STATE_SKY;
             return;
@@ -56,29 +42,25 @@ fn march(
     var cone = view_cone(level.origin + local, level.divisor);
     cone.k *= level.fudge;
     // A cell that stops holds something, or may: its children look closer. One that
-    // ran out of steps hands on what it has proven so far, which is as good.
+    // runs out of steps hands on what it has proven so far, which is as good.
     var s = STATE_MOVING;
-    let last = min(level.chunk, level.limit - level.done);
+    let last = queue_steps();
     for (var i = 0u; i < last; i++) {
         let next = advance(cone, f);
-        if next > bounds_far() {
-            f = next;
+        f = next.front;
+        if f > bounds_far() {
             s = STATE_SKY;
             break;
         }
-        if next <= f {
+        if !next.going {
             s = STATE_HIT;
             break;
         }
-        f = next;
-    }
-    if s == STATE_MOVING && level.done + last >= level.limit {
-        s = STATE_UNCONVERGED;
     }
     front[index] = f;
-    state[index] = s;
-    if s == STATE_MOVING {
-        atomicAdd(&moving[0], 1u);
+    if s == STATE_MOVING && queue_push(index) {
+        s = STATE_UNCONVERGED;
     }
+    state[index] = s;
     counters_store(index);
 }

@@ -7,6 +7,12 @@ const STATE_UNCONVERGED = 2u;
 /// Not finished: runs on in the next dispatch. Never leaves the executor.
 const STATE_MOVING = 3u;
 
+/// A cone's new proven front, and whether another step is worth its price.
+struct Advance {
+    front: f32,
+    going: bool,
+}
+
 /// Where a ray met the scene: the distance, what it met, and where on that.
 struct Hit {
     t: f32,

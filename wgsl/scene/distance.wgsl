@@ -46,7 +46,7 @@ override DISTANCE_SMOOTHING: f32;
 override DISTANCE_MOST_RELAXED: f32;
 override HIT_CARRIES_MARK: bool;
 
-@group(0) @binding(0) var<uniform> distance_scene: DistanceUniform;
+@group(0) @binding(0) var<storage, read> distance_scene: DistanceUniform;
 
 fn estimate_at(q: vec3<f32>) -> f32 {
     return f32(estimate(real3(distance_scene.eye) + real3(q), distance_scene.iterations));
@@ -100,8 +100,8 @@ fn bounds_interval(ray: Beam, margin: f32) -> vec2<f32> {
     return vec2<f32>(near, far);
 }
 
-/// The new proven front of a cone, or the old one where no more can be proven.
-fn advance(cone: Beam, front: f32) -> f32 {
+/// The new proven front of a cone, and whether it is worth asking again.
+fn advance(cone: Beam, front: f32) -> Advance {
     let q = cone.origin + front * cone.axis;
     let eps = distance_scene.detail * footprint(cone, front);
     var d = bounds_distance(q) - cone.r0 - distance_scene.shell * eps;
@@ -111,11 +111,8 @@ fn advance(cone: Beam, front: f32) -> f32 {
         d = max(d, e - cone.r0);
     }
     let next = cone_front(front, front, d, cone.k);
-    // A short gain is better left to the four thinner children.
-    if next - front < DISTANCE_ENOUGH * d {
-        return front;
-    }
-    return next;
+    // After a short gain the rest is better left to the four thinner children.
+    return Advance(next, next - front > DISTANCE_ENOUGH * d);
 }
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {

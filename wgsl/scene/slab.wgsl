@@ -29,7 +29,7 @@ struct Walk {
 
 override HIT_CARRIES_MARK: bool;
 
-@group(0) @binding(0) var<uniform> slab: SlabUniform;
+@group(0) @binding(0) var<storage, read> slab: SlabUniform;
 
 fn bounds_far() -> f32 {
     return slab.far;
@@ -43,10 +43,11 @@ fn slab_distance(q: vec3<f32>) -> f32 {
     return length(max(o, vec2<f32>(0.0))) + min(max(o.x, o.y), 0.0);
 }
 
-fn advance(cone: Beam, front: f32) -> f32 {
+fn advance(cone: Beam, front: f32) -> Advance {
     count_evaluation();
     let d = slab_distance(cone.origin + front * cone.axis) - cone.r0;
-    return cone_front(front, front, d, cone.k);
+    let next = cone_front(front, front, d, cone.k);
+    return Advance(next, next > front);
 }
 
 /// The ray against both planes and the rim; the first that it meets from outside.
