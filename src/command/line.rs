@@ -8,7 +8,7 @@ use anyhow::Result;
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 
-use super::{completions, devices, failure, presets, render};
+use super::{bench, completions, devices, failure, presets, render};
 
 /// Renders distance-estimated fractals by multi-pass cone marching.
 ///
@@ -24,6 +24,9 @@ pub struct Line {
 enum Verb {
     /// Render a preset to a PNG or EXR file
     Render(Box<render::Render>),
+    /// Measure run time against error
+    #[command(subcommand)]
+    Bench(bench::Bench),
     /// List the built-in presets, or print one
     Presets(presets::Presets),
     /// List the devices that can render
@@ -91,6 +94,7 @@ impl Line {
     fn run(&self) -> Result<()> {
         match &self.verb {
             Verb::Render(args) => render::run(args),
+            Verb::Bench(bench) => bench::run(bench),
             Verb::Presets(args) => presets::run(args),
             Verb::Devices => devices::run(),
             Verb::Completions(args) => completions::run(args),

@@ -1,5 +1,6 @@
 //! The command line: one verb in each file.
 
+pub mod bench;
 pub mod completions;
 pub mod devices;
 pub mod executor;

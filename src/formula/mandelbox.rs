@@ -367,9 +367,95 @@ impl Mandelbox {
     }
 }
 
-/// The estimate's largest slope, by scale. Placeholder figures are none here: see
-/// `docs/accuracy.md`.
+/// A slope that the estimate stays under, by scale: how much too large a ball it gives.
+///
+/// w is the derivative at the point, not over the step, so a ball that crosses into a
+/// ball fold's zone can be too large. Rays from random points within the box met the
+/// surface inside such a ball by up to 2 % at scale -2 and 9 % at -3, and local slopes of
+/// 1.2 were seen at 2.5 and 3; at 2 and -1.5 none above 1 was (`estimates_of_empty_balls`
+/// below repeats the search).
 fn slope(scale: f64) -> f64 {
-    let _ = scale;
-    1.0
+    if scale > 2.25 {
+        1.2
+    } else if scale < -1.6 {
+        1.1
+    } else {
+        1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pseudo-random numbers in 0..1 (a linear congruential generator).
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005);
+            self.0 = self.0.wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        }
+        fn point(&mut self) -> DVec3 {
+            DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0
+        }
+    }
+
+    /// Largest ratio of a ball's radius to the distance at which a ray from its centre
+    /// meets the surface, over random points and rays.
+    fn worst_ball(shape: &Mandelbox, lipschitz: f64) -> f64 {
+        let mut random = Random(7);
+        let size = shape.bounds().half.x;
+        let skin = 1e-4 * size;
+        let most = shape.iterations(skin);
+        let mut worst = 0.0_f64;
+        for _ in 0..4000 {
+            let mut p = random.point() * size;
+            let mut d = shape.estimate(p, most).0 / lipschitz;
+            // Come closer along a random direction, where the folds are dense.
+            let towards = random.point().normalize_or_zero();
+            for _ in 0..8 {
+                let q = p + 0.9 * d * towards;
+                let e = shape.estimate(q, most).0 / lipschitz;
+                if e < 10.0 * skin {
+                    break;
+                }
+                (p, d) = (q, e);
+            }
+            if d < 10.0 * skin {
+                continue;
+            }
+            for _ in 0..4 {
+                let u = random.point().normalize_or_zero();
+                let mut t = 0.0;
+                while t < d {
+                    let e = shape.estimate(p + t * u, most).0;
+                    if e < skin {
+                        worst = worst.max((d - t) / d);
+                        break;
+                    }
+                    t += 0.1 * e;
+                }
+            }
+        }
+        worst
+    }
+
+    #[test]
+    fn estimates_of_empty_balls() {
+        let mut found = 0.0_f64;
+        for scale in [1.5, 2.0, 2.5, 3.0, -1.5, -2.0, -3.0] {
+            let shape = Mandelbox {
+                scale,
+                ..Mandelbox::default()
+            };
+            // The skin itself is 1e-4 of the box, a per cent of the smallest balls.
+            let worst = worst_ball(&shape, shape.lipschitz());
+            assert!(worst < 0.02, "scale {scale}: {worst}");
+            found = found.max(worst_ball(&shape, 0.8));
+        }
+        // The search can fail: with balls a quarter larger it finds the surface inside.
+        assert!(found > 0.1, "{found}");
+    }
 }
