@@ -17,6 +17,12 @@ presets![
     "bench-outside",
     "bench-thin",
     "mandelbox",
+    "mandelbox-gate",
+    "mandelbox-hall",
+    "mandelbox-julia",
+    "mandelbox-lattice",
+    "mandelbox-shell",
+    "mandelbox-vortex",
 ];
 
 /// The text of a built-in preset.

@@ -1,0 +1,133 @@
+//! Every plan whose shaders can differ: presets, formulas with each key moved, the
+//! slab, all modes, and looks with and without their features.
+
+use conemarch::formula::Shape;
+use conemarch::formula::mandelbox::{Estimate, Mandelbox};
+use conemarch::mode::MODES;
+use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::preset::{BUILTIN, builtin, read};
+use conemarch::scene::slab::SlabShape;
+use conemarch::shader::Program;
+use glam::DVec3;
+use toml::Value;
+
+/// The plan of a built-in preset.
+pub fn preset(name: &str) -> Plan {
+    let text = builtin(name).expect("the preset is built in");
+    read(text, name).expect("a built-in preset reads")
+}
+
+/// A subject for a shape.
+pub fn distance(shape: Shape) -> Subject {
+    let iterations = None;
+    Subject::Distance { shape, iterations }
+}
+
+/// All values worth trying for a key: the other states of a switch, every word of a
+/// list of words, and a triple away from zero.
+fn values(now: &Value, expects: &str) -> Vec<Value> {
+    match now {
+        Value::Boolean(b) => vec![Value::Boolean(!b)],
+        Value::Array(list) if list.len() == 3 => {
+            vec![Value::Array([3.0, 5.0, 7.0].map(Value::Float).to_vec())]
+        }
+        Value::String(_) => {
+            let quoted = expects.split('"').skip(1).step_by(2);
+            quoted.map(|w| Value::String(w.into())).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The subject itself, and once more for each value of each of its keys that could
+/// choose a feature.
+fn with_each_key_moved(subject: &Subject) -> Vec<Subject> {
+    let mut all = vec![subject.clone()];
+    let count = subject.clone().keys().len();
+    for index in 0..count {
+        let mut copy = subject.clone();
+        let tried = {
+            let key = &copy.keys()[index];
+            values(&key.slot.get(), &key.slot.expects())
+        };
+        for value in tried {
+            let mut moved = subject.clone();
+            if moved.keys()[index].slot.set(&value).is_ok() {
+                all.push(moved);
+            }
+        }
+    }
+    all
+}
+
+/// Mandelboxes with every combination of rotation, Julia mode and estimate.
+pub fn mandelboxes() -> Vec<Mandelbox> {
+    let mut all = Vec::new();
+    for bits in 0..8_u32 {
+        all.push(Mandelbox {
+            rotation: f64::from(bits & 1) * DVec3::new(20.0, -35.0, 50.0),
+            julia: bits & 2 > 0,
+            julia_constant: DVec3::new(0.7, -0.4, 1.1),
+            estimate: if bits & 4 > 0 {
+                Estimate::Classic
+            } else {
+                Estimate::Proven
+            },
+            ..Mandelbox::default()
+        });
+    }
+    all
+}
+
+/// Everything that can be in a picture, with its features.
+fn subjects() -> Vec<Subject> {
+    let mut all: Vec<Subject> = Shape::all().into_iter().map(distance).collect();
+    all.push(Subject::Slab(SlabShape::default()));
+    let mut moved: Vec<Subject> = all.iter().flat_map(with_each_key_moved).collect();
+    let boxes = mandelboxes().into_iter();
+    moved.extend(boxes.map(|m| distance(Shape::Mandelbox(m))));
+    moved
+}
+
+/// All plans: presets and subjects, in every mode and with every feature of the look.
+pub fn plans() -> Vec<Plan> {
+    let presets = BUILTIN.iter().map(|(name, _)| preset(name));
+    let first: Vec<Plan> = presets
+        .chain(subjects().into_iter().map(Plan::new))
+        .collect();
+    let mut all = Vec::new();
+    for plan in &first {
+        for (_, mode) in MODES {
+            for look in 0..8 {
+                let mut one = plan.clone();
+                one.march.mode = *mode;
+                one.look.shadow = look & 1 > 0;
+                one.look.occlusion = if look & 2 > 0 { 1.0 } else { 0.0 };
+                one.look.fog = if look & 4 > 0 { 0.5 } else { 0.0 };
+                all.push(one);
+            }
+        }
+    }
+    all
+}
+
+/// All different programs of a plan's passes, with work counted or not and normals
+/// kept or not.
+pub fn programs_of(plan: &Plan) -> Vec<Program> {
+    let scene = plan.scene();
+    let mut all: Vec<Program> = Vec::new();
+    for pass in plan.passes() {
+        for bits in 0..4 {
+            let extras = Extras {
+                count: bits & 1 > 0,
+                normals: bits & 2 > 0,
+                ..Extras::default()
+            };
+            let program = plan.program(&scene, pass, extras);
+            if !all.contains(&program) {
+                all.push(program);
+            }
+        }
+    }
+    all
+}

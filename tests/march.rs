@@ -1,0 +1,501 @@
+//! What cone marching promises, on fields that are known in closed form: no cell starts
+//! behind a surface that one of its rays meets, at any image size and field of view; how
+//! the work is cut never changes a bit; every limit that is reached is a state; and no
+//! pass knows what it marches.
+#![allow(
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "a test fails by panicking, and has no readers of its interface"
+)]
+
+mod adapter;
+
+use adapter::{render, render_cut};
+use conemarch::compare::compare;
+use conemarch::cpu;
+use conemarch::formula::{Shape, balls::Balls};
+use conemarch::frame::{Frame, State, Work};
+use conemarch::mode::Mode;
+use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::preset::load;
+use conemarch::render::Cutting;
+use conemarch::scene::slab::SlabShape;
+use conemarch::view::Camera;
+use glam::{DVec2, DVec3};
+
+const SKY: u8 = State::Sky as u8;
+const HIT: u8 = State::Hit as u8;
+const UNCONVERGED: u8 = State::Unconverged as u8;
+/// Fronts and states of every level, and no colour.
+const LEVELS: Extras = Extras {
+    count: false,
+    normals: false,
+    levels: true,
+    depth_only: true,
+    time: false,
+};
+/// The same, with counts.
+const COUNTED: Extras = Extras {
+    count: true,
+    ..LEVELS
+};
+
+fn camera(eye: [f64; 3], target: [f64; 3]) -> Camera {
+    Camera {
+        eye: eye.into(),
+        target: target.into(),
+        up: DVec3::Z,
+        fov: 48.5,
+    }
+}
+
+/// From far, from near, eight thousandths off the largest ball and along it, inside the
+/// bounds between the solids, and straight along an axis.
+fn cameras() -> [Camera; 5] {
+    [
+        camera([10.0, -17.0, 12.0], [0.0, 0.0, 0.0]),
+        camera([4.0, -6.0, 3.0], [0.1, 0.2, 0.0]),
+        camera([0.0, -0.6, 0.81], [2.0, -0.2, 1.0]),
+        camera([-0.2, -2.2, -1.2], [0.3, 0.2, 0.2]),
+        camera([7.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+    ]
+}
+
+fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
+    let mut plan = Plan::new(Subject::Distance {
+        shape: Shape::Balls(Balls {
+            rod_radius,
+            ..Balls::default()
+        }),
+        iterations: None,
+    });
+    plan.camera = camera.clone();
+    plan.march.coarsest = 32;
+    plan.size = size;
+    plan
+}
+
+fn slab(camera: &Camera, size: [u32; 2]) -> Plan {
+    let mut plan = balls(0.05, camera, size);
+    plan.subject = Subject::Slab(SlabShape::default());
+    plan
+}
+
+/// Where a ray from outside meets a ball.
+fn meet_ball(p: DVec3, a: DVec3, radius: f64) -> f64 {
+    let b = p.dot(a);
+    // The distance of the line first: b^2 - |p|^2 cancels for a small ball far away.
+    let q = radius * radius - (p - b * a).length_squared();
+    let t = -b - q.max(0.0).sqrt();
+    if q > 0.0 && t > 0.0 { t } else { f64::INFINITY }
+}
+
+/// Where a ray meets the wall of an upright cylinder or one of its two flat ends.
+fn meet_cylinder(p: DVec3, a: DVec3, radius: f64, half: f64, ends: bool) -> f64 {
+    let (s, d) = (DVec2::new(p.x, p.y), DVec2::new(a.x, a.y));
+    let mut first = f64::INFINITY;
+    let c = d.length_squared();
+    let middle = -s.dot(d) / c.max(1e-300);
+    let q = radius * radius - (s + middle * d).length_squared();
+    let t = middle - (q.max(0.0) / c.max(1e-300)).sqrt();
+    if c > 1e-24 && q > 0.0 && t > 0.0 && (p.z + t * a.z).abs() <= half {
+        first = t;
+    }
+    let t = (half.copysign(p.z) - p.z) / a.z;
+    if ends && p.z.abs() > half && t > 0.0 && (s + t * d).length() <= radius {
+        first = first.min(t);
+    }
+    first
+}
+
+fn meet_box(p: DVec3, a: DVec3, half: f64) -> f64 {
+    let one = (-half - p) / a;
+    let two = (half - p) / a;
+    let (near, far) = (one.min(two).max_element(), one.max(two).min_element());
+    if near <= far && near > 0.0 {
+        near
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// Where a ray first meets the subject: solved, not marched.
+fn meet(subject: &Subject, p: DVec3, a: DVec3) -> f64 {
+    match subject {
+        Subject::Slab(s) => meet_cylinder(p, a, s.radius, s.half, true),
+        Subject::Distance { shape, .. } => {
+            let Shape::Balls(b) = shape else {
+                panic!("only balls and slabs are solved here")
+            };
+            let at = |x, y, z| p - DVec3::new(x, y, z);
+            let rod = b.rod_radius;
+            [
+                meet_ball(p, a, b.ball_radius),
+                meet_ball(at(1.6, 0.4, -0.3), a, 0.45),
+                meet_ball(at(-0.9, -1.3, 0.9), a, 0.25),
+                meet_box(at(-1.6, 1.0, -0.4), a, b.box_size),
+                meet_box(at(1.2, -1.5, -0.7), a, 0.35),
+                meet_ball(at(0.4, -2.0, 1.8), a, rod),
+                meet_ball(at(0.4, -2.0, -1.8), a, rod),
+                meet_cylinder(at(0.4, -2.0, 0.0), a, rod, 1.8, false),
+            ]
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
+        }
+    }
+}
+
+/// The exact picture, and its distances in f64.
+fn exact(plan: &Plan) -> (Frame, Vec<f64>) {
+    let view = plan.view();
+    let [w, h] = plan.size;
+    let pixels = (0..h).flat_map(|y| (0..w).map(move |x| [x, y]));
+    let t: Vec<f64> = pixels
+        .map(|p| meet(&plan.subject, view.eye, view.view_ray(p).axis))
+        .collect();
+    let frame = Frame {
+        size: plan.size,
+        depth: t.iter().map(|t| *t as f32).collect(),
+        state: t.iter().map(|t| u8::from(t.is_finite())).collect(),
+        ..Frame::default()
+    };
+    (frame, t)
+}
+
+/// Pixels, over all levels, whose cell claims more than is true: a front beyond the
+/// place where the pixel's ray meets the surface, or sky where it meets one.
+fn overclaims(frame: &Frame, t: &[f64]) -> usize {
+    let width = frame.size[0] as usize;
+    let mut count = 0;
+    for level in &frame.levels {
+        let d = level.divisor as usize;
+        for (i, &t) in t.iter().enumerate().filter(|(_, t)| t.is_finite()) {
+            let cell = (i / width / d) * level.cells[0] as usize + (i % width) / d;
+            let beyond = f64::from(level.front[cell]) > t * (1.0 + ROUNDING);
+            count += usize::from(beyond || level.state[cell] == SKY);
+        }
+    }
+    count
+}
+
+/// The proof needs no tolerance; f32 adds some roundings of 6e-8 to positions and
+/// distances.
+const ROUNDING: f64 = 1e-6;
+
+/// Asserts that no cell of a render claims too much.
+fn assert_sound(plan: &Plan, what: &str) {
+    let (reference, t) = exact(plan);
+    let frame = render(plan, LEVELS);
+    let divisors: Vec<u32> = frame.levels.iter().map(|l| l.divisor).collect();
+    assert_eq!(divisors, [32, 16, 8, 4, 2]);
+    assert_eq!(overclaims(&frame, &t), 0, "{what}");
+    let report = compare(&frame, &reference, &plan.view());
+    for (divisor, pixels) in report.start_violations {
+        assert_eq!(pixels, 0, "{what}: level 1/{divisor}");
+    }
+    // On a field of slope 1 neither can a ray pass what it meets.
+    assert_eq!((report.holes, report.behind), (0.0, 0.0), "{what}");
+    assert!(
+        frame.state.iter().all(|s| *s <= HIT),
+        "{what}: {:?}",
+        frame.census()
+    );
+}
+
+#[test]
+fn no_cell_starts_behind_a_surface_at_any_small_size_and_angle() {
+    let sizes = [[1, 1], [33, 17], [1, 400], [200, 1]];
+    for (n, camera) in cameras().iter().enumerate() {
+        for fov in [1.0, 48.5, 90.0, 170.0] {
+            let camera = Camera {
+                fov,
+                ..camera.clone()
+            };
+            for size in sizes {
+                for rod in [0.05, 1e-3] {
+                    let what = format!("camera {n}, fov {fov}, {size:?}, rod {rod}");
+                    assert_sound(&balls(rod, &camera, size), &what);
+                }
+                let what = format!("slab, camera {n}, fov {fov}, {size:?}");
+                assert_sound(&slab(&camera, size), &what);
+            }
+        }
+    }
+}
+
+#[test]
+fn no_cell_starts_behind_a_surface_in_large_images() {
+    let [far, near, close, inside, axis] = cameras();
+    assert_sound(&balls(0.05, &far, [1366, 768]), "far");
+    assert_sound(&balls(1e-3, &inside, [1366, 768]), "inside");
+    assert_sound(&balls(1e-3, &near, [1600, 1050]), "near");
+    assert_sound(&slab(&axis, [1366, 768]), "slab");
+    let wide = Camera {
+        fov: 170.0,
+        ..close
+    };
+    assert_sound(&balls(0.05, &wide, [1366, 768]), "wide and close");
+}
+
+/// The rule of the 2012 slides leaves gaps, and both counts must find them: they can.
+#[test]
+fn the_rule_of_the_slides_is_caught() {
+    for plan in [
+        balls(1e-3, &cameras()[3], [160, 90]),
+        slab(&cameras()[3], [160, 90]),
+    ] {
+        let mut plan = plan;
+        plan.march.mode = Mode::SlidesDeep;
+        let (reference, t) = exact(&plan);
+        let frame = render(&plan, LEVELS);
+        assert!(overclaims(&frame, &t) > 100);
+        let report = compare(&frame, &reference, &plan.view());
+        let found: u64 = report.start_violations.iter().map(|v| v.1).sum();
+        assert!(found > 100, "{:?}", report.start_violations);
+        assert!(report.behind > 0.001, "{}", report.behind);
+    }
+}
+
+/// The plan of a built-in preset at another size.
+fn preset(name: &str, size: [u32; 2]) -> Plan {
+    let mut plan = load(name, &[]).unwrap().plan;
+    plan.size = size;
+    plan
+}
+
+/// Every number of a frame but times, as bits.
+fn bits(frame: &Frame) -> Vec<Vec<u32>> {
+    let word = |s: &u8| u32::from(*s);
+    let floats = |v: &[f32]| v.iter().map(|x| x.to_bits()).collect::<Vec<u32>>();
+    let work = |w: &[Work]| {
+        w.iter()
+            .flat_map(|w| [w.evaluations, w.iterations])
+            .collect()
+    };
+    let mut all = vec![
+        floats(&frame.depth),
+        frame.state.iter().map(word).collect(),
+        floats(frame.radiance.as_flattened()),
+        floats(frame.normal.as_flattened()),
+        work(&frame.work),
+    ];
+    for level in &frame.levels {
+        all.push(floats(&level.front));
+        all.push(level.state.iter().map(word).collect());
+        all.push(work(&level.work));
+    }
+    all
+}
+
+#[test]
+fn blocks_and_chunks_never_change_a_bit() {
+    let extras = Extras {
+        count: true,
+        normals: true,
+        levels: true,
+        ..Extras::default()
+    };
+    let size = [333, 217];
+    let plans = [
+        preset("bench-outside", size),
+        balls(1e-3, &cameras()[3], size),
+        slab(&cameras()[1], size),
+    ];
+    for mut plan in plans {
+        for coarsest in [16, 32] {
+            plan.march.coarsest = coarsest;
+            // A limit that some rays reach: their state must not depend on the cut.
+            plan.march.steps = 37;
+            let whole = bits(&render(&plan, extras));
+            let cuts = [(64, 4), (96, 4), (1024, 1), (1024, 3), (1024, 256), (96, 3)];
+            for (block, chunk) in cuts {
+                let cut = bits(&render_cut(&plan, extras, Cutting { block, chunk }));
+                let what = format!("coarsest {coarsest}, blocks of {block}, chunks of {chunk}");
+                // Not assert_eq: it would print a million numbers.
+                assert!(whole == cut, "{what}");
+            }
+            // One more or less of anything that matters does change bits.
+            let mut other = plan.clone();
+            other.march.detail = 1.000_1;
+            assert!(whole != bits(&render(&other, extras)));
+        }
+    }
+}
+
+#[test]
+fn levels_halve_and_children_of_the_sky_do_nothing() {
+    for mut plan in [
+        preset("bench-far", [333, 217]),
+        balls(0.05, &cameras()[0], [333, 217]),
+        slab(&cameras()[4], [333, 217]),
+    ] {
+        plan.march.coarsest = 32;
+        let frame = render(&plan, COUNTED);
+        assert_eq!(frame.levels.len(), 5);
+        let (mut idle, mut busy) = (0, 0);
+        for (n, parent) in frame.levels.iter().enumerate() {
+            let fine = frame.levels.get(n + 1);
+            let (cells, work) = fine.map_or((plan.size, &frame.work), |l| (l.cells, &l.work));
+            assert_eq!(parent.divisor, 32 >> n);
+            assert_eq!(cells.map(|c| c.div_ceil(2)), parent.cells);
+            for (i, work) in work.iter().enumerate() {
+                let (x, y) = (i % cells[0] as usize, i / cells[0] as usize);
+                let above = (y / 2) * parent.cells[0] as usize + x / 2;
+                if parent.state[above] != SKY {
+                    busy += u32::from(work.evaluations > 0);
+                    continue;
+                }
+                assert_eq!(*work, Work::default());
+                idle += 1;
+                assert_eq!(fine.map_or(frame.state[i], |l| l.state[i]), SKY);
+            }
+        }
+        // Both kinds of cells were there to be looked at.
+        assert!(idle > 1000 && busy > 1000, "{idle} idle, {busy} busy");
+    }
+}
+
+/// Images whose edges cut cells lose no pixel there: the last row and column are those
+/// that the other executor renders, and that the equations give.
+#[test]
+fn cells_cut_by_the_image_are_complete() {
+    // Straight down on the slab, which fills the image, and balls all over it.
+    let down = camera([0.3, 0.2, 4.0], [0.0, 0.1, 0.0]);
+    for size in [[1366, 768], [1600, 1050], [33, 17], [200, 1], [1, 1]] {
+        for plan in [slab(&down, size), balls(0.05, &cameras()[2], size)] {
+            let frame = render(&plan, LEVELS);
+            let other = cpu::render(&plan, LEVELS, &mut |_| true).unwrap();
+            let view = plan.view();
+            let [w, h] = size;
+            let last_row = (0..w).map(|x| [x, h - 1]);
+            let last_column = (0..h).map(|y| [w - 1, y]);
+            let mut differ = 0;
+            for p in last_row.chain(last_column) {
+                let i = (p[1] * w + p[0]) as usize;
+                let ray = view.view_ray(p);
+                if let Subject::Slab(_) = plan.subject {
+                    let t = meet(&plan.subject, view.eye, ray.axis);
+                    assert_eq!(frame.state[i], HIT);
+                    assert!((f64::from(frame.depth[i]) / t - 1.0).abs() < 1e-5);
+                }
+                let apart = f64::from(frame.depth[i] - other.depth[i]).abs();
+                let same = frame.state[i] == other.state[i]
+                    && (frame.state[i] != HIT
+                        || apart < 2.0 * ray.grain * f64::from(frame.depth[i]));
+                differ += u32::from(!same);
+            }
+            // f32 and f64 may part where a ray grazes an edge: few of hundreds.
+            assert!(differ <= (w + h) / 200, "{size:?}: {differ} pixels differ");
+            assert!(frame.state.iter().all(|s| *s <= HIT));
+        }
+    }
+}
+
+#[test]
+fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
+    let mut plan = preset("bench-far", [96, 54]);
+    plan.march.mode = Mode::Ray;
+    plan.march.steps = 1;
+    let frame = render(&plan, Extras::default());
+    // The first sample is taken at the eye, far from everything.
+    let [sky, hit, unconverged] = frame.census();
+    assert_eq!((hit, sky + unconverged), (0, 96 * 54));
+    assert!(unconverged > 1000);
+    let limited = |f: &Frame, i: usize| f.state[i] == UNCONVERGED;
+    for i in 0..frame.state.len() {
+        assert_eq!(frame.depth[i].is_finite(), limited(&frame, i));
+        assert_ne!(frame.radiance[i], [1.0, 0.0, 1.0]);
+    }
+    // Started at the bounds with a generous threshold, some first samples do hit.
+    plan.march.clip = Some(true);
+    plan.march.detail = 100.0;
+    plan.look.flag_unconverged = true;
+    for steps in [1, 2, 3] {
+        plan.march.steps = steps;
+        let frame = render(&plan, Extras::default());
+        let other = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
+        assert!(frame.census()[1] > 100 && frame.census()[2] > 20);
+        let report = compare(&frame, &other, &plan.view());
+        // Of 5184 rays, those that end within a rounding of the threshold.
+        assert!(report.mask < 1e-3, "{}", report.mask);
+        for f in [&frame, &other] {
+            for i in 0..f.state.len() {
+                assert_eq!(f.radiance[i] == [1.0, 0.0, 1.0], limited(f, i));
+            }
+        }
+    }
+    // With steps enough there are none.
+    plan.march.steps = 256;
+    assert_eq!(render(&plan, LEVELS).census()[2], 0);
+}
+
+#[test]
+fn passes_figures_and_fudge_are_what_the_plan_says() {
+    let mut plan = preset("bench-outside", [160, 90]);
+    let names = |f: &Frame| f.passes.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
+    let marched = render(&plan, COUNTED);
+    assert_eq!(
+        names(&marched),
+        ["march 1/16", "march 1/8", "march 1/4", "march 1/2", "trace"]
+    );
+    let layers = marched.levels.iter().map(|l| &l.work);
+    for (pass, work) in marched.passes.iter().zip(layers.chain([&marched.work])) {
+        let sum = |f: fn(&Work) -> u32| work.iter().map(|w| u64::from(f(w))).sum::<u64>();
+        assert_eq!(pass.cells, work.len() as u64);
+        assert_eq!(pass.evaluations, Some(sum(|w| w.evaluations)));
+        assert_eq!(pass.iterations, Some(sum(|w| w.iterations)));
+        assert!(sum(|w| w.evaluations) > 0);
+    }
+    let uncounted = render(&plan, LEVELS);
+    assert!(
+        uncounted
+            .passes
+            .iter()
+            .all(|p| p.evaluations.is_none() && p.iterations.is_none())
+    );
+    assert!(uncounted.work.is_empty() && uncounted.work_per_pixel().is_none());
+    // One factor stands for all that follow.
+    plan.march.fudge = vec![0.6];
+    let short = bits(&render(&plan, LEVELS));
+    plan.march.fudge = vec![0.6; 4];
+    assert!(short == bits(&render(&plan, LEVELS)));
+    plan.march.fudge = vec![0.6, 1.0];
+    assert!(short != bits(&render(&plan, LEVELS)));
+    plan.march.mode = Mode::Ray;
+    let alone = render(
+        &plan,
+        Extras {
+            count: true,
+            levels: true,
+            ..Extras::default()
+        },
+    );
+    assert_eq!(names(&alone), ["trace", "color"]);
+    assert!(alone.levels.is_empty());
+}
+
+/// A scene without any estimate goes through the same passes, on both executors.
+#[test]
+fn passes_do_not_know_what_they_march() {
+    let size = [333, 217];
+    for camera in &cameras()[..4] {
+        let plan = slab(camera, size);
+        assert_eq!(plan.passes(), balls(0.05, camera, size).passes());
+        let (reference, t) = exact(&plan);
+        let cpu = cpu::render(&plan, LEVELS, &mut |_| true).unwrap();
+        // An f32 solution is off by some roundings of the eye's coordinates, up to 20,
+        // times the slope at which a ray meets the planes.
+        for (frame, allowed) in [(render(&plan, LEVELS), 1e-4), (cpu, 1e-6)] {
+            let mut differ = 0;
+            for (i, &t) in t.iter().enumerate() {
+                differ += u32::from(frame.state[i] != reference.state[i]);
+                if t.is_finite() && frame.state[i] == HIT {
+                    let off = (f64::from(frame.depth[i]) - t).abs() / t;
+                    assert!(off < allowed, "{off:e} at pixel {i}");
+                }
+            }
+            // Only pixels whose ray touches the rim within a rounding.
+            assert!(differ <= 2, "{differ} pixels differ");
+        }
+    }
+}

@@ -1,0 +1,379 @@
+//! Every program that can be made is valid WGSL, in f32 and in f64, with exactly the
+//! constants that it declares; faults are named by file and line; no shader file lies
+//! unused; and a feature that a plan lacks is not in its programs. Needs no adapter.
+#![allow(
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "a test may panic, and is read by its name"
+)]
+
+mod common {
+    pub mod plans;
+}
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use common::plans::{distance, plans, preset, programs_of};
+use conemarch::formula::Shape;
+use conemarch::formula::mandelbox::Mandelbox;
+use conemarch::plan::{Extras, Pass, Plan};
+use conemarch::shader::{Module, Program, ShaderError};
+use glam::DVec3;
+use wgpu::naga::valid::Capabilities;
+
+/// All different programs, each under its entry and listing.
+fn every_program() -> BTreeMap<String, Program> {
+    let mut all = BTreeMap::new();
+    for plan in plans() {
+        for program in programs_of(&plan) {
+            let listing = format!("{}\n{}", program.entry, program.describe());
+            all.entry(listing).or_insert(program);
+        }
+    }
+    all
+}
+
+/// A program known to be good, for tests that break a copy of it.
+fn good() -> Program {
+    let plan = preset("mandelbox");
+    plan.program(&plan.scene(), Pass::Trace, Extras::default())
+}
+
+fn paths(program: &Program) -> BTreeSet<&'static str> {
+    program.modules.iter().map(|m| m.path).collect()
+}
+
+fn has(program: &Program, path: &str) -> bool {
+    paths(program).contains(path)
+}
+
+#[test]
+fn every_program_is_valid_in_f32_and_sets_its_constants() {
+    let all = every_program();
+    // Three entries, two cone rules, ten scenes, eight looks: a small number would
+    // mean that the list above has lost something.
+    assert!(all.len() > 150, "only {} programs", all.len());
+    for (listing, program) in &all {
+        let result = program.validate(Capabilities::default());
+        assert!(result.is_ok(), "{}\n{listing}", result.unwrap_err());
+    }
+}
+
+#[test]
+fn every_program_with_real_numbers_is_valid_in_f64() {
+    let mut tried = 0;
+    for (listing, program) in every_program() {
+        let wide = program.in_f64();
+        if !has(&program, "wgsl/real.wgsl") {
+            assert_eq!(wide, program, "{listing}");
+            continue;
+        }
+        assert!(!has(&wide, "wgsl/real.wgsl") && has(&wide, "wgsl/real64.wgsl"));
+        let result = wide.validate(Capabilities::FLOAT64);
+        assert!(result.is_ok(), "{}\n{listing}", result.unwrap_err());
+        tried += 1;
+        // Without the capability f64 is refused: the text has really changed.
+        if tried == 1 {
+            assert!(wide.validate(Capabilities::default()).is_err());
+        }
+    }
+    assert!(tried > 100, "only {tried} programs in f64");
+}
+
+#[test]
+fn no_name_is_given_a_constant_twice() {
+    for (listing, program) in every_program() {
+        let names: Vec<_> = program.constants().iter().map(|c| c.0).collect();
+        let different: BTreeSet<_> = names.iter().collect();
+        assert_eq!(different.len(), names.len(), "{listing}");
+    }
+}
+
+#[test]
+fn a_missing_and_an_unknown_constant_are_errors() {
+    let mut missing = good();
+    let module = missing
+        .modules
+        .iter_mut()
+        .find(|m| !m.constants.is_empty())
+        .unwrap();
+    let (gone, _) = module.constants.remove(0);
+    let error = missing.validate(Capabilities::default()).unwrap_err();
+    match &error {
+        ShaderError::Constant { name, fault, entry } => {
+            assert_eq!((name.as_str(), *fault, *entry), (gone, "missing", "trace"));
+        }
+        other => panic!("{other}"),
+    }
+    assert!(error.to_string().contains(gone), "{error}");
+
+    let mut unknown = good();
+    unknown.modules[0].constants.push(("NOBODY_ASKED", 1.0));
+    let error = unknown.validate(Capabilities::default()).unwrap_err();
+    match error {
+        ShaderError::Constant { name, fault, .. } => {
+            assert_eq!((name.as_str(), fault), ("NOBODY_ASKED", "unknown"));
+        }
+        other => panic!("{other}"),
+    }
+}
+
+const PATH: &str = "tests/broken.wgsl";
+
+/// Texts with one fault each, and the lines that may be named for it. Parsing knows the
+/// line; validation, which works on whole functions, may name any from the function's
+/// first.
+const BROKEN: &[(&str, RangeInclusive<usize>)] = &[
+    // A syntax error.
+    ("// one\n// two\nfn broken( {\n}\n", 3..=3),
+    // A name that nothing declares.
+    ("fn broken() -> f32 {\n    return nowhere;\n}\n", 2..=2),
+    // An assignment to a value.
+    (
+        "\n\nfn broken() {\n    let a = 1.0;\n    a = 2.0;\n}\n",
+        5..=5,
+    ),
+    // A type that does not fit, which only validation finds.
+    (
+        "\nfn broken() -> f32 {\n    let a = 1u;\n    return a;\n}\n\n",
+        2..=4,
+    ),
+];
+
+#[test]
+fn a_fault_points_to_its_file_and_line_wherever_the_module_is_joined() {
+    for (source, expected) in BROKEN {
+        for at in [0, 3, good().modules.len()] {
+            let mut program = good();
+            let module = Module {
+                path: PATH,
+                source,
+                constants: Vec::new(),
+            };
+            program.modules.insert(at, module);
+            let error = program.validate(Capabilities::default()).unwrap_err();
+            let shown = error.to_string();
+            let ShaderError::Text { path, line, .. } = error else {
+                panic!("{shown}");
+            };
+            assert_eq!(path, PATH, "{shown}");
+            assert!(expected.contains(&line), "{shown}");
+            assert!(shown.starts_with(&format!("{PATH}:{line}: ")), "{shown}");
+        }
+    }
+}
+
+#[test]
+fn every_line_of_a_joined_text_is_located_in_its_file() {
+    let program = good();
+    let source = program.source();
+    let mut expected = Vec::new();
+    for module in &program.modules {
+        for (i, text) in module.source.lines().enumerate() {
+            expected.push((module.path, i + 1, text));
+        }
+    }
+    assert_eq!(source.lines().count(), expected.len());
+    for (i, (text, want)) in source.lines().zip(&expected).enumerate() {
+        let (path, line) = program.locate(i + 1);
+        assert_eq!((path, line, text), *want);
+    }
+}
+
+fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files_below(&path, found);
+        } else {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_file_of_shaders_is_joined_by_some_program() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut found = Vec::new();
+    files_below(&root.join("wgsl"), &mut found);
+    assert!(found.len() > 20, "only {} files below wgsl", found.len());
+    let mut joined = BTreeSet::new();
+    for program in every_program().values() {
+        joined.extend(paths(program));
+        joined.extend(paths(&program.in_f64()));
+    }
+    for file in &found {
+        let path = file.strip_prefix(root).unwrap().to_str().unwrap();
+        let path = path.replace('\\', "/");
+        assert!(joined.contains(path.as_str()), "no program joins {path}");
+        // Joining is concatenation: a last line without its end would run on.
+        let text = std::fs::read_to_string(file).unwrap();
+        assert!(text.ends_with('\n'), "{path} does not end its last line");
+        assert!(text.starts_with("// "), "{path} does not say what it is");
+    }
+    assert_eq!(joined.len(), found.len());
+}
+
+/// The `mandelbox` preset with its Mandelbox changed.
+fn changed(change: impl FnOnce(&mut Mandelbox)) -> Plan {
+    let mut formula = Mandelbox::default();
+    change(&mut formula);
+    let mut plan = preset("mandelbox");
+    plan.subject = distance(Shape::Mandelbox(formula));
+    plan
+}
+
+#[test]
+fn a_rotation_by_nothing_is_no_rotation() {
+    let none = changed(|_| {}).explain();
+    let whole_turns = changed(|m| m.rotation = DVec3::new(360.0, 0.0, -360.0)).explain();
+    assert_eq!(none, whole_turns);
+    assert!(none.contains("wgsl/formula/rotation_none.wgsl"));
+    assert!(!none.contains("wgsl/formula/rotation.wgsl"));
+    let turned = changed(|m| m.rotation = DVec3::new(0.0, 0.0, 1.0)).explain();
+    assert_ne!(none, turned);
+    assert!(turned.contains("wgsl/formula/rotation.wgsl"));
+    assert!(!turned.contains("wgsl/formula/rotation_none.wgsl"));
+}
+
+#[test]
+fn features_that_are_off_are_not_joined() {
+    // Feature by feature: the file that serves it and the one that stands in.
+    let cases: [(fn(&mut Plan, bool), &str, &str); 3] = [
+        (
+            |p, on| p.look.shadow = on,
+            "wgsl/pass/shadow.wgsl",
+            "wgsl/pass/shadow_off.wgsl",
+        ),
+        (
+            |p, on| p.look.occlusion = f64::from(u8::from(on)),
+            "wgsl/pass/occlusion.wgsl",
+            "wgsl/pass/occlusion_off.wgsl",
+        ),
+        (
+            |p, on| p.look.fog = f64::from(u8::from(on)),
+            "wgsl/pass/fog.wgsl",
+            "wgsl/pass/fog_off.wgsl",
+        ),
+    ];
+    for (set, real, stand_in) in cases {
+        for on in [true, false] {
+            let mut plan = preset("mandelbox");
+            set(&mut plan, on);
+            let text = plan.explain();
+            assert_eq!(text.contains(real), on, "{real}\n{text}");
+            assert_eq!(text.contains(stand_in), !on, "{stand_in}\n{text}");
+        }
+    }
+}
+
+#[test]
+fn work_is_counted_only_where_it_is_asked_for() {
+    let plan = preset("mandelbox");
+    assert!(!plan.explain().contains("wgsl/counters.wgsl"));
+    let scene = plan.scene();
+    for pass in plan.passes() {
+        for count in [false, true] {
+            let extras = Extras {
+                count,
+                ..Extras::default()
+            };
+            let program = plan.program(&scene, pass, extras);
+            let counted = count && pass != Pass::Color;
+            assert_eq!(has(&program, "wgsl/counters.wgsl"), counted);
+            assert_eq!(has(&program, "wgsl/counters_off.wgsl"), !counted);
+        }
+    }
+}
+
+#[test]
+fn what_a_slider_moves_compiles_nothing_new() {
+    let still = preset("mandelbox");
+    let mut moved = still.clone();
+    moved.camera.eye = DVec3::new(3.0, -9.0, 1.0);
+    moved.camera.fov = 70.0;
+    moved.march.detail = 0.3;
+    moved.march.shell = 0.7;
+    moved.march.fudge = vec![0.9, 0.5];
+    moved.march.steps = 77;
+    moved.look.key = 1.0;
+    moved.look.occlusion *= 0.5;
+    moved.look.palette = vec![DVec3::ONE; 3];
+    moved.size = [33, 17];
+    moved.subject = distance(Shape::Mandelbox(Mandelbox {
+        scale: -1.7,
+        min_radius: 0.3,
+        julia_constant: DVec3::X,
+        ..Mandelbox::default()
+    }));
+    assert_eq!(programs_of(&still), programs_of(&moved));
+    // But a feature does.
+    moved.look.shadow = !moved.look.shadow;
+    assert_ne!(programs_of(&still), programs_of(&moved));
+}
+
+#[test]
+fn the_rule_of_the_slides_takes_the_place_of_the_exact_one() {
+    use conemarch::mode::Mode;
+    let mut plan = preset("mandelbox");
+    for (mode, exact) in [(Mode::Safe, true), (Mode::SlidesDeep, false)] {
+        plan.march.mode = mode;
+        let text = plan.explain();
+        assert_eq!(text.contains("wgsl/cone.wgsl"), exact);
+        assert_eq!(text.contains("wgsl/cone_slides.wgsl"), !exact);
+    }
+}
+
+#[test]
+fn the_mandelbox_is_explained() {
+    insta::assert_snapshot!(preset("mandelbox").explain(), @r"
+    1280 x 720, mode safe
+    mandelbox: 14 iterations, lipschitz 1
+    passes
+      march 1/16       80 x 45     steps 256
+      march 1/8       160 x 90     steps 256
+      march 1/4       320 x 180    steps 256
+      march 1/2       640 x 360    steps 256
+      trace          1280 x 720    steps 256
+      color          1280 x 720    steps -
+    programs
+      march
+        wgsl/real.wgsl
+        wgsl/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
+        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  HIT_CARRIES_MARK=0
+        wgsl/formula/mandelbox.wgsl  MANDELBOX_JULIA=0  MANDELBOX_CLASSIC=0
+        wgsl/formula/rotation_none.wgsl
+        wgsl/view.wgsl
+        wgsl/pass/shared.wgsl
+        wgsl/counters_off.wgsl
+        wgsl/pass/queue.wgsl
+        wgsl/pass/march.wgsl
+      trace
+        wgsl/real.wgsl
+        wgsl/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
+        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  HIT_CARRIES_MARK=0
+        wgsl/formula/mandelbox.wgsl  MANDELBOX_JULIA=0  MANDELBOX_CLASSIC=0
+        wgsl/formula/rotation_none.wgsl
+        wgsl/view.wgsl
+        wgsl/pass/shared.wgsl
+        wgsl/counters_off.wgsl
+        wgsl/pass/queue.wgsl
+        wgsl/pass/trace.wgsl
+      color
+        wgsl/real.wgsl
+        wgsl/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
+        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  HIT_CARRIES_MARK=0
+        wgsl/formula/mandelbox.wgsl  MANDELBOX_JULIA=0  MANDELBOX_CLASSIC=0
+        wgsl/formula/rotation_none.wgsl
+        wgsl/view.wgsl
+        wgsl/pass/shared.wgsl
+        wgsl/counters_off.wgsl
+        wgsl/pass/look.wgsl
+        wgsl/pass/shadow.wgsl
+        wgsl/pass/occlusion.wgsl
+        wgsl/pass/fog_off.wgsl
+        wgsl/pass/color.wgsl  COLOR_KEEPS_NORMALS=0
+    ");
+}
