@@ -84,8 +84,6 @@ pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 /// Steps of the longest dispatch: with a block of a million pixels still well under
 /// the time after which drivers give a device up.
 const MOST_STEPS_AT_ONCE: u32 = 256;
-/// Largest number of workgroups along an axis.
-const MOST_GROUPS: u32 = 65_535;
 /// A state that no shader writes: what unwritten pixels are found by.
 const UNWRITTEN: u32 = u32::MAX;
 
@@ -98,6 +96,8 @@ pub struct Renderer {
     kernels: Vec<(Program, Rc<Kernel>)>,
     pool: HashMap<String, (u64, Rc<wgpu::Buffer>)>,
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
+    /// Pixels that the last trace pass visited; all others are sky.
+    traced: usize,
 }
 
 /// The buffers of one block.
@@ -127,6 +127,7 @@ impl Renderer {
             kernels: Vec::new(),
             pool: HashMap::new(),
             queries,
+            traced: 0,
         }
     }
 
@@ -236,17 +237,12 @@ impl Renderer {
             let raw = Rc::new(uniform(&self.device, "level", bytes_of(level)));
             bound.insert("level".into(), raw);
         }
+        let list = |cells: [u32; 2]| COUNT_AT + 4 + 4 * u64::from(cells[0]) * u64::from(cells[1]);
         // Two queues take turns: one is read while the other is filled.
-        let queues = [0, 1].map(|i| {
-            let bytes = COUNT_AT + 4 + 4 * u64::from(setup.cells[0]) * u64::from(setup.cells[1]);
-            self.storage(&format!("queue {i}"), bytes)
-        });
-        let mut groups = Vec::new();
-        for i in 0..2 {
-            bound.insert("turn".into(), queues[i].clone());
-            bound.insert("queue".into(), queues[1 - i].clone());
-            groups.push(kernel.bind(&self.device, |name| bound.get(name).map(|b| &**b))?);
-        }
+        let queues = [0, 1].map(|i| self.storage(&format!("queue {i}"), list(setup.cells)));
+        let children = self.storage(&format!("children {at}"), list(setup.children()));
+        clear_count(&self.device, &children);
+        bound.insert("next_cells".into(), children.clone());
         self.device.wait()?;
         let start = Instant::now();
         let mut gpu_ns = None;
@@ -256,16 +252,24 @@ impl Renderer {
             limit: setup.limit,
             row: 0,
             parent_width: setup.parent_width,
+            listed: 0,
         };
         let mut count = setup.cells.map(|c| c.div_ceil(8));
-        for even in [true, false].into_iter().cycle() {
-            let (bind, read, filled) = if even {
-                (&groups[0], &queues[0], &queues[1])
-            } else {
-                (&groups[1], &queues[1], &queues[0])
-            };
-            self.device.queue.write_buffer(read, 0, bytes_of(&now));
-            self.dispatch(kernel, bind, count, filled, job.extras.time)?;
+        let (mut read, mut filled) = (queues[0].clone(), queues[1].clone());
+        let mut visited = setup.cells[0] as usize * setup.cells[1] as usize;
+        if setup.parent_width > 0 {
+            read = self.storage(&format!("children {}", at - 1), 0);
+            let left = list_length(&self.device, &read)?;
+            visited = left as usize;
+            count = now.spread(left);
+        }
+        while count[0] > 0 {
+            bound.insert("turn".into(), read.clone());
+            bound.insert("queue".into(), filled.clone());
+            let groups = kernel.bind(&self.device, |name| bound.get(name).map(|b| &**b))?;
+            self.device.queue.write_buffer(&read, 0, bytes_of(&now));
+            clear_count(&self.device, &filled);
+            self.dispatch(kernel, &groups, count, job.extras.time)?;
             if job.extras.time {
                 let ns = self.read_timestamps()?;
                 gpu_ns = ns.map(|ns| gpu_ns.unwrap_or(0.0) + ns);
@@ -274,15 +278,13 @@ impl Renderer {
             if now.done >= now.limit {
                 break;
             }
-            let left = read_raw::<[u32; 6]>(&self.device, filled, 1)?;
-            let left = left.first().map_or(0, |head| head[5]);
-            if left == 0 {
-                break;
-            }
             now.chunk = (now.chunk * 4).min(MOST_STEPS_AT_ONCE);
-            let workgroups = left.div_ceil(64);
-            now.row = workgroups.min(MOST_GROUPS);
-            count = [now.row, workgroups.div_ceil(now.row)];
+            count = now.spread(list_length(&self.device, &filled)?);
+            read = filled;
+            filled = queues[usize::from(Rc::ptr_eq(&read, &queues[0]))].clone();
+        }
+        if pass == Pass::Trace {
+            self.traced = visited;
         }
         let figures = &mut frame.passes[at];
         figures.cells += u64::from(setup.cells[0]) * u64::from(setup.cells[1]);
@@ -293,20 +295,18 @@ impl Renderer {
         Ok(())
     }
 
-    /// One dispatch, with the queue that it fills emptied before, and the wait for it.
+    /// One dispatch, and the wait for it.
     fn dispatch(
         &self,
         kernel: &Kernel,
         groups: &[wgpu::BindGroup],
         count: [u32; 2],
-        filled: &wgpu::Buffer,
         timed: bool,
     ) -> Result<(), DeviceError> {
         let mut encoder = self
             .device
             .device
             .create_command_encoder(&Default::default());
-        encoder.clear_buffer(filled, COUNT_AT, Some(4));
         let queries = self.queries.as_ref().filter(|_| timed);
         let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: None,
@@ -454,8 +454,9 @@ impl Renderer {
             };
             if tracing {
                 let states: Vec<u32> = read_raw(device, state, count)?;
-                let wrong = states.iter().filter(|s| State::from_code(**s).is_none());
-                let pixels = wrong.count();
+                let unknown = states.iter().filter(|s| State::from_code(**s).is_none());
+                // What no cone listed is sky; what was listed must have been written.
+                let pixels = unknown.count().abs_diff(area - self.traced);
                 if pixels > 0 {
                     return Err(RenderError::Unwritten {
                         device: device.info.name.clone(),
@@ -464,11 +465,11 @@ impl Renderer {
                 }
                 let mut depth: Vec<f32> = read_raw(device, front, count)?;
                 for (t, s) in depth.iter_mut().zip(&states) {
-                    if *s == State::Sky as u32 {
+                    if *s == State::Sky as u32 || *s == UNWRITTEN {
                         *t = f32::INFINITY;
                     }
                 }
-                let states: Vec<u8> = states.into_iter().map(|s| s as u8).collect();
+                let states: Vec<u8> = states.into_iter().map(seen).collect();
                 to.copy(&depth, &mut frame.depth);
                 to.copy(&states, &mut frame.state);
                 to.copy(&work, &mut frame.work);
@@ -478,8 +479,16 @@ impl Renderer {
             to.copy(&work, &mut layer.work);
             if job.extras.levels {
                 let states: Vec<u32> = read_raw(device, state, count)?;
-                let states: Vec<u8> = states.into_iter().map(|s| s.min(255) as u8).collect();
-                to.copy(&read_raw::<f32>(device, front, count)?, &mut layer.front);
+                let mut fronts: Vec<f32> = read_raw(device, front, count)?;
+                for (f, _) in fronts
+                    .iter_mut()
+                    .zip(&states)
+                    .filter(|(_, s)| **s == UNWRITTEN)
+                {
+                    *f = f32::MAX;
+                }
+                let states: Vec<u8> = states.into_iter().map(seen).collect();
+                to.copy(&fronts, &mut layer.front);
                 to.copy(&states, &mut layer.state);
             }
         }
@@ -521,6 +530,11 @@ struct Setup {
 }
 
 impl Setup {
+    /// Cells of the next level, none after the last.
+    fn children(&self) -> [u32; 2] {
+        self.level.map_or([0, 0], |level| level.children)
+    }
+
     fn new(job: &Job<'_>, pass: Pass) -> Self {
         let cells_of = |divisor: u32| job.block.size.map(|n| n.div_ceil(divisor));
         let parents = |divisor: u32| {
@@ -542,6 +556,7 @@ impl Setup {
                         fudge: level.fudge as f32,
                         origin: job.block.origin.map(|o| o / level.divisor),
                         cells,
+                        children: cells_of(level.divisor / 2),
                     }),
                 }
             }
@@ -579,6 +594,27 @@ impl Target {
             to[start..start + width].copy_from_slice(row);
         }
     }
+}
+
+/// A state as it goes into a frame: cells that were never visited have a sky parent.
+fn seen(state: u32) -> u8 {
+    if state == UNWRITTEN {
+        State::Sky as u8
+    } else {
+        state as u8
+    }
+}
+
+/// Empties a list.
+fn clear_count(device: &Device, list: &wgpu::Buffer) {
+    device.queue.write_buffer(list, COUNT_AT, &[0; 4]);
+}
+
+/// Number of cells in a list.
+fn list_length(device: &Device, list: &wgpu::Buffer) -> Result<u32, DeviceError> {
+    const WORDS: usize = COUNT_AT as usize / 4 + 1;
+    let head: Vec<[u32; WORDS]> = read_raw(device, list, 1)?;
+    Ok(head.first().map_or(0, |head| head[WORDS - 1]))
 }
 
 /// A frame of the right sizes, with nothing in it yet.

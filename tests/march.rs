@@ -71,6 +71,8 @@ fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
     });
     plan.camera = camera.clone();
     plan.march.coarsest = 32;
+    // Rays that graze a ball creep for hundreds of steps; none is to end half-way.
+    plan.march.steps = 2048;
     plan.size = size;
     plan
 }
@@ -314,9 +316,9 @@ fn blocks_and_chunks_never_change_a_bit() {
                 // Not assert_eq: it would print a million numbers.
                 assert!(whole == cut, "{what}");
             }
-            // One more or less of anything that matters does change bits.
+            // Anything that matters does change bits.
             let mut other = plan.clone();
-            other.march.detail = 1.000_1;
+            other.camera.fov += 1e-4;
             assert!(whole != bits(&render(&other, extras)));
         }
     }
@@ -324,10 +326,12 @@ fn blocks_and_chunks_never_change_a_bit() {
 
 #[test]
 fn levels_halve_and_children_of_the_sky_do_nothing() {
+    let mut far = preset("bench-far", [333, 217]);
+    far.camera.eye *= 2.0;
     for mut plan in [
-        preset("bench-far", [333, 217]),
+        far,
         balls(0.05, &cameras()[0], [333, 217]),
-        slab(&cameras()[4], [333, 217]),
+        slab(&cameras()[0], [333, 217]),
     ] {
         plan.march.coarsest = 32;
         let frame = render(&plan, COUNTED);
@@ -359,8 +363,11 @@ fn levels_halve_and_children_of_the_sky_do_nothing() {
 /// that the other executor renders, and that the equations give.
 #[test]
 fn cells_cut_by_the_image_are_complete() {
-    // Straight down on the slab, which fills the image, and balls all over it.
-    let down = camera([0.3, 0.2, 4.0], [0.0, 0.1, 0.0]);
+    // Straight down on the slab through so narrow a lens that it fills every image.
+    let down = Camera {
+        fov: 1.0,
+        ..camera([0.3, 0.2, 3.0], [0.0, 0.1, 0.0])
+    };
     for size in [[1366, 768], [1600, 1050], [33, 17], [200, 1], [1, 1]] {
         for plan in [slab(&down, size), balls(0.05, &cameras()[2], size)] {
             let frame = render(&plan, LEVELS);
@@ -406,9 +413,8 @@ fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
         assert_eq!(frame.depth[i].is_finite(), limited(&frame, i));
         assert_ne!(frame.radiance[i], [1.0, 0.0, 1.0]);
     }
-    // Started at the bounds with a generous threshold, some first samples do hit.
+    // Started at the bounds, which this surface touches, first samples do hit.
     plan.march.clip = Some(true);
-    plan.march.detail = 100.0;
     plan.look.flag_unconverged = true;
     for steps in [1, 2, 3] {
         plan.march.steps = steps;

@@ -11,29 +11,17 @@ mod common {
     pub mod plans;
 }
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
-use common::plans::{distance, plans, preset, programs_of};
+use common::plans::{distance, every_program, preset, programs_of};
 use conemarch::formula::Shape;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::shader::{Module, Program, ShaderError};
 use glam::DVec3;
 use wgpu::naga::valid::Capabilities;
-
-/// All different programs, each under its entry and listing.
-fn every_program() -> BTreeMap<String, Program> {
-    let mut all = BTreeMap::new();
-    for plan in plans() {
-        for program in programs_of(&plan) {
-            let listing = format!("{}\n{}", program.entry, program.describe());
-            all.entry(listing).or_insert(program);
-        }
-    }
-    all
-}
 
 /// A program known to be good, for tests that break a copy of it.
 fn good() -> Program {

@@ -104,7 +104,7 @@ impl Formula for Balls {
         Ok(())
     }
 
-    fn modules(&self) -> Vec<Module> {
+    fn modules(&self, _iterations: u32) -> Vec<Module> {
         vec![wgsl!("formula/balls.wgsl")]
     }
 

@@ -1,4 +1,4 @@
-//! What still moves, packed for the next dispatch of a pass.
+//! Which cells a dispatch visits: all, the listed children, or what still moves.
 //! Twin: `wgsl/pass/queue.wgsl`. The CPU executor runs every cell to its end at once,
 //! so there are no functions here.
 
@@ -22,6 +22,21 @@ pub struct Turn {
     pub row: u32,
     /// Cells per row of the parent level in the block; 0 where there is none.
     pub parent_width: u32,
+    /// 1 to visit the listed cells, 0 to visit all.
+    pub listed: u32,
+}
+
+/// Largest number of workgroups along an axis.
+const MOST_GROUPS: u32 = 65_535;
+
+impl Turn {
+    /// Turns to a list of so many cells: the workgroups to dispatch, none for none.
+    pub fn spread(&mut self, cells: u32) -> [u32; 2] {
+        let groups = cells.div_ceil(64);
+        self.listed = 1;
+        self.row = groups.clamp(1, MOST_GROUPS);
+        [groups.min(MOST_GROUPS), groups.div_ceil(self.row)]
+    }
 }
 
 /// Offset of the count in bytes; the cells follow it.

@@ -164,24 +164,26 @@ impl Distance {
         (inside.max(outside), ball)
     }
 
-    /// The part of a ray within `margin` of the bounds, or a little more, as
-    /// (near, far); near > far if it misses.
-    pub fn bounds_interval(&self, ray: &Beam, margin: f64) -> (f64, f64) {
+    /// The part of a ray within the hit threshold of the bounds, or a little more, as
+    /// (near, far); near > far if it misses. The threshold grows along the ray, so the
+    /// faces lean outwards by its slope.
+    pub fn bounds_interval(&self, ray: &Beam) -> (f64, f64) {
         let p = self.eye - self.bounds.centre + ray.origin;
+        let room = self.bounds.half + DVec3::splat(self.detail * ray.grain0);
+        let lean = self.detail * ray.grain;
         let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
         for i in 0..3 {
-            let a = if ray.axis[i].abs() < 1e-18 {
-                1e-18_f64.copysign(ray.axis[i])
-            } else {
-                ray.axis[i]
-            };
-            let (one, two) = (
-                (-self.bounds.half[i] - margin - p[i]) / a,
-                (self.bounds.half[i] + margin - p[i]) / a,
-            );
-            near = near.max(one.min(two));
-            far = far.min(one.max(two));
+            let a = ray.axis[i];
+            // A ray as flat as the lean may stay between two faces for ever.
+            if a.abs() <= lean + 1e-9 {
+                continue;
+            }
+            let low = (-room[i] - p[i]) / (a + lean);
+            let high = (room[i] - p[i]) / (a - lean);
+            near = near.max(low.min(high));
+            far = far.min(low.max(high));
         }
+        let margin = self.detail * footprint(ray, self.far);
         let b = p.dot(ray.axis);
         let off = p - b * ray.axis;
         let q = (self.bounds.radius + margin).powi(2) - off.length_squared();
@@ -205,7 +207,7 @@ impl Twin for Distance {
                 "HIT_CARRIES_MARK" = 0.0
             ),
         ];
-        all.extend(self.shape.modules());
+        all.extend(self.shape.modules(self.iterations));
         all
     }
 
@@ -269,13 +271,8 @@ impl Solid for Distance {
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Work) -> Walk {
-        let margin = |t| self.detail * footprint(ray, t);
-        let (near, far) = self.bounds_interval(ray, margin(self.far.min(t_max)));
-        let mut t = front;
-        if self.clip {
-            // The margin where the ray enters, not the wider one where it might leave.
-            t = t.max(self.bounds_interval(ray, margin(near.max(0.0))).0);
-        }
+        let (near, far) = self.bounds_interval(ray);
+        let t = if self.clip { front.max(near) } else { front };
         Walk {
             t,
             radius: 0.0,

@@ -1,6 +1,8 @@
 //! Every plan whose shaders can differ: presets, formulas with each key moved, the
 //! slab, all modes, and looks with and without their features.
 
+use std::collections::BTreeMap;
+
 use conemarch::formula::Shape;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
 use conemarch::mode::MODES;
@@ -61,7 +63,7 @@ fn with_each_key_moved(subject: &Subject) -> Vec<Subject> {
 }
 
 /// Mandelboxes with every combination of rotation, Julia mode and estimate.
-pub fn mandelboxes() -> Vec<Mandelbox> {
+fn mandelboxes() -> Vec<Mandelbox> {
     let mut all = Vec::new();
     for bits in 0..8_u32 {
         all.push(Mandelbox {
@@ -90,7 +92,7 @@ fn subjects() -> Vec<Subject> {
 }
 
 /// All plans: presets and subjects, in every mode and with every feature of the look.
-pub fn plans() -> Vec<Plan> {
+fn plans() -> Vec<Plan> {
     let presets = BUILTIN.iter().map(|(name, _)| preset(name));
     let first: Vec<Plan> = presets
         .chain(subjects().into_iter().map(Plan::new))
@@ -127,6 +129,18 @@ pub fn programs_of(plan: &Plan) -> Vec<Program> {
             if !all.contains(&program) {
                 all.push(program);
             }
+        }
+    }
+    all
+}
+
+/// All different programs, each under its entry and listing.
+pub fn every_program() -> BTreeMap<String, Program> {
+    let mut all = BTreeMap::new();
+    for plan in plans() {
+        for program in programs_of(&plan) {
+            let listing = format!("{}\n{}", program.entry, program.describe());
+            all.entry(listing).or_insert(program);
         }
     }
     all

@@ -44,7 +44,8 @@ fn color(
     let s = state[index];
     var c = sky(ray.axis);
     var n = vec3<f32>(0.0);
-    if s != STATE_SKY {
+    // Pixels that no cone listed were never written: they are sky too.
+    if s == STATE_HIT || s == STATE_UNCONVERGED {
         var hit = Hit(depth[index], 0u, vec2<f32>(0.0));
         if HIT_CARRIES_MARK {
             let mark = marks[index];

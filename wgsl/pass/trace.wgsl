@@ -25,11 +25,6 @@ fn trace(
         var f = 0.0;
         if turn.parent_width > 0u {
             f = parent_front[(local.y / 2u) * turn.parent_width + local.x / 2u];
-            if f > bounds_far() {
-                depth[index] = f;
-                state[index] = STATE_SKY;
-                return;
-            }
         }
         walk = begin(ray, f, bounds_far());
     }

@@ -72,21 +72,25 @@ fn bounds_far() -> f32 {
     return distance_scene.far;
 }
 
-/// The part of a ray within `margin` of the bounds, or a little more, as (near, far);
-/// near > far if it misses.
-fn bounds_interval(ray: Beam, margin: f32) -> vec2<f32> {
+/// The part of a ray within the hit threshold of the bounds, or a little more, as
+/// (near, far); near > far if it misses. The threshold grows along the ray, so the
+/// faces lean outwards by its slope.
+fn bounds_interval(ray: Beam) -> vec2<f32> {
     let p = (distance_scene.eye - distance_scene.centre) + ray.origin;
-    // A vanishing component divides to a huge number, never to an infinity.
-    let tiny = select(vec3<f32>(-1e-18), vec3<f32>(1e-18), ray.axis >= vec3<f32>(0.0));
-    let a = select(ray.axis, tiny, abs(ray.axis) < vec3<f32>(1e-18));
-    // Widened by the rounding of p and of the quotient.
-    let room = distance_scene.half + margin + 1e-6 * (abs(p) + distance_scene.half);
-    let one = (-room - p) / a;
-    let two = (room - p) / a;
-    let low = min(one, two);
-    let high = max(one, two);
-    var near = max(low.x, max(low.y, low.z));
-    var far = min(high.x, min(high.y, high.z));
+    // Widened by the rounding of p and of the quotients.
+    let room = distance_scene.half + distance_scene.detail * ray.grain0
+        + 1e-6 * (abs(p) + distance_scene.half);
+    let lean = distance_scene.detail * ray.grain;
+    // A ray as flat as the lean may stay between two faces for ever: its quotients are
+    // made huge, with no infinity in between.
+    let flat = abs(ray.axis) <= vec3<f32>(lean + 1e-7);
+    let low = select((-room - p) / (ray.axis + lean), vec3<f32>(-1e30), flat);
+    let high = select((room - p) / (ray.axis - lean), vec3<f32>(1e30), flat);
+    let one = min(low, high);
+    let two = max(low, high);
+    let near = max(one.x, max(one.y, one.z));
+    let far = min(two.x, min(two.y, two.z));
+    let margin = distance_scene.detail * footprint(ray, distance_scene.far);
     let b = dot(p, ray.axis);
     let r = (distance_scene.radius + margin) * (1.0 + 1e-6);
     // Squared distance of the ray's line from the centre, without b^2 - |p|^2.
@@ -95,9 +99,8 @@ fn bounds_interval(ray: Beam, margin: f32) -> vec2<f32> {
     if q < 0.0 {
         return vec2<f32>(1.0, -1.0);
     }
-    near = max(near, -b - sqrt(q) * (1.0 + 1e-6));
-    far = min(far, -b + sqrt(q) * (1.0 + 1e-6));
-    return vec2<f32>(near, far);
+    let span = sqrt(q) * (1.0 + 1e-6);
+    return vec2<f32>(max(near, -b - span), min(far, span - b));
 }
 
 /// The new proven front of a cone, and whether it is worth asking again.
@@ -116,14 +119,10 @@ fn advance(cone: Beam, front: f32) -> Advance {
 }
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
-    let far = min(t_max, bounds_far());
-    let margin = distance_scene.detail * footprint(ray, far);
-    let span = bounds_interval(ray, margin);
+    let span = bounds_interval(ray);
     var t = front;
     if distance_scene.clip == 1u {
-        // The margin where the ray enters, not the wider one where it might leave.
-        let near = bounds_interval(ray, distance_scene.detail * footprint(ray, max(span.x, 0.0))).x;
-        t = max(front, near);
+        t = max(front, span.x);
     }
     var end = min(span.y, t_max);
     if span.x > span.y {

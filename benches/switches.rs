@@ -1,0 +1,84 @@
+//! What each switch of a preset costs: `cargo bench --bench switches`.
+//!
+//! Renders the default preset with one switch changed at a time, in turn with the
+//! unchanged one, and prints the ratio of medians for march and trace and for colour.
+//! A ratio of 1 for a switch that is off is what "costs nothing" means.
+
+use anyhow::{Result, bail};
+use conemarch::command::executor::Executor;
+use conemarch::frame::Frame;
+use conemarch::gpu::device::Choice;
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset;
+
+/// A changed setting: its name, and how it is made from the plan.
+type Switch = (&'static str, fn(&mut Plan, &mut Extras));
+
+const SWITCHES: &[Switch] = &[
+    ("nothing changed", |_, _| {}),
+    ("shadow off", |p, _| p.look.shadow = false),
+    ("occlusion off", |p, _| p.look.occlusion = 0.0),
+    ("fog on", |p, _| p.look.fog = 0.3),
+    ("normals kept", |_, e| e.normals = true),
+    ("work counted", |_, e| e.count = true),
+    ("levels kept", |_, e| e.levels = true),
+    ("relaxation off", |p, _| {
+        p.march.relaxation = conemarch::scene::distance::Relaxation::Off;
+    }),
+    ("no cones", |p, _| p.march.coarsest = 1),
+    ("cones from 1/32", |p, _| p.march.coarsest = 32),
+    ("cones from 1/8", |p, _| p.march.coarsest = 8),
+    ("rotation by 0", |p, _| rotate(p, 0.0)),
+    ("rotation by 1 degree", |p, _| rotate(p, 1.0)),
+];
+
+/// Warm runs that a median is taken of.
+const RUNS: usize = 7;
+
+fn rotate(plan: &mut Plan, degrees: f64) {
+    use conemarch::{formula::Shape, plan::Subject};
+    if let Subject::Distance {
+        shape: Shape::Mandelbox(mandelbox),
+        ..
+    } = &mut plan.subject
+    {
+        mandelbox.rotation.z = degrees;
+    }
+}
+
+fn main() -> Result<()> {
+    let mut plan = preset::load("mandelbox", &[])?.plan;
+    plan.size = [640, 360];
+    let (mut executor, who) = Executor::open(&Choice::Auto)?;
+    println!("Switches of `mandelbox` at 640 x 360 on {who}\n");
+    println!("| switch | march and trace | colour |\n|---|---:|---:|");
+    for (name, change) in SWITCHES {
+        let (mut changed, mut extras) = (plan.clone(), Extras::default());
+        change(&mut changed, &mut extras);
+        let mut ratios = [Vec::new(), Vec::new()];
+        for run in 0..=RUNS {
+            let base = times(&executor.render(&plan, Extras::default(), &mut |_| true)?);
+            let other = times(&executor.render(&changed, extras, &mut |_| true)?);
+            if run > 0 {
+                for i in 0..2 {
+                    ratios[i].push(other[i] / base[i]);
+                }
+            }
+        }
+        let [march, color] = ratios.map(|mut r| {
+            r.sort_by(f64::total_cmp);
+            r[r.len() / 2]
+        });
+        if !(march.is_finite() && color.is_finite()) {
+            bail!("{name}: a pass took no time at all");
+        }
+        println!("| {name} | {march:.2} | {color:.2} |");
+    }
+    Ok(())
+}
+
+/// March and trace, and colour, in milliseconds.
+fn times(frame: &Frame) -> [f64; 2] {
+    let color = frame.passes.last().map_or(0.0, |p| p.wall_ms);
+    [frame.march_ms, color]
+}

@@ -1,0 +1,250 @@
+//! Choosing a device, losing it, and stopping on request: an error that says what was
+//! lost and what would do, never a panic and never a frame.
+#![allow(
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "a test fails by panicking, and has no readers of its interface"
+)]
+
+mod adapter;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use conemarch::gpu::device::{Adapters, Choice, DeviceError, kind};
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset::load;
+use conemarch::render::{RenderError, Renderer};
+
+fn small() -> Plan {
+    let mut plan = load("mandelbox", &[]).unwrap().plan;
+    plan.size = [64, 36];
+    plan
+}
+
+/// Asserts that a loss is told: what was lost, that nothing was written, what would do.
+fn assert_lost(error: &RenderError, name: &str) {
+    let RenderError::Device(DeviceError::Lost { .. }) = error else {
+        panic!("not a loss: {error:?}")
+    };
+    let said = error.to_string();
+    for part in [name, "was lost", "nothing was written", "--device cpu"] {
+        assert!(said.contains(part), "`{part}` not in: {said}");
+    }
+    assert!(!said.contains('\n'), "more than a line: {said}");
+}
+
+fn name(renderer: &Renderer) -> String {
+    renderer.device.info.name.clone()
+}
+
+fn all(renderer: &mut Renderer) -> Result<usize, RenderError> {
+    let frame = renderer.render(&small(), Extras::default(), &mut |_| true)?;
+    Ok(frame.census()[1])
+}
+
+#[test]
+fn a_device_lost_before_a_render_is_an_error_and_a_fresh_one_works() {
+    let mut renderer = adapter::open();
+    // The same renderer renders until it loses its device.
+    let hits = all(&mut renderer).unwrap();
+    assert!(hits > 500);
+    renderer.device.device.destroy();
+    for _ in 0..2 {
+        assert_lost(&all(&mut renderer).unwrap_err(), &name(&renderer));
+    }
+    // A renderer that has never rendered has kernels to compile, too.
+    let mut fresh = adapter::open();
+    fresh.device.device.destroy();
+    assert_lost(&all(&mut fresh).unwrap_err(), &name(&fresh));
+    assert_eq!(all(&mut adapter::open()).unwrap(), hits);
+}
+
+#[test]
+fn a_device_lost_between_any_two_passes_is_an_error() {
+    let passes = small().passes().len();
+    for lose_at in 1..=passes {
+        let mut renderer = adapter::open();
+        let device = renderer.device.device.clone();
+        let mut done = 0;
+        let result = renderer.render(&small(), Extras::default(), &mut |_| {
+            done += 1;
+            if done == lose_at {
+                device.destroy();
+            }
+            true
+        });
+        // After the last pass too: what it made has not been read yet.
+        assert_lost(&result.unwrap_err(), &name(&renderer));
+        assert_eq!(done, lose_at, "a pass ran on a lost device");
+    }
+}
+
+#[test]
+fn a_render_stops_on_request_after_any_pass() {
+    let mut renderer = adapter::open();
+    let passes = small().passes().len();
+    for stop_at in 1..=passes {
+        let mut done = Vec::new();
+        let result = renderer.render(&small(), Extras::default(), &mut |progress| {
+            done.push(progress.done);
+            done.len() < stop_at
+        });
+        assert!(matches!(result, Err(RenderError::Cancelled)), "{stop_at}");
+        assert_eq!(done.len(), stop_at);
+        assert!(done.is_sorted() && done.iter().all(|d| (0.0..=1.0).contains(d)));
+    }
+    // It has lost nothing by that.
+    let mut last = 0.0;
+    let frame = renderer.render(&small(), Extras::default(), &mut |progress| {
+        last = progress.done;
+        true
+    });
+    assert!(frame.unwrap().census()[1] > 500);
+    assert!((last - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_choice_that_matches_nothing_lists_what_there_is() {
+    let adapters = Adapters::find();
+    let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+    let hardware = adapters.iter().any(|a| kind(&a.get_info()) != "software");
+    let mut wrong = vec![
+        (Choice::Named("no-such".into()), "no-such"),
+        (Choice::Index(99), "99"),
+    ];
+    if !hardware {
+        wrong.push((Choice::Hardware, "gpu"));
+    }
+    for (choice, asked) in wrong {
+        let Err(error) = adapters.choose(&choice) else {
+            panic!("{choice:?} matches something")
+        };
+        let said = error.to_string();
+        assert!(said.contains(&format!("`{asked}`")), "{said}");
+        for name in names.iter().map(String::as_str).chain(["cpu"]) {
+            assert!(said.contains(name), "`{name}` not in: {said}");
+        }
+    }
+}
+
+#[test]
+fn every_adapter_can_be_chosen_by_index_and_by_part_of_its_name() {
+    let adapters = Adapters::find();
+    adapter::open();
+    for (i, wanted) in adapters.iter().enumerate() {
+        let info = wanted.get_info();
+        let chosen = |choice| {
+            let found = adapters.choose(&choice).unwrap();
+            found.map(|(a, _)| a.get_info().name)
+        };
+        assert_eq!(chosen(Choice::Index(i)), Some(info.name.clone()));
+        let part = info.name.to_uppercase().chars().take(6).collect();
+        let found = chosen(Choice::Named(part)).unwrap();
+        assert_eq!(found[..6], info.name[..6]);
+    }
+    assert!(adapters.choose(&Choice::Cpu).unwrap().is_none());
+    let (auto, why) = adapters.choose(&Choice::Auto).unwrap().unwrap();
+    let software = kind(&auto.get_info()) == "software";
+    assert_eq!(why.contains("no hardware adapter"), software, "{why}");
+}
+
+#[test]
+fn choices_are_read_from_words() {
+    let cases = [
+        ("auto", Choice::Auto),
+        ("", Choice::Auto),
+        (" gpu ", Choice::Hardware),
+        ("software", Choice::Software),
+        ("cpu", Choice::Cpu),
+        ("0", Choice::Index(0)),
+        ("17", Choice::Index(17)),
+        ("-1", Choice::Named("-1".into())),
+        ("RTX 40", Choice::Named("RTX 40".into())),
+        ("gpus", Choice::Named("gpus".into())),
+    ];
+    for (text, choice) in cases {
+        assert_eq!(Choice::read(text), choice, "`{text}`");
+    }
+}
+
+/// A folder of its own, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let name = format!("conemarch-device-{name}-{}", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn render(&self, args: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_conemarch"));
+        command.arg("render").args(args).current_dir(&self.0);
+        command.stdin(Stdio::null()).output().unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn said(output: &Output) -> Vec<String> {
+    let text = String::from_utf8_lossy(&output.stderr);
+    text.lines().map(str::to_string).collect()
+}
+
+fn assert_done(output: &Output, path: &Path) {
+    let said = said(output);
+    assert_eq!(output.status.code(), Some(0), "{said:?}");
+    // Who renders, and what has become of it; nothing else, the driver's talk included.
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(said[0].starts_with("rendering on "), "{said:?}");
+    assert!(said[0].ends_with(" (as asked)"), "{said:?}");
+    let file = path.file_name().unwrap().to_string_lossy();
+    assert!(
+        said[1].starts_with(&format!("{file}  64 x 36  ")),
+        "{said:?}"
+    );
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn the_program_renders_on_software_and_its_picture_renders_the_same_again() {
+    let folder = Folder::new("software");
+    let software = Adapters::find();
+    let software = software.choose(&Choice::Software);
+    assert!(
+        software.is_ok(),
+        "this test needs a software Vulkan adapter: `apt-get install mesa-vulkan-drivers`"
+    );
+    let (first, second) = (folder.0.join("f.png"), folder.0.join("g.png"));
+    let size = ["--size", "64x36", "--device", "software", "-o"];
+    let output = folder.render(&[&["mandelbox"], &size[..], &["f.png"]].concat());
+    assert_done(&output, &first);
+    let output = folder.render(&["f.png", "--device", "software", "-o", "g.png"]);
+    assert_done(&output, &second);
+    let bytes = std::fs::read(&first).unwrap();
+    assert!(bytes == std::fs::read(&second).unwrap());
+    // Another picture has other bytes.
+    let other = [&["mandelbox", "--set", "look.key=1"], &size[..], &["h.png"]].concat();
+    assert_eq!(folder.render(&other).status.code(), Some(0));
+    assert!(bytes != std::fs::read(folder.0.join("h.png")).unwrap());
+}
+
+#[test]
+fn the_program_says_what_there_is_instead_of_a_device_it_has_not() {
+    let folder = Folder::new("nothing");
+    for device in ["no-such", "99"] {
+        let output = folder.render(&["mandelbox", "--device", device, "-o", "f.png"]);
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(1), "{said:?}");
+        let errors: Vec<&String> = said.iter().filter(|l| l.starts_with("error: ")).collect();
+        assert_eq!(errors.len(), 1, "{said:?}");
+        assert!(errors[0].contains(device) && errors[0].contains("there is: "));
+        assert!(!folder.0.join("f.png").exists());
+    }
+}

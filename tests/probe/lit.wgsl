@@ -1,0 +1,12 @@
+// A point of a surface in its light: shadow, occlusion and fog, and the surface itself.
+
+fn answer(q: Numbers) -> Numbers {
+    let ray = Beam(vec3<f32>(0.0), q.b.xyz, 0.0, 0.0, 0.0, q.b.w);
+    let at = surface(ray, Hit(q.a.w, 0u, vec2<f32>(0.0)));
+    let grain = footprint(ray, q.a.w);
+    return Numbers(
+        vec4<f32>(at.normal, shadow(q.a.xyz, q.c.xyz, grain)),
+        vec4<f32>(at.pigment, occlusion(q.a.xyz, q.c.xyz, grain)),
+        vec4<f32>(fog(vec3<f32>(0.2, 0.5, 0.9), q.b.xyz, q.a.w), 0.0),
+    );
+}
