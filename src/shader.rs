@@ -76,9 +76,16 @@ impl Program {
         Self { entry, modules }
     }
 
-    /// The joined text.
+    /// The joined text, every module ending its last line.
     pub fn source(&self) -> String {
-        self.modules.iter().map(|m| m.source).collect()
+        let mut text = String::new();
+        for module in &self.modules {
+            text.push_str(module.source);
+            if !module.source.ends_with('\n') {
+                text.push('\n');
+            }
+        }
+        text
     }
 
     /// All override constants with their values.
@@ -118,7 +125,10 @@ impl Program {
         let mut validator =
             naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
         let info = validator.validate(&module).map_err(|e| {
-            let line = e.location(&source).map_or(1, |l| l.line_number as usize);
+            // The first span is the whole function's; the shortest is the fault's.
+            let spans = e.spans().filter(|(span, _)| span.is_defined());
+            let fault = spans.min_by_key(|(s, _)| s.to_range().map_or(usize::MAX, |r| r.len()));
+            let line = fault.map_or(1, |(s, _)| s.location(&source).line_number as usize);
             let cause = std::error::Error::source(e.as_inner())
                 .map_or_else(String::new, |c| format!(": {c}"));
             self.text_error(line, format!("{}{cause}", e.as_inner()))

@@ -59,14 +59,13 @@ fn the_list_of_presets_is_the_folder() {
     let mut files: Vec<String> = std::fs::read_dir(folder)
         .expect("the folder")
         .map(|f| {
-            f.expect("a file")
-                .file_name()
-                .into_string()
-                .expect("a name")
+            let name = f.expect("a file").file_name();
+            let name = name.into_string().expect("a name");
+            name.strip_suffix(".toml").expect("a preset").to_string()
         })
         .collect();
     files.sort();
-    let list: Vec<String> = BUILTIN.iter().map(|(n, _)| format!("{n}.toml")).collect();
+    let list: Vec<String> = BUILTIN.iter().map(|(n, _)| (*n).to_string()).collect();
     assert_eq!(
         list, files,
         "src/preset/builtin.rs and presets/ differ, or are unsorted"

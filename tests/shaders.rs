@@ -226,10 +226,12 @@ fn a_rotation_by_nothing_is_no_rotation() {
     assert!(!turned.contains("wgsl/formula/rotation_none.wgsl"));
 }
 
+/// How a feature is switched, the file that serves it, and the one that stands in.
+type Feature = (fn(&mut Plan, bool), &'static str, &'static str);
+
 #[test]
 fn features_that_are_off_are_not_joined() {
-    // Feature by feature: the file that serves it and the one that stands in.
-    let cases: [(fn(&mut Plan, bool), &str, &str); 3] = [
+    let cases: [Feature; 3] = [
         (
             |p, on| p.look.shadow = on,
             "wgsl/pass/shadow.wgsl",
@@ -330,7 +332,7 @@ fn the_mandelbox_is_explained() {
       march
         wgsl/real.wgsl
         wgsl/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
-        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  HIT_CARRIES_MARK=0
+        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/mandelbox.wgsl  MANDELBOX_JULIA=0  MANDELBOX_CLASSIC=0
         wgsl/formula/rotation_none.wgsl
         wgsl/view.wgsl
@@ -341,7 +343,7 @@ fn the_mandelbox_is_explained() {
       trace
         wgsl/real.wgsl
         wgsl/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
-        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  HIT_CARRIES_MARK=0
+        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/mandelbox.wgsl  MANDELBOX_JULIA=0  MANDELBOX_CLASSIC=0
         wgsl/formula/rotation_none.wgsl
         wgsl/view.wgsl
@@ -352,7 +354,7 @@ fn the_mandelbox_is_explained() {
       color
         wgsl/real.wgsl
         wgsl/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
-        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  HIT_CARRIES_MARK=0
+        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/mandelbox.wgsl  MANDELBOX_JULIA=0  MANDELBOX_CLASSIC=0
         wgsl/formula/rotation_none.wgsl
         wgsl/view.wgsl

@@ -73,8 +73,10 @@ fn faults(apart: &Apart) -> Vec<&'static str> {
         ("shade", apart.shade[0], SHADE),
         ("most shades", apart.shade[1], SHADE_MOST),
     ];
-    // Not `value > bound`, which no NaN would break.
-    let broken = bounds.iter().filter(|(_, v, bound)| !(v < bound));
+    // A NaN breaks every bound.
+    let broken = bounds
+        .iter()
+        .filter(|(_, v, bound)| v.is_nan() || v >= bound);
     broken.map(|(name, _, _)| *name).collect()
 }
 

@@ -170,9 +170,9 @@ fn measure(executor: &mut Executor, name: &str, plan: &Plan) -> Result<Vec<Row>,
         time: true,
         ..Extras::default()
     };
-    let mut times = vec![(Vec::new(), Vec::new()); rows.len()];
+    let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); rows.len()];
     for run in 0..=RUNS {
-        for (plan, (wall, gpu)) in plans.iter().zip(&mut times) {
+        for (plan, [wall, gpu]) in plans.iter().zip(&mut times) {
             let frame = executor.render(plan, extras, watch)?;
             // The first round warms up: programs without counters are new.
             if run > 0 {
@@ -182,7 +182,7 @@ fn measure(executor: &mut Executor, name: &str, plan: &Plan) -> Result<Vec<Row>,
             }
         }
     }
-    for (row, (mut wall, mut gpu)) in rows.iter_mut().zip(times) {
+    for (row, [mut wall, mut gpu]) in rows.iter_mut().zip(times) {
         row.wall_ms = median(&mut wall).unwrap_or(0.0);
         row.gpu_ms = median(&mut gpu);
     }
@@ -271,8 +271,8 @@ fn summary(rows: &[Row]) -> String {
     );
     for (label, _, _) in SETTINGS {
         let own = of(label);
-        let (work, time): (fn(&Row) -> f64, fn(&Row) -> f64) =
-            (|r| r.evaluations_per_pixel, |r| r.wall_ms);
+        let work = |r: &Row| r.evaluations_per_pixel;
+        let time = |r: &Row| r.wall_ms;
         text += &format!(
             "| {label:<12} | {:5.2} | {:5.2} | {:5.2} | {:5.2} |\n",
             mean(&ray, &own, work),

@@ -104,7 +104,7 @@ impl Formula for Balls {
         Ok(())
     }
 
-    fn modules(&self, _iterations: u32) -> Vec<Module> {
+    fn modules(&self) -> Vec<Module> {
         vec![wgsl!("formula/balls.wgsl")]
     }
 

@@ -53,9 +53,8 @@ pub trait Formula {
     /// Whether the parameters fit together.
     fn check(&self) -> Result<(), Fault>;
 
-    /// The WGSL twin with its constants, and stand-ins for what it does not use, for an
-    /// iteration limit.
-    fn modules(&self, iterations: u32) -> Vec<Module>;
+    /// The WGSL twin with its constants, and stand-ins for what it does not use.
+    fn modules(&self) -> Vec<Module>;
 
     /// Bytes of the uniforms, by the name of the WGSL variable. `iterations` is the
     /// limit that the estimate will run under.

@@ -122,13 +122,6 @@ impl Mandelbox {
         }
     }
 
-    /// An upper bound of w after so many iterations.
-    fn largest_w(&self, iterations: u32) -> f64 {
-        let growth = self.scale.abs() * (self.fixed_radius / self.min_radius).powi(2);
-        // The sum of 1 + g + g^2 ... stays under g^(n + 1) / (g - 1).
-        growth.powi(iterations as i32 + 1) / (growth - 1.0)
-    }
-
     fn bail2(&self) -> f64 {
         let k = self.reach() + self.largest_c() * self.tail();
         (BAIL_FACTOR * k).powi(2)
@@ -222,15 +215,13 @@ impl Formula for Mandelbox {
         Ok(())
     }
 
-    fn modules(&self, iterations: u32) -> Vec<Module> {
+    fn modules(&self) -> Vec<Module> {
         let classic = self.estimate == Estimate::Classic;
-        let guarded = self.largest_w(iterations) > 1e37;
         vec![
             wgsl!(
                 "formula/mandelbox.wgsl",
                 "MANDELBOX_JULIA" = f64::from(u8::from(self.julia)),
-                "MANDELBOX_CLASSIC" = f64::from(u8::from(classic)),
-                "MANDELBOX_GUARDED" = f64::from(u8::from(guarded))
+                "MANDELBOX_CLASSIC" = f64::from(u8::from(classic))
             ),
             Rotation::module(self.rotated().as_ref()),
         ]

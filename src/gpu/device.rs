@@ -223,9 +223,13 @@ impl Device {
                 }
             })?;
         let trouble = Arc::new(Mutex::new(None));
-        let note = |trouble: &Arc<Mutex<Option<DeviceError>>>, error| {
+        // A loss outweighs complaints, the first complaint the later ones.
+        let note = |trouble: &Arc<Mutex<Option<DeviceError>>>, error: DeviceError| {
             if let Ok(mut slot) = trouble.lock() {
-                slot.get_or_insert(error);
+                let loss = matches!(error, DeviceError::Lost { .. });
+                if loss || slot.is_none() {
+                    *slot = Some(error);
+                }
             }
         };
         let (slot, name) = (trouble.clone(), info.name.clone());
@@ -236,7 +240,9 @@ impl Device {
         });
         let (slot, name) = (trouble.clone(), info.name.clone());
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
-            let (name, why) = (name.clone(), e.to_string());
+            let text = e.to_string();
+            let words: Vec<&str> = text.split_whitespace().collect();
+            let (name, why) = (name.clone(), words.join(" "));
             note(&slot, DeviceError::Reported { name, why });
         }));
         let timed = features.contains(Features::TIMESTAMP_QUERY);
@@ -270,10 +276,23 @@ impl Device {
         })
     }
 
-    /// The first loss or complaint so far.
+    /// The first loss or complaint so far. What a lost device complains of is the loss.
     pub fn trouble(&self) -> Result<(), DeviceError> {
+        let known = self.noted()?;
+        let Some(error) = known else { return Ok(()) };
+        if matches!(error, DeviceError::Reported { .. }) {
+            // A loss is told only when the device is polled; its answer is in the note.
+            let _ = self.device.poll(wgpu::PollType::Poll);
+            if let Some(later) = self.noted()? {
+                return Err(later);
+            }
+        }
+        Err(error)
+    }
+
+    fn noted(&self) -> Result<Option<DeviceError>, DeviceError> {
         match self.trouble.lock() {
-            Ok(slot) => slot.clone().map_or(Ok(()), Err),
+            Ok(slot) => Ok(slot.clone()),
             // A poisoned note means that a callback died: treat it as a loss.
             Err(_) => Err(DeviceError::Lost {
                 name: self.info.name.clone(),

@@ -27,6 +27,11 @@ use crate::wgsl;
 const DISTANCE_ENOUGH: f64 = 0.8;
 /// Weight of the newest slope in the automatic relaxation.
 const DISTANCE_SMOOTHING: f64 = 0.3;
+/// Where a clipped ray starts, in hit thresholds from the bounds. At 1 the first sample
+/// would lie on the threshold, and rounding would decide whether it is a hit; much under
+/// 1 a grazing ray would start far behind the place where it came under the threshold
+/// (at 0.9 on `bench-graze` 2.8 % of pixels did, at 0.99 0.2 %).
+const DISTANCE_WITHIN: f64 = 0.99;
 /// The longest automatic step, in radii of the last ball.
 const DISTANCE_MOST_RELAXED: f64 = 3.0;
 
@@ -156,21 +161,29 @@ impl Distance {
         d
     }
 
-    /// Value of the field, and a ball's radius in which it exceeds `clear`.
+    /// Value of the field, and a ball's radius in which it exceeds `clear`. Inside the
+    /// bounds the value is the estimate's alone, negative ones too: the gradient needs
+    /// them.
     fn field(&self, q: DVec3, clear: f64, work: &mut Work) -> (f64, f64) {
         let outside = self.bounds.distance(self.eye + q);
         let inside = self.estimate_at(q, work);
         let ball = ((inside - clear) / self.lipschitz).max(outside - clear);
-        (inside.max(outside), ball)
+        let value = if outside > 0.0 {
+            inside.max(outside)
+        } else {
+            inside
+        };
+        (value, ball)
     }
 
-    /// The part of a ray within the hit threshold of the bounds, or a little more, as
+    /// The part of a ray where the bounds are within nearly the hit threshold, as
     /// (near, far); near > far if it misses. The threshold grows along the ray, so the
     /// faces lean outwards by its slope.
     pub fn bounds_interval(&self, ray: &Beam) -> (f64, f64) {
         let p = self.eye - self.bounds.centre + ray.origin;
-        let room = self.bounds.half + DVec3::splat(self.detail * ray.grain0);
-        let lean = self.detail * ray.grain;
+        let within = DISTANCE_WITHIN * self.detail;
+        let room = self.bounds.half + DVec3::splat(within * ray.grain0);
+        let lean = within * ray.grain;
         let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
         for i in 0..3 {
             let a = ray.axis[i];
@@ -204,10 +217,11 @@ impl Twin for Distance {
                 "DISTANCE_ENOUGH" = DISTANCE_ENOUGH,
                 "DISTANCE_SMOOTHING" = DISTANCE_SMOOTHING,
                 "DISTANCE_MOST_RELAXED" = DISTANCE_MOST_RELAXED,
+                "DISTANCE_WITHIN" = DISTANCE_WITHIN,
                 "HIT_CARRIES_MARK" = 0.0
             ),
         ];
-        all.extend(self.shape.modules(self.iterations));
+        all.extend(self.shape.modules());
         all
     }
 
@@ -292,7 +306,8 @@ impl Solid for Distance {
         let eps = self.detail * footprint(ray, t);
         let (value, ball) = self.field(ray.at(t), self.shell * eps, work);
         let radius = ball * self.stride;
-        if gone > w.radius && gone > w.radius + radius.max(0.0) {
+        // Only a stretched step can leave a gap: what else exceeds the radius is rounding.
+        if w.pace > w.radius && gone > w.radius + radius.max(0.0) {
             walk.pace = w.radius;
             walk.slope = -1.0;
             return Step::Moving;

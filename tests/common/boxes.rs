@@ -88,9 +88,10 @@ fn the_estimate_grows_with_iterations_and_never_passes_the_converged_value() {
             assert!(d <= end + noise, "{d} above {end} at {n}, {m:?} {p}");
             last = d;
         }
-        // It comes near: where it stops for the escape, within a tenth.
-        let (d, spent) = m.estimate(p, MANY);
-        if spent < MANY && end > 0.0 {
+        // It comes near: where it stops for the escape, within a tenth. (Orbits that
+        // escape late magnify rounding until two computations of them differ.)
+        let (d, _) = m.estimate(p, MANY);
+        if end > 1e-6 {
             assert!(d > 0.85 * end, "{d} of {end}, {m:?} {p}");
         }
     }
@@ -172,7 +173,11 @@ fn after_the_iterations_of_the_rule_little_is_left() {
 
 #[test]
 fn a_rotation_is_one_and_whole_turns_are_none() {
-    for none in [DVec3::ZERO, DVec3::splat(360.0), DVec3::new(-360.0, 0.0, 720.0)] {
+    for none in [
+        DVec3::ZERO,
+        DVec3::splat(360.0),
+        DVec3::new(-360.0, 0.0, 720.0),
+    ] {
         assert_eq!(Rotation::new(none), None);
     }
     let quarter = Rotation::new(DVec3::new(90.0, 0.0, 0.0)).unwrap();

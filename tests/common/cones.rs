@@ -15,7 +15,11 @@ pub fn cone(random: &mut Random) -> Beam {
     Beam {
         origin: random.cube(0.2),
         axis: random.direction(),
-        r0: if random.unit() < 0.5 { 0.0 } else { 0.1 * random.unit() },
+        r0: if random.unit() < 0.5 {
+            0.0
+        } else {
+            0.1 * random.unit()
+        },
         // Wide cones hardly move: most of the cones are narrow.
         k: wide.powi(4) / 8.0,
         grain0: 0.0,

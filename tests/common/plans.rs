@@ -88,6 +88,14 @@ fn subjects() -> Vec<Subject> {
     let mut moved: Vec<Subject> = all.iter().flat_map(with_each_key_moved).collect();
     let boxes = mandelboxes().into_iter();
     moved.extend(boxes.map(|m| distance(Shape::Mandelbox(m))));
+    // Few iterations and many: what could overflow is guarded.
+    for shape in Shape::all() {
+        for count in [2, 1000] {
+            let iterations = Some(count);
+            let shape = shape.clone();
+            moved.push(Subject::Distance { shape, iterations });
+        }
+    }
     moved
 }
 

@@ -17,7 +17,12 @@ macro_rules! probe {
     ($name:literal) => {
         conemarch::shader::Module {
             path: concat!("tests/probe/", $name, ".wgsl"),
-            source: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/probe/", $name, ".wgsl")),
+            source: include_str!(concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/tests/probe/",
+                $name,
+                ".wgsl"
+            )),
             constants: Vec::new(),
         }
     };

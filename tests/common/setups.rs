@@ -9,6 +9,7 @@ use conemarch::pyramid::Block;
 use conemarch::scene::slab::SlabShape;
 use conemarch::scene::{Scene, Solid};
 use conemarch::shader::Module;
+use conemarch::view::Beam;
 use conemarch::wgsl;
 use conemarch::{pass, view};
 use glam::DVec3;
@@ -171,4 +172,16 @@ pub fn beams(plan: &Plan, spread: f64, steps: f64, seed: u64) -> Vec<Numbers> {
         ]
     };
     (0..8192).map(of).collect()
+}
+
+/// The beam of a question.
+pub fn beam(q: &Numbers) -> Beam {
+    Beam {
+        origin: three(q[0]),
+        axis: three(q[1]),
+        r0: f64::from(q[2][0]),
+        k: f64::from(q[1][3]),
+        grain0: 0.0,
+        grain: f64::from(q[2][1]),
+    }
 }

@@ -25,7 +25,13 @@ fn cells(size: [u32; 2], divisor: u32, random: &mut Random) -> Vec<[u32; 2]> {
     if w * h <= 1000 {
         return (0..w * h).map(|i| [i % w, i / w]).collect();
     }
-    let mut all = vec![[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1], [w / 2, h / 2]];
+    let mut all = vec![
+        [0, 0],
+        [w - 1, 0],
+        [0, h - 1],
+        [w - 1, h - 1],
+        [w / 2, h / 2],
+    ];
     for _ in 0..200 {
         let at = |n: u32, r: f64| (f64::from(n) * r) as u32;
         all.push([at(w, random.unit()), at(h, random.unit())]);
@@ -89,7 +95,10 @@ fn rays_go_through_the_middles_of_their_pixels() {
             let view = view(size, fov);
             let [w, h] = size.map(f64::from);
             // From the upper to the lower edge it is the field of view.
-            let (top, bottom) = (view.view_direction(0.5 * w, 0.0), view.view_direction(0.5 * w, h));
+            let (top, bottom) = (
+                view.view_direction(0.5 * w, 0.0),
+                view.view_direction(0.5 * w, h),
+            );
             let angle = top.angle_between(bottom).to_degrees();
             assert!((angle - fov).abs() < 1e-9 * fov + 1e-6, "{angle} {fov}");
             let middle = view.view_direction(0.5 * w, 0.5 * h);
@@ -98,8 +107,17 @@ fn rays_go_through_the_middles_of_their_pixels() {
             assert!(top.y > bottom.y, "up is down");
             // Right-handed: right is forward x up.
             let right = view.view_direction(w, 0.5 * h) - middle;
-            assert!(right.normalize().distance(middle.cross(DVec3::Y).normalize()) < 1e-9);
-            for pixel in [[0, 0], [size[0] / 2, size[1] / 3], [size[0] - 1, size[1] - 1]] {
+            assert!(
+                right
+                    .normalize()
+                    .distance(middle.cross(DVec3::Y).normalize())
+                    < 1e-9
+            );
+            for pixel in [
+                [0, 0],
+                [size[0] / 2, size[1] / 3],
+                [size[0] - 1, size[1] - 1],
+            ] {
                 let [x, y] = pixel.map(|n| f64::from(n) + 0.5);
                 let u = view.view_direction(x, y);
                 let ray = view.view_ray(pixel);

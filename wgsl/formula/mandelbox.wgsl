@@ -29,8 +29,6 @@ struct MandelboxUniform {
 
 override MANDELBOX_JULIA: bool;
 override MANDELBOX_CLASSIC: bool;
-/// Set where w could overflow within the iteration limit.
-override MANDELBOX_GUARDED: bool;
 
 /// w is held below this: past it the estimate is zero in f32 anyhow, and a
 /// product with the next fold's factor could overflow.
@@ -59,10 +57,7 @@ fn estimate(p: real3, most: u32) -> real {
         let b = real(2.0) * clamp(z, real3(-limit), real3(limit)) - z;
         let m = real(1.0) / clamp(dot(b, b), low, high);
         z = (scaled * m) * rotate(b) + c;
-        w = grown * m * w + gain;
-        if MANDELBOX_GUARDED {
-            w = min(w, real(MANDELBOX_MOST_W));
-        }
+        w = min(grown * m * w + gain, real(MANDELBOX_MOST_W));
         z2 = dot(z, z);
         n += 1u;
     }

@@ -44,6 +44,7 @@ struct Walk {
 override DISTANCE_ENOUGH: f32;
 override DISTANCE_SMOOTHING: f32;
 override DISTANCE_MOST_RELAXED: f32;
+override DISTANCE_WITHIN: f32;
 override HIT_CARRIES_MARK: bool;
 
 @group(0) @binding(0) var<storage, read> distance_scene: DistanceUniform;
@@ -59,12 +60,13 @@ fn bounds_distance(q: vec3<f32>) -> f32 {
     return max(length(o), max(0.0, length(p) - distance_scene.radius));
 }
 
-/// Value of the field, and a ball's radius in which it exceeds `clear`.
+/// Value of the field, and a ball's radius in which it exceeds `clear`. Inside the bounds
+/// the value is the estimate's alone, negative ones too: the gradient needs them.
 fn field(q: vec3<f32>, clear: f32) -> vec2<f32> {
     let outside = bounds_distance(q);
     let inside = estimate_at(q);
     let ball = max((inside - clear) / distance_scene.lipschitz, outside - clear);
-    return vec2<f32>(max(inside, outside), ball);
+    return vec2<f32>(select(inside, max(inside, outside), outside > 0.0), ball);
 }
 
 /// The distance past which there is nothing.
@@ -72,15 +74,16 @@ fn bounds_far() -> f32 {
     return distance_scene.far;
 }
 
-/// The part of a ray within the hit threshold of the bounds, or a little more, as
+/// The part of a ray where the bounds are within nearly the hit threshold, as
 /// (near, far); near > far if it misses. The threshold grows along the ray, so the
 /// faces lean outwards by its slope.
 fn bounds_interval(ray: Beam) -> vec2<f32> {
     let p = (distance_scene.eye - distance_scene.centre) + ray.origin;
     // Widened by the rounding of p and of the quotients.
-    let room = distance_scene.half + distance_scene.detail * ray.grain0
+    let within = DISTANCE_WITHIN * distance_scene.detail;
+    let room = distance_scene.half + within * ray.grain0
         + 1e-6 * (abs(p) + distance_scene.half);
-    let lean = distance_scene.detail * ray.grain;
+    let lean = within * ray.grain;
     // A ray as flat as the lean may stay between two faces for ever: its quotients are
     // made huge, with no infinity in between.
     let flat = abs(ray.axis) <= vec3<f32>(lean + 1e-7);
@@ -147,7 +150,8 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     let eps = distance_scene.detail * footprint(ray, t);
     let f = field(ray.origin + t * ray.axis, distance_scene.shell * eps);
     let radius = f.y * distance_scene.stride;
-    if gone > w.radius && gone > w.radius + max(radius, 0.0) {
+    // Only a stretched step can leave a gap: what else exceeds the radius is rounding.
+    if w.pace > w.radius && gone > w.radius + max(radius, 0.0) {
         (*walk).pace = w.radius;
         (*walk).slope = -1.0;
         return STATE_MOVING;
