@@ -33,7 +33,12 @@ struct Beam {
     grain: f32,
 }
 
-@group(1) @binding(0) var<storage, read> view: ViewUniform;
+@group(1) @binding(0) var<storage, read> view_parameters: ViewUniform;
+var<private> view: ViewUniform;
+
+fn view_load() {
+    view = view_parameters;
+}
 
 /// Half a pixel's width at distance t, seen along the beam.
 fn footprint(beam: Beam, t: f32) -> f32 {

@@ -119,7 +119,7 @@ impl Formula for Balls {
             box1,
             rod: self.rod().as_vec4(),
         };
-        vec![("balls", bytes_of(&solids).to_vec())]
+        vec![("balls_parameters", bytes_of(&solids).to_vec())]
     }
 
     fn estimate(&self, p: DVec3, _most: u32) -> (f64, u32) {

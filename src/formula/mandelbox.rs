@@ -241,9 +241,12 @@ impl Formula for Mandelbox {
             classic_reach: (self.scale - 1.0).abs() as f32,
             classic_skin: self.classic_skin(iterations) as f32,
         };
-        let mut all = vec![("mandelbox", bytes_of(&folds).to_vec())];
+        let mut all = vec![("mandelbox_parameters", bytes_of(&folds).to_vec())];
         if let Some(rotation) = self.rotated() {
-            all.push(("rotation", bytes_of(&rotation.uniform()).to_vec()));
+            all.push((
+                "rotation_parameters",
+                bytes_of(&rotation.uniform()).to_vec(),
+            ));
         }
         all
     }

@@ -60,17 +60,30 @@ impl<T: Pod> Buffer<T> {
         let mut encoder = device.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&self.raw, 0, &staging, 0, size);
         device.queue.submit([encoder.finish()]);
-        // Failure to map is reported by `wait`, or by the range below.
-        staging.map_async(wgpu::MapMode::Read, .., |_| {});
-        device.wait()?;
-        let view = staging.get_mapped_range(..);
-        let view = view.map_err(|e| DeviceError::Lost {
-            name: device.info.name.clone(),
-            why: e.to_string(),
-        })?;
-        let bytes = &view[..std::mem::size_of::<T>() * count.min(self.len)];
-        Ok(bytemuck::pod_collect_to_vec(bytes))
+        map(
+            device,
+            &staging,
+            std::mem::size_of::<T>() * count.min(self.len),
+        )
     }
+}
+
+/// The first bytes of a buffer that can be mapped, once all that was submitted has run.
+/// The buffer stays mapped.
+pub fn map<T: Pod>(
+    device: &Device,
+    staging: &wgpu::Buffer,
+    bytes: usize,
+) -> Result<Vec<T>, DeviceError> {
+    // Failure to map is reported by `wait`, or by the range below.
+    staging.map_async(wgpu::MapMode::Read, .., |_| {});
+    device.wait()?;
+    let view = staging.get_mapped_range(..);
+    let view = view.map_err(|e| DeviceError::Lost {
+        name: device.info.name.clone(),
+        why: e.to_string(),
+    })?;
+    Ok(bytemuck::pod_collect_to_vec(&view[..bytes]))
 }
 
 /// Size of a buffer: a multiple of the copy alignment.

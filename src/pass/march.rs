@@ -21,8 +21,6 @@ pub struct LevelUniform {
     pub origin: [u32; 2],
     /// Cells in the block.
     pub cells: [u32; 2],
-    /// Cells of the next level in the block.
-    pub children: [u32; 2],
 }
 
 /// The WGSL module of the pass.

@@ -22,18 +22,35 @@ pub struct Turn {
     pub row: u32,
     /// Cells per row of the parent level in the block; 0 where there is none.
     pub parent_width: u32,
-    /// 1 to visit the listed cells, 0 to visit all.
-    pub listed: u32,
+    /// What is visited: [`Turn::ALL`], [`Turn::PARENTS`] or [`Turn::CELLS`].
+    pub visits: u32,
 }
 
 /// Largest number of workgroups along an axis.
 const MOST_GROUPS: u32 = 65_535;
 
 impl Turn {
-    /// Turns to a list of so many cells: the workgroups to dispatch, none for none.
-    pub fn spread(&mut self, cells: u32) -> [u32; 2] {
-        let groups = cells.div_ceil(64);
-        self.listed = 1;
+    /// Every cell of the block is visited.
+    pub const ALL: u32 = 0;
+    /// The children of listed parents are.
+    pub const PARENTS: u32 = 1;
+    /// Listed cells are.
+    pub const CELLS: u32 = 2;
+
+    /// Turns to the children of so many listed parents, four of each: the workgroups to
+    /// dispatch, none for none.
+    pub fn to_children_of(&mut self, parents: u32) -> [u32; 2] {
+        self.visits = Self::PARENTS;
+        self.spread(parents.div_ceil(16))
+    }
+
+    /// Turns to a list of so many cells.
+    pub fn to_cells(&mut self, cells: u32) -> [u32; 2] {
+        self.visits = Self::CELLS;
+        self.spread(cells.div_ceil(64))
+    }
+
+    fn spread(&mut self, groups: u32) -> [u32; 2] {
         self.row = groups.clamp(1, MOST_GROUPS);
         [groups.min(MOST_GROUPS), groups.div_ceil(self.row)]
     }

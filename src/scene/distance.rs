@@ -244,7 +244,7 @@ impl Twin for Distance {
             pad0: 0,
             pad1: 0,
         };
-        let mut all = vec![("distance_scene", bytes_of(&scene).to_vec())];
+        let mut all = vec![("distance_parameters", bytes_of(&scene).to_vec())];
         all.extend(self.shape.uniforms(self.iterations));
         all
     }

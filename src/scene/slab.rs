@@ -156,7 +156,7 @@ impl Twin for Slab {
             other: self.other.as_vec3(),
             pad: 0.0,
         };
-        vec![("slab", bytes_of(&slab).to_vec())]
+        vec![("slab_parameters", bytes_of(&slab).to_vec())]
     }
 
     fn check(&self) -> Result<(), Fault> {

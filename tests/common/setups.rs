@@ -132,12 +132,15 @@ pub fn view_parameter(plan: &Plan) -> (&'static str, Vec<u8>) {
         size: plan.size,
     };
     let view = plan.view().uniform(&block);
-    ("view", bytes_of(&view).to_vec())
+    ("view_parameters", bytes_of(&view).to_vec())
 }
 
 /// The look of a plan as WGSL reads it.
 pub fn look_parameter(plan: &Plan) -> (&'static str, Vec<u8>) {
-    ("look", bytes_of(&plan.light().uniform()).to_vec())
+    (
+        "look_parameters",
+        bytes_of(&plan.light().uniform()).to_vec(),
+    )
 }
 
 /// Points in and about the bounds of a formula.

@@ -2,6 +2,7 @@
 // a point. Origin and front, axis and chord, r0, grain, t_max and steps in.
 
 fn answer(q: Numbers) -> Numbers {
+    scene_load();
     let beam = Beam(q.a.xyz, q.b.xyz, q.c.x, q.b.w, 0.0, q.c.y);
     let next = advance(beam, q.a.w);
     var walk = begin(beam, q.a.w, q.c.z);

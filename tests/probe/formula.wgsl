@@ -1,6 +1,7 @@
 // A formula at a point: its estimate and its orbit traps.
 
 fn answer(q: Numbers) -> Numbers {
+    formula_load();
     let p = real3(q.a.xyz);
     let most = u32(q.a.w);
     let e = f32(estimate(p, most));

@@ -1,6 +1,8 @@
 // A point of a surface in its light: shadow, occlusion and fog, and the surface itself.
 
 fn answer(q: Numbers) -> Numbers {
+    scene_load();
+    look_load();
     let ray = Beam(vec3<f32>(0.0), q.b.xyz, 0.0, 0.0, 0.0, q.b.w);
     let at = surface(ray, Hit(q.a.w, 0u, vec2<f32>(0.0)));
     let grain = footprint(ray, q.a.w);

@@ -1,6 +1,7 @@
 // The ray of a pixel, and the cone of the cell that a divisor puts it in.
 
 fn answer(q: Numbers) -> Numbers {
+    view_load();
     let pixel = vec2<u32>(q.a.xy);
     let divisor = u32(q.a.z);
     let ray = view_ray(pixel);

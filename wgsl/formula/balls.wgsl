@@ -13,7 +13,12 @@ struct BallsUniform {
     rod: vec4<f32>,
 }
 
-@group(0) @binding(1) var<storage, read> balls: BallsUniform;
+@group(0) @binding(1) var<storage, read> balls_parameters: BallsUniform;
+var<private> balls: BallsUniform;
+
+fn formula_load() {
+    balls = balls_parameters;
+}
 
 fn balls_ball(p: real3, s: vec4<f32>) -> real {
     return length(p - real3(s.xyz)) - real(s.w);

@@ -34,7 +34,13 @@ override MANDELBOX_CLASSIC: bool;
 /// product with the next fold's factor could overflow.
 const MANDELBOX_MOST_W = 1e30;
 
-@group(0) @binding(1) var<storage, read> mandelbox: MandelboxUniform;
+@group(0) @binding(1) var<storage, read> mandelbox_parameters: MandelboxUniform;
+var<private> mandelbox: MandelboxUniform;
+
+fn formula_load() {
+    mandelbox = mandelbox_parameters;
+    rotation_load();
+}
 
 fn estimate(p: real3, most: u32) -> real {
     let limit = real(mandelbox.fold_limit);

@@ -11,7 +11,12 @@ struct RotationUniform {
     pad2: f32,
 }
 
-@group(0) @binding(2) var<storage, read> rotation: RotationUniform;
+@group(0) @binding(2) var<storage, read> rotation_parameters: RotationUniform;
+var<private> rotation: RotationUniform;
+
+fn rotation_load() {
+    rotation = rotation_parameters;
+}
 
 fn rotate(v: real3) -> real3 {
     return real3(

@@ -3,3 +3,5 @@
 fn rotate(v: real3) -> real3 {
     return v;
 }
+
+fn rotation_load() {}

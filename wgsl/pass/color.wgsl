@@ -35,6 +35,9 @@ fn color(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
+    scene_load();
+    view_load();
+    look_load();
     let local = tile_cell(group.xy, lane);
     if any(local >= view.block_size) {
         return;

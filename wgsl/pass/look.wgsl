@@ -27,7 +27,12 @@ struct LookUniform {
     palette: array<vec4<f32>, 8>,
 }
 
-@group(1) @binding(1) var<storage, read> look: LookUniform;
+@group(1) @binding(1) var<storage, read> look_parameters: LookUniform;
+var<private> look: LookUniform;
+
+fn look_load() {
+    look = look_parameters;
+}
 
 fn sky(axis: vec3<f32>) -> vec3<f32> {
     let height = dot(axis, look.world_up);
@@ -48,7 +53,10 @@ fn palette_at(x: f32) -> vec3<f32> {
     let i = min(u32(at), look.stops - 1u);
     let j = min(i + 1u, look.stops - 1u);
     let f = at - f32(i);
-    return mix(look.palette[i].rgb, look.palette[j].rgb, f * f * (3.0 - 2.0 * f));
+    // Not from the copy: an array that is indexed freely cannot live in registers.
+    let one = look_parameters.palette[i].rgb;
+    let two = look_parameters.palette[j].rgb;
+    return mix(one, two, f * f * (3.0 - 2.0 * f));
 }
 
 fn pigment_color(pigment: vec3<f32>) -> vec3<f32> {

@@ -10,35 +10,23 @@ struct LevelUniform {
     /// First cell of the block, and cells in the block.
     origin: vec2<u32>,
     cells: vec2<u32>,
-    /// Cells of the next level in the block.
-    children: vec2<u32>,
 }
 
-@group(2) @binding(0) var<storage, read> level: LevelUniform;
-@group(2) @binding(4) var<storage, read> parent_front: array<f32>;
+@group(2) @binding(0) var<storage, read> level_parameters: LevelUniform;
 @group(2) @binding(5) var<storage, read_write> front: array<f32>;
 @group(2) @binding(6) var<storage, read_write> state: array<u32>;
-/// The list that the next pass starts with.
-@group(2) @binding(7) var<storage, read_write> next_cells: Queue;
-
-/// Lists the children of a cell, four or what the image's edge leaves of them.
-fn march_children(cell: vec2<u32>) {
-    let low = 2u * cell;
-    let high = min(low + vec2<u32>(2u), level.children);
-    var at = atomicAdd(&next_cells.count, (high.x - low.x) * (high.y - low.y));
-    for (var y = low.y; y < high.y; y++) {
-        for (var x = low.x; x < high.x; x++) {
-            next_cells.cells[at] = y * level.children.x + x;
-            at += 1u;
-        }
-    }
-}
+/// The list that the next pass starts with: the cells that are not sky.
+@group(2) @binding(7) var<storage, read_write> next_parents: Queue;
 
 @compute @workgroup_size(64)
 fn march(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
+    scene_load();
+    view_load();
+    queue_load();
+    let level = level_parameters;
     let index = queue_take(group.xy, lane, level.cells);
     if index == QUEUE_NONE {
         return;
@@ -47,8 +35,8 @@ fn march(
     var f = 0.0;
     if turn.done > 0u {
         f = front[index];
-    } else if turn.parent_width > 0u {
-        f = parent_front[(local.y / 2u) * turn.parent_width + local.x / 2u];
+    } else {
+        f = queue_front(local);
     }
     var cone = view_cone(level.origin + local, level.divisor);
     cone.k *= level.fudge;
@@ -74,7 +62,8 @@ fn march(
     }
     state[index] = s;
     if s == STATE_HIT || s == STATE_UNCONVERGED {
-        march_children(local);
+        let at = atomicAdd(&next_parents.count, 1u);
+        next_parents.cells[at] = index;
     }
     counters_store(index);
 }

@@ -1,5 +1,10 @@
 // What every pass and every scene agree on: states, hits, surfaces, and which cell
 // an invocation works on.
+//
+// Parameters lie in storage buffers. Every file that has some copies them once, in its
+// `NAME_load`, which entry points call before any branch: there a software device reads
+// a number once for all lanes, later once for each lane in turn, which took as long as
+// all the arithmetic of an evaluation.
 
 const STATE_SKY = 0u;
 const STATE_HIT = 1u;

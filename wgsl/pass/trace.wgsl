@@ -1,7 +1,6 @@
 // The last level: one ray per pixel, from the front of its cell to the surface.
 // The loop counts and caps; what a step is, the scene knows.
 
-@group(2) @binding(4) var<storage, read> parent_front: array<f32>;
 @group(2) @binding(5) var<storage, read_write> depth: array<f32>;
 @group(2) @binding(6) var<storage, read_write> state: array<u32>;
 @group(2) @binding(7) var<storage, read_write> walks: array<Walk>;
@@ -12,6 +11,9 @@ fn trace(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
+    scene_load();
+    view_load();
+    queue_load();
     let index = queue_take(group.xy, lane, view.block_size);
     if index == QUEUE_NONE {
         return;
@@ -22,11 +24,7 @@ fn trace(
     if turn.done > 0u {
         walk = walks[index];
     } else {
-        var f = 0.0;
-        if turn.parent_width > 0u {
-            f = parent_front[(local.y / 2u) * turn.parent_width + local.x / 2u];
-        }
-        walk = begin(ray, f, bounds_far());
+        walk = begin(ray, queue_front(local), bounds_far());
     }
     var s = STATE_MOVING;
     let last = queue_steps();

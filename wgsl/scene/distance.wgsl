@@ -47,7 +47,13 @@ override DISTANCE_MOST_RELAXED: f32;
 override DISTANCE_WITHIN: f32;
 override HIT_CARRIES_MARK: bool;
 
-@group(0) @binding(0) var<storage, read> distance_scene: DistanceUniform;
+@group(0) @binding(0) var<storage, read> distance_parameters: DistanceUniform;
+var<private> distance_scene: DistanceUniform;
+
+fn scene_load() {
+    distance_scene = distance_parameters;
+    formula_load();
+}
 
 fn estimate_at(q: vec3<f32>) -> f32 {
     return f32(estimate(real3(distance_scene.eye) + real3(q), distance_scene.iterations));

@@ -29,7 +29,12 @@ struct Walk {
 
 override HIT_CARRIES_MARK: bool;
 
-@group(0) @binding(0) var<storage, read> slab: SlabUniform;
+@group(0) @binding(0) var<storage, read> slab_parameters: SlabUniform;
+var<private> slab: SlabUniform;
+
+fn scene_load() {
+    slab = slab_parameters;
+}
 
 fn bounds_far() -> f32 {
     return slab.far;

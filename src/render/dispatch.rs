@@ -1,0 +1,116 @@
+//! One dispatch, the wait for it, and what it tells: how many cells it listed, and how
+//! long the device took. All of it in one submission and one small buffer to read, as
+//! every round trip to a device costs about as much as a small level.
+
+use crate::gpu::buffer::map;
+use crate::gpu::device::{Device, DeviceError};
+use crate::gpu::kernel::Kernel;
+use crate::pass::queue::COUNT_AT;
+
+/// Where in the told numbers the two timestamps are; before them come the two counts.
+const STAMPS_AT: u64 = 8;
+/// Bytes of the told numbers.
+const TOLD: u64 = STAMPS_AT + 2 * STAMP;
+/// Bytes of a timestamp.
+const STAMP: u64 = 8;
+
+/// Dispatches and listens.
+pub struct Dispatcher {
+    queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
+    told: wgpu::Buffer,
+}
+
+/// Lists that a dispatch fills.
+pub struct Filled<'a> {
+    /// Cells that still move.
+    pub moving: &'a wgpu::Buffer,
+    /// Cells whose children the next pass visits.
+    pub parents: &'a wgpu::Buffer,
+}
+
+/// What a dispatch told.
+#[derive(Clone, Copy, Debug)]
+pub struct Told {
+    /// Cells that still move.
+    pub moving: u32,
+    /// Cells of this pass listed so far for the next.
+    pub parents: u32,
+    /// Nanoseconds on the device, where it has timestamps and was asked.
+    pub ns: Option<f64>,
+}
+
+impl Dispatcher {
+    /// A dispatcher of a device.
+    pub fn new(device: &Device) -> Self {
+        let buffer = |name, size, usage| {
+            device.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(name),
+                size,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let queries = device.tick_ns.map(|_| {
+            let set = device.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("passes"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2,
+            });
+            let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+            (set, buffer("timestamps", 2 * STAMP, usage))
+        });
+        Self {
+            queries,
+            told: buffer("told", TOLD, wgpu::BufferUsages::MAP_READ),
+        }
+    }
+
+    /// Runs so many workgroups of a kernel to their end. The list of what moves is
+    /// emptied before; the list of parents grows.
+    pub fn run(
+        &self,
+        device: &Device,
+        kernel: &Kernel,
+        groups: &[wgpu::BindGroup],
+        count: [u32; 2],
+        filled: &Filled<'_>,
+        timed: bool,
+    ) -> Result<Told, DeviceError> {
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        clear_count(&mut encoder, filled.moving);
+        let queries = self.queries.as_ref().filter(|_| timed);
+        let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: None,
+            timestamp_writes: queries.map(|(set, _)| wgpu::ComputePassTimestampWrites {
+                query_set: set,
+                beginning_of_pass_write_index: Some(0),
+                end_of_pass_write_index: Some(1),
+            }),
+        });
+        kernel.dispatch(&mut compute, groups, count);
+        drop(compute);
+        encoder.copy_buffer_to_buffer(filled.moving, COUNT_AT, &self.told, 0, 4);
+        encoder.copy_buffer_to_buffer(filled.parents, COUNT_AT, &self.told, 4, 4);
+        if let Some((set, stamps)) = queries {
+            encoder.resolve_query_set(set, 0..2, stamps, 0);
+            encoder.copy_buffer_to_buffer(stamps, 0, &self.told, STAMPS_AT, 2 * STAMP);
+        }
+        device.queue.submit([encoder.finish()]);
+        let told: Vec<u32> = map(device, &self.told, TOLD as usize)?;
+        self.told.unmap();
+        let stamp = |at: usize| u64::from(told[at]) | (u64::from(told[at + 1]) << 32);
+        let tick = device.tick_ns.filter(|_| queries.is_some());
+        #[allow(clippy::cast_precision_loss, reason = "a time for reading")]
+        let ns = tick.map(|tick| stamp(4).saturating_sub(stamp(2)) as f64 * f64::from(tick));
+        Ok(Told {
+            moving: told[0],
+            parents: told[1],
+            ns,
+        })
+    }
+}
+
+/// Empties a list.
+pub fn clear_count(encoder: &mut wgpu::CommandEncoder, list: &wgpu::Buffer) {
+    encoder.clear_buffer(list, COUNT_AT, Some(4));
+}
