@@ -8,7 +8,6 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::frame::{Frame, State, Work};
-use crate::pass::look::Light;
 use crate::pass::march::{Ended, march};
 use crate::pass::{color, trace};
 use crate::plan::{Extras, Pass, Plan};
@@ -16,6 +15,9 @@ use crate::pyramid::Level;
 use crate::render::{Progress, RenderError, Watch, blank};
 use crate::scene::{Hit, Solid, Task};
 use crate::view::View;
+
+/// Cells between two looks at the watch: some tens of milliseconds on two cores.
+const BAND_CELLS: usize = 1 << 15;
 
 /// A proven front of one cell.
 #[derive(Clone, Copy)]
@@ -31,6 +33,9 @@ struct Proofs {
 }
 
 /// Renders a plan that passes [`Plan::check`].
+///
+/// # Errors
+/// Only [`RenderError::Cancelled`], when `watch` returns `false`.
 pub fn render(plan: &Plan, extras: Extras, watch: Watch<'_>) -> Result<Frame, RenderError> {
     plan.scene().run(Render {
         plan,
@@ -50,83 +55,155 @@ impl Task for Render<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let (plan, extras) = (self.plan, self.extras);
-        let view = plan.view();
-        let light = plan.light();
         let mut passes = plan.passes();
         passes.retain(|p| !(extras.depth_only && *p == Pass::Color));
-        let mut frame = blank(plan, &passes, extras);
-        let mut parents: Option<Proofs> = None;
-        let mut hits: Vec<Hit> = Vec::new();
+        let mut run = Run {
+            solid,
+            view: plan.view(),
+            plan,
+            extras,
+            frame: blank(plan, &passes, extras),
+            parents: None,
+            hits: Vec::new(),
+        };
         for (at, &pass) in passes.iter().enumerate() {
             let start = Instant::now();
+            let mut bands = Bands {
+                pass: pass.name(),
+                before: at as f64 / passes.len() as f64,
+                share: 1.0 / passes.len() as f64,
+                watch: &mut *self.watch,
+            };
+            let work = match pass {
+                Pass::March(level) => run.march(at, level, &mut bands)?,
+                Pass::Trace => run.trace(&mut bands)?,
+                Pass::Color => run.color(&mut bands)?,
+            };
+            let figures = &mut run.frame.passes[at];
             let cells = match pass {
                 Pass::March(level) => level.cells(plan.size),
                 _ => plan.size,
             };
-            let mut work = Vec::new();
-            match pass {
-                Pass::March(level) => {
-                    let (proofs, done) = level_pass(solid, &view, level, cells, parents.as_ref());
-                    if extras.levels {
-                        let layer = &mut frame.levels[at];
-                        layer.front = proofs.cells.iter().map(|p| p.front as f32).collect();
-                        layer.state = proofs.cells.iter().map(|p| p.ended as u8).collect();
-                    }
-                    if extras.count {
-                        frame.levels[at].work.clone_from(&done);
-                    }
-                    parents = Some(proofs);
-                    work = done;
-                }
-                Pass::Trace => {
-                    let limit = plan.march.ray_steps();
-                    let (found, done) =
-                        trace_pass(solid, &view, limit, parents.as_ref(), &mut frame.state);
-                    for ((t, s), hit) in frame.depth.iter_mut().zip(&frame.state).zip(&found) {
-                        *t = if *s == State::Sky as u8 {
-                            f32::INFINITY
-                        } else {
-                            hit.t as f32
-                        };
-                    }
-                    if extras.count {
-                        frame.work.clone_from(&done);
-                    }
-                    hits = found;
-                    work = done;
-                }
-                Pass::Color => color_pass(solid, &view, &light, &hits, extras, &mut frame),
-            }
-            let figures = &mut frame.passes[at];
             figures.cells = u64::from(cells[0]) * u64::from(cells[1]);
             figures.wall_ms = start.elapsed().as_secs_f64() * 1e3;
             if extras.count && pass != Pass::Color {
-                let sum = |f: fn(&Work) -> u32| work.iter().map(|w| u64::from(f(w))).sum();
-                figures.evaluations = Some(sum(|w| w.evaluations));
-                figures.iterations = Some(sum(|w| w.iterations));
-            }
-            let progress = Progress {
-                pass: pass.name(),
-                done: (at + 1) as f64 / passes.len() as f64,
-            };
-            if !(self.watch)(&progress) {
-                return Err(RenderError::Cancelled);
+                figures.evaluations = Some(work.0);
+                figures.iterations = Some(work.1);
             }
         }
-        let timed = frame.passes.iter().filter(|p| p.name != "color");
-        frame.march_ms = timed.map(|p| p.wall_ms).sum();
-        Ok(frame)
+        let timed = run.frame.passes.iter().filter(|p| p.name != "color");
+        run.frame.march_ms = timed.map(|p| p.wall_ms).sum();
+        Ok(run.frame)
     }
 }
 
-/// Runs a function over all cells of a grid, rows over threads.
-fn over<T: Send>(cells: [u32; 2], f: impl Fn([u32; 2]) -> T + Sync) -> Vec<T> {
-    let rows = (0..cells[1]).into_par_iter();
-    rows.flat_map_iter(|y| {
-        let f = &f;
-        (0..cells[0]).map(move |x| f([x, y]))
-    })
-    .collect()
+/// A render under way.
+struct Run<'a, S> {
+    solid: &'a S,
+    view: View,
+    plan: &'a Plan,
+    extras: Extras,
+    frame: Frame,
+    parents: Option<Proofs>,
+    /// What the rays met, for the colour pass.
+    hits: Vec<Hit>,
+}
+
+/// Evaluations and iterations of a whole pass.
+type Sum = (u64, u64);
+
+impl<S: Solid> Run<'_, S> {
+    fn march(&mut self, at: usize, level: Level, bands: &mut Bands) -> Result<Sum, RenderError> {
+        let cells = level.cells(self.plan.size);
+        let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
+        let one = |cell| {
+            let parent = parent_of(parents, cell);
+            let mut work = Work::default();
+            if parent.ended == Ended::Sky {
+                return (parent, work);
+            }
+            let mut cone = view.view_cone(cell, level.divisor);
+            cone.k *= level.fudge;
+            let (front, ended) = march(solid, &cone, parent.front, level.steps, &mut work);
+            (Proof { front, ended }, work)
+        };
+        let mut proofs = Vec::with_capacity(cells[0] as usize * cells[1] as usize);
+        let mut sum = (0, 0);
+        let layer = &mut self.frame.levels[at];
+        bands.over(cells, one, |i, (proof, work)| {
+            proofs.push(proof);
+            add(&mut sum, work);
+            set(&mut layer.front, i, proof.front as f32);
+            set(&mut layer.state, i, proof.ended as u8);
+            set(&mut layer.work, i, work);
+        })?;
+        self.parents = Some(Proofs {
+            width: cells[0] as usize,
+            cells: proofs,
+        });
+        Ok(sum)
+    }
+
+    fn trace(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
+        let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
+        let limit = self.plan.march.ray_steps();
+        let one = |pixel| {
+            let parent = parent_of(parents, pixel);
+            let mut work = Work::default();
+            if parent.ended == Ended::Sky {
+                return (Hit::default(), State::Sky, work);
+            }
+            let ray = view.view_ray(pixel);
+            let (hit, state) = trace::trace(solid, &ray, parent.front, limit, &mut work);
+            (hit, state, work)
+        };
+        let mut sum = (0, 0);
+        let (frame, hits) = (&mut self.frame, &mut self.hits);
+        if !self.extras.depth_only {
+            hits.resize(frame.state.len(), Hit::default());
+        }
+        bands.over(self.plan.size, one, |i, (hit, state, work)| {
+            add(&mut sum, work);
+            frame.state[i] = state as u8;
+            if state != State::Sky {
+                frame.depth[i] = hit.t as f32;
+            }
+            set(&mut frame.work, i, work);
+            set(hits, i, hit);
+        })?;
+        self.parents = None;
+        Ok(sum)
+    }
+
+    fn color(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
+        let (solid, view, hits) = (self.solid, &self.view, &self.hits);
+        let light = self.plan.light();
+        let width = self.plan.size[0] as usize;
+        let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
+        let states = &self.frame.state;
+        let one = |pixel: [u32; 2]| {
+            let at = pixel[1] as usize * width + pixel[0] as usize;
+            let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
+            color::color(solid, &light, &view.view_ray(pixel), &hits[at], state)
+        };
+        bands.over(self.plan.size, one, |i, (c, n)| {
+            set(radiance, i, c.as_vec3().to_array());
+            set(normals, i, n.as_vec3().to_array());
+        })?;
+        Ok((0, 0))
+    }
+}
+
+/// Sets a value of a layer, where the layer is kept.
+fn set<T>(layer: &mut [T], i: usize, value: T) {
+    if let Some(to) = layer.get_mut(i) {
+        *to = value;
+    }
+}
+
+fn add(sum: &mut Sum, work: Work) {
+    sum.0 += u64::from(work.evaluations);
+    sum.1 += u64::from(work.iterations);
 }
 
 fn parent_of(parents: Option<&Proofs>, [x, y]: [u32; 2]) -> Proof {
@@ -138,75 +215,48 @@ fn parent_of(parents: Option<&Proofs>, [x, y]: [u32; 2]) -> Proof {
     parents.map_or(start, at)
 }
 
-fn level_pass<S: Solid>(
-    solid: &S,
-    view: &View,
-    level: Level,
-    cells: [u32; 2],
-    parents: Option<&Proofs>,
-) -> (Proofs, Vec<Work>) {
-    let (proofs, work) = over(cells, |cell| {
-        let parent = parent_of(parents, cell);
-        let mut work = Work::default();
-        if parent.ended == Ended::Sky {
-            return (parent, work);
-        }
-        let mut cone = view.view_cone(cell, level.divisor);
-        cone.k *= level.fudge;
-        let (front, ended) = march(solid, &cone, parent.front, level.steps, &mut work);
-        (Proof { front, ended }, work)
-    })
-    .into_iter()
-    .unzip();
-    let proofs = Proofs {
-        width: cells[0] as usize,
-        cells: proofs,
-    };
-    (proofs, work)
+/// A pass in bands of rows, with a look at the watch after each.
+struct Bands<'a> {
+    pass: String,
+    before: f64,
+    share: f64,
+    watch: Watch<'a>,
 }
 
-fn trace_pass<S: Solid>(
-    solid: &S,
-    view: &View,
-    limit: u32,
-    parents: Option<&Proofs>,
-    states: &mut [u8],
-) -> (Vec<Hit>, Vec<Work>) {
-    let pixels = over(view.size, |pixel| {
-        let parent = parent_of(parents, pixel);
-        let mut work = Work::default();
-        if parent.ended == Ended::Sky {
-            return (Hit::default(), State::Sky, work);
+impl Bands<'_> {
+    /// Runs a function over all cells of a grid, rows over threads, and keeps what it
+    /// returns, in order.
+    fn over<T: Send>(
+        &mut self,
+        cells: [u32; 2],
+        one: impl Fn([u32; 2]) -> T + Sync,
+        mut keep: impl FnMut(usize, T),
+    ) -> Result<(), RenderError> {
+        let [width, height] = cells.map(|n| n as usize);
+        // A few rows for every thread, however wide they are.
+        let least = 4 * rayon::current_num_threads();
+        let rows = (BAND_CELLS / width.max(1)).max(least);
+        for first in (0..height).step_by(rows) {
+            let last = (first + rows).min(height);
+            let made: Vec<T> = (first..last)
+                .into_par_iter()
+                .flat_map_iter(|y| {
+                    let one = &one;
+                    (0..width).map(move |x| one([x as u32, y as u32]))
+                })
+                .collect();
+            for (i, value) in made.into_iter().enumerate() {
+                keep(first * width + i, value);
+            }
+            let progress = Progress {
+                pass: self.pass.clone(),
+                done: self.before + self.share * last as f64 / height as f64,
+            };
+            if !(self.watch)(&progress) {
+                return Err(RenderError::Cancelled);
+            }
         }
-        let ray = view.view_ray(pixel);
-        let (hit, state) = trace::trace(solid, &ray, parent.front, limit, &mut work);
-        (hit, state, work)
-    });
-    for (to, (_, state, _)) in states.iter_mut().zip(&pixels) {
-        *to = *state as u8;
-    }
-    pixels.into_iter().map(|(hit, _, work)| (hit, work)).unzip()
-}
-
-fn color_pass<S: Solid>(
-    solid: &S,
-    view: &View,
-    light: &Light,
-    hits: &[Hit],
-    extras: Extras,
-    frame: &mut Frame,
-) {
-    let width = view.size[0] as usize;
-    let states = &frame.state;
-    let pixels = over(view.size, |pixel| {
-        let at = pixel[1] as usize * width + pixel[0] as usize;
-        let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
-        let ray = view.view_ray(pixel);
-        color::color(solid, light, &ray, &hits[at], state)
-    });
-    frame.radiance = pixels.iter().map(|(c, _)| c.as_vec3().to_array()).collect();
-    if extras.normals {
-        frame.normal = pixels.iter().map(|(_, n)| n.as_vec3().to_array()).collect();
+        Ok(())
     }
 }
 
@@ -238,5 +288,33 @@ impl Task for Sample<'_> {
                 (i, hit.t, state)
             })
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::{Shape, balls::Balls};
+    use crate::plan::Subject;
+
+    #[test]
+    fn a_render_is_cancelled_within_a_pass() {
+        let mut plan = Plan::new(Subject::Distance {
+            shape: Shape::Balls(Balls::default()),
+            iterations: None,
+        });
+        plan.size = [2 * BAND_CELLS as u32, 96];
+        plan.march.coarsest = 2;
+        let mut told = Vec::new();
+        let ended = render(&plan, Extras::default(), &mut |p: &Progress| {
+            told.push((p.pass.clone(), p.done));
+            p.pass != "trace"
+        });
+        assert!(matches!(ended, Err(RenderError::Cancelled)));
+        let (pass, done) = told.last().expect("told");
+        assert_eq!(pass, "trace");
+        // The second of three passes had begun and was not over.
+        assert!(*done > 0.34 && *done < 0.66, "{done}");
+        assert!(told.is_sorted_by(|a, b| a.1 < b.1), "{told:?}");
     }
 }

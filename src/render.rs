@@ -82,13 +82,14 @@ impl Default for Cutting {
 /// Where a render stands.
 #[derive(Clone, Debug)]
 pub struct Progress {
-    /// The pass that has just ended.
+    /// The pass that has just come to an end, or on.
     pub pass: String,
     /// Share of passes over blocks that are done.
     pub done: f64,
 }
 
-/// Told after every pass over a block; `false` cancels the render.
+/// Told after every pass over a block (on the CPU, a band of rows); `false` cancels the
+/// render.
 pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 
 /// Steps of the longest dispatch: with a block of a million pixels still well under

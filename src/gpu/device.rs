@@ -255,11 +255,6 @@ impl Device {
         })
     }
 
-    /// `software Vulkan llvmpipe (...)`-like: name and backend for people.
-    pub fn name(&self) -> String {
-        format!("{} ({:?})", self.info.name, self.info.backend)
-    }
-
     /// Waits until everything submitted has run, and reports a device that was lost or
     /// complained meanwhile.
     pub fn wait(&self) -> Result<(), DeviceError> {
