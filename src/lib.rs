@@ -9,6 +9,7 @@ pub mod command;
 pub mod compare;
 pub mod cone;
 pub mod cpu;
+pub mod flip;
 pub mod formula;
 pub mod frame;
 pub mod gpu;
