@@ -1,13 +1,9 @@
-//! Two Frames to an error report, and the truth to compare with (METHOD 5).
+//! Two Frames to an error report (METHOD 5).
 //!
 //! Errors are in footprints: `e = (t - t_ref) / footprint(t_ref)`, where a footprint is
 //! half a pixel's width at the reference's distance.
 
-use crate::cpu;
 use crate::frame::{Frame, State};
-use crate::mode::Mode;
-use crate::plan::{Extras, Plan};
-use crate::render::{RenderError, Watch};
 use crate::view::View;
 
 /// A cell whose inherited front lies this many footprints beyond the reference hit
@@ -112,65 +108,4 @@ fn violations(frame: &Frame, reference: &Frame, view: &View) -> Vec<(u32, u64)> 
         (level.divisor, count)
     })
     .collect()
-}
-
-/// The reference frame of a plan, and how sure it is.
-#[derive(Clone, Debug)]
-pub struct Truth {
-    /// Depth and states.
-    pub frame: Frame,
-    /// Factor on the estimate's steps.
-    pub stride: f64,
-    /// Share of sampled pixels that move by over 2 footprints, or change state, when
-    /// the stride is halved.
-    pub moved: f64,
-}
-
-/// Share of moved pixels under which the truth counts as converged.
-const CONVERGED: f64 = 5e-5;
-/// The last check looks at every so many pixels.
-const SAMPLE: usize = 16;
-/// The stride is not halved below this: a picture that still moves is reported so.
-const LEAST_STRIDE: f64 = 1.0 / 160.0;
-
-/// Renders a plan's truth in f64: no cones, no relaxation, the same hit rule, steps of
-/// a small factor times the estimate, halved from 0.1 until the picture stands.
-pub fn truth(plan: &Plan, watch: Watch<'_>) -> Result<Truth, RenderError> {
-    let mut plan = plan.clone();
-    plan.march.mode = Mode::Truth;
-    // Outside the bounds the field is its distance to them: nothing is lost by
-    // starting where a ray enters, and much time is saved.
-    plan.march.clip = Some(true);
-    let extras = Extras {
-        depth_only: true,
-        ..Extras::default()
-    };
-    let view = plan.view();
-    let width = plan.size[0] as usize;
-    let mut stride = 0.1;
-    loop {
-        plan.march.stride = Some(stride);
-        let frame = cpu::render(&plan, extras, watch)?;
-        let mut finer = plan.clone();
-        finer.march.stride = Some(0.5 * stride);
-        let sample = cpu::sample(&finer, SAMPLE);
-        let mut moved = 0;
-        for &(i, t, state) in &sample {
-            let before = f64::from(frame.depth[i]);
-            let grain = view
-                .view_ray([(i % width) as u32, (i / width) as u32])
-                .grain;
-            let far = state == State::Hit && (before - t).abs() > 2.0 * grain * t;
-            moved += u32::from(frame.state[i] != state as u8 || far);
-        }
-        let moved = f64::from(moved) / sample.len().max(1) as f64;
-        if moved < CONVERGED || stride <= LEAST_STRIDE {
-            return Ok(Truth {
-                frame,
-                stride,
-                moved,
-            });
-        }
-        stride *= 0.5;
-    }
 }

@@ -23,4 +23,5 @@ pub mod pyramid;
 pub mod render;
 pub mod scene;
 pub mod shader;
+pub mod truth;
 pub mod view;

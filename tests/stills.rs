@@ -11,7 +11,7 @@
 mod adapter;
 
 use adapter::render;
-use conemarch::compare::{Report, compare, quantile, truth};
+use conemarch::compare::{Report, compare, quantile};
 use conemarch::cpu;
 use conemarch::frame::{Frame, State};
 use conemarch::mode::{MODES, Mode};
@@ -140,7 +140,7 @@ fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
     let allowed = 1e-4;
     for name in ["far", "graze", "inside", "outside", "thin"] {
         let mut plan = preset(&format!("bench-{name}"), [160, 90]);
-        let truth = truth(&plan, &mut |_| true).unwrap();
+        let truth = conemarch::truth::truth(&plan, &mut |_| true).unwrap();
         let mut wrong = |mode| {
             plan.march.mode = mode;
             let frame = render(&plan, DEPTH_ONLY);

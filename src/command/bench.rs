@@ -12,13 +12,14 @@ use serde_json::{Map, Value, json};
 
 use super::executor::Executor;
 use super::{interrupt, print, size};
-use crate::compare::{Report, compare, truth};
+use crate::compare::{Report, compare};
 use crate::gpu::device::Choice;
 use crate::mode::Mode;
 use crate::output::{self, Place};
 use crate::plan::{Extras, Plan};
 use crate::preset;
 use crate::render::RenderError;
+use crate::truth::truth;
 
 /// What to measure.
 #[derive(Debug, Subcommand)]
