@@ -5,6 +5,7 @@
 //! same value, a [`frame::Frame`]. Presets are the text of a Plan, the truth is a Plan,
 //! and every claim about error is a comparison of two Frames ([`compare`]).
 
+pub mod calibrate;
 pub mod command;
 pub mod compare;
 pub mod cone;

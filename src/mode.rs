@@ -68,7 +68,8 @@ pub struct Marching {
     pub shell: f64,
     /// How rays stretch their steps.
     pub relaxation: Relaxation,
-    /// Factors on the cones' chords, coarse to fine; the last is repeated.
+    /// Factors on the cones' chords in mode `calibrated`, coarse to fine; the last is
+    /// repeated. The other modes march full cones.
     pub fudge: Vec<f64>,
     /// Steps per level.
     pub steps: u32,
@@ -174,7 +175,7 @@ impl Marching {
             Key::new(
                 "fudge",
                 List(&mut self.fudge, 1..=6, 0.01, 1.0),
-                "factors on the cones' width, coarse to fine, the last repeated",
+                "factors on the cones' width in mode calibrated, coarse to fine, the last repeated",
             ),
             Key::new(
                 "steps",
@@ -218,7 +219,11 @@ impl Marching {
             return Pyramid::default();
         }
         let passes = self.coarsest.ilog2() + 1;
-        Pyramid::new(self.coarsest, &self.fudge, |_| match self.mode {
+        let fudge: &[f64] = match self.mode {
+            Mode::Calibrated => &self.fudge,
+            _ => &[],
+        };
+        Pyramid::new(self.coarsest, fudge, |_| match self.mode {
             Mode::SlidesEven => (128 / passes).max(1),
             Mode::SlidesDeep | Mode::SlidesFast => 512,
             _ => self.steps,

@@ -168,6 +168,14 @@ impl Plan {
         corner.grain * clear.max(least)
     }
 
+    /// What the scene's steps divide the estimate by.
+    pub fn lipschitz(&self) -> f64 {
+        match &self.subject {
+            Subject::Distance { shape, .. } => shape.lipschitz(),
+            Subject::Slab(_) => 1.0,
+        }
+    }
+
     /// A sentence about precision where f32 cannot hold what the plan asks for.
     ///
     /// The estimate's noise in f32 is about 2e-8 of the size of the coordinates

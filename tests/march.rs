@@ -361,9 +361,13 @@ fn passes_figures_and_fudge_are_what_the_plan_says() {
             .all(|p| p.evaluations.is_none() && p.iterations.is_none())
     );
     assert!(uncounted.work.is_empty() && uncounted.work_per_pixel().is_none());
-    // One factor stands for all that follow.
+    // Full cones take no factor. In the mode that does, one stands for all that follow.
+    let full = bits(&render(&plan, LEVELS));
     plan.march.fudge = vec![0.6];
+    assert!(full == bits(&render(&plan, LEVELS)));
+    plan.march.mode = Mode::Calibrated;
     let short = bits(&render(&plan, LEVELS));
+    assert!(short != full);
     plan.march.fudge = vec![0.6; 4];
     assert!(short == bits(&render(&plan, LEVELS)));
     plan.march.fudge = vec![0.6, 1.0];

@@ -62,6 +62,11 @@ impl Executor {
         }
     }
 
+    /// Whether a device renders that cannot tell the time.
+    pub fn is_untimed(&self) -> bool {
+        matches!(self, Self::Gpu(renderer) if renderer.device.tick_ns.is_none())
+    }
+
     /// The device's name.
     pub fn name(&self) -> String {
         match self {

@@ -26,7 +26,7 @@ enum Verb {
     Render(Box<render::Render>),
     /// Measure run time against error
     #[command(subcommand)]
-    Bench(bench::Bench),
+    Bench(bench::verb::Bench),
     /// List the built-in presets, or print one
     Presets(presets::Presets),
     /// List the devices that can render
@@ -94,7 +94,7 @@ impl Line {
     fn run(&self) -> Result<()> {
         match &self.verb {
             Verb::Render(args) => render::run(args),
-            Verb::Bench(bench) => bench::run(bench),
+            Verb::Bench(bench) => bench::verb::run(bench),
             Verb::Presets(args) => presets::run(args),
             Verb::Devices => devices::run(),
             Verb::Completions(args) => completions::run(args),

@@ -1,0 +1,210 @@
+//! `conemarch bench error`: run time against error, setting by setting, on one device.
+//!
+//! Every setting of a preset is compared with the preset's truth, and timed in turn with
+//! the others, so that a machine whose speed drifts slows all of them alike.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::Args;
+use glam::DVec3;
+
+use super::common::{Common, median, prepare};
+use super::row::{DepthError, Row, TruthNote, flat};
+use super::setting::{Setting, baselines, sweeps};
+use super::{plot, table};
+use crate::command::executor::Executor;
+use crate::command::{interrupt, print};
+use crate::compare::compare;
+use crate::flip::{Picture, flip};
+use crate::frame::Frame;
+use crate::output::{Layer, Shades};
+use crate::plan::{Extras, Plan};
+use crate::render::RenderError;
+use crate::truth::{Cache, Truth, cached};
+
+/// Options of `bench error`.
+#[derive(Debug, Args)]
+pub struct ErrorBench {
+    #[command(flatten)]
+    common: Common,
+    /// Move single settings too: coarsest level, shell, relaxation, steps, fudge, detail
+    #[arg(long)]
+    sweep: bool,
+    /// Draw time against error
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+}
+
+/// Warm runs that a median is taken of.
+const RUNS: usize = 5;
+
+/// Runs the measurement.
+///
+/// # Errors
+/// An unknown preset, a device that fails, an unwritable file, an interrupt.
+pub fn run(args: &ErrorBench) -> Result<()> {
+    interrupt::listen();
+    let plans = args.common.plans()?;
+    let files = args.common.files()?;
+    let plot = prepare(args.plot.as_deref())?;
+    let mut executor = args.common.executor()?;
+    let cache = Cache::user();
+    let mut settings = baselines();
+    if args.sweep {
+        settings.extend(sweeps());
+    }
+    let mut rows = Vec::new();
+    for (name, plan) in &plans {
+        let measured = measure(&mut executor, cache.as_ref(), name, plan, &settings)?;
+        print::print(table::preset(&measured).as_bytes())?;
+        rows.extend(measured);
+    }
+    print::print(table::means(&rows).as_bytes())?;
+    print::print(table::slides(&rows).as_bytes())?;
+    let mut more = Vec::new();
+    if let Some(mut place) = plot {
+        place.write_all(plot::draw(&rows).as_bytes())?;
+        more.push(place);
+    }
+    let flat: Vec<_> = rows.iter().map(flat).collect();
+    files.write(&rows, &flat, more)
+}
+
+/// Truths by what they are asked for: settings that change the hit rule have their own.
+struct Truths<'a> {
+    cache: Option<&'a Cache>,
+    name: &'a str,
+    found: HashMap<u64, Truth>,
+}
+
+impl Truths<'_> {
+    fn of(&mut self, plan: &Plan) -> Result<&Truth, RenderError> {
+        let key = plan.march.detail.to_bits();
+        if !self.found.contains_key(&key) {
+            let watch = &mut |_: &_| !interrupt::asked();
+            let (truth, kept) = cached(self.cache, plan, watch)?;
+            eprintln!(
+                "{}: truth{} at {} of the estimate, {:.4} % of pixels still move",
+                self.name,
+                if kept { ", kept from before," } else { "" },
+                truth.stride,
+                100.0 * truth.moved
+            );
+            self.found.insert(key, truth);
+        }
+        Ok(&self.found[&key])
+    }
+}
+
+/// All settings of one preset.
+fn measure(
+    executor: &mut Executor,
+    cache: Option<&Cache>,
+    name: &str,
+    plan: &Plan,
+    settings: &[Setting],
+) -> Result<Vec<Row>, RenderError> {
+    let watch = &mut |_: &_| !interrupt::asked();
+    let mut truths = Truths {
+        cache,
+        name,
+        found: HashMap::new(),
+    };
+    let view = plan.view();
+    let fitting: Vec<(&Setting, Plan)> = settings
+        .iter()
+        .filter_map(|s| Some((s, s.apply(plan)?)))
+        .collect();
+    let mut rows = Vec::new();
+    for (setting, plan) in &fitting {
+        let truth = truths.of(plan)?;
+        let extras = Extras {
+            count: true,
+            levels: true,
+            ..Extras::default()
+        };
+        let frame = executor.render(plan, extras, watch)?;
+        let mut row = blank(name, plan, setting, &frame, truth, executor);
+        row.fill(&compare(&frame, &truth.frame, &view));
+        row.flip = look_apart(&truth.frame, &frame, plan);
+        rows.push(row);
+    }
+    let extras = Extras {
+        depth_only: true,
+        time: true,
+        ..Extras::default()
+    };
+    let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); rows.len()];
+    for run in 0..=RUNS {
+        for ((_, plan), [wall, gpu]) in fitting.iter().zip(&mut times) {
+            let frame = executor.render(plan, extras, watch)?;
+            // The first round warms up: programs without counters are new.
+            if run > 0 {
+                wall.push(frame.march_ms);
+                let each = frame.passes.iter().map(|p| p.gpu_ms);
+                gpu.extend(each.sum::<Option<f64>>());
+            }
+        }
+    }
+    for (row, [mut wall, mut gpu]) in rows.iter_mut().zip(times) {
+        row.wall_ms = median(&mut wall).unwrap_or(0.0);
+        row.gpu_ms = median(&mut gpu);
+    }
+    Ok(rows)
+}
+
+/// How far two frames of a plan look apart.
+fn look_apart(reference: &Frame, frame: &Frame, plan: &Plan) -> f64 {
+    let [one, two] = [reference, frame].map(|frame| {
+        let shades = Shades::new(Layer::Color, frame, plan);
+        (0..frame.state.len())
+            .map(|i| shades.at(i).clamp(DVec3::ZERO, DVec3::ONE))
+            .collect::<Vec<_>>()
+    });
+    let picture = |pixels| Picture {
+        size: plan.size,
+        pixels,
+    };
+    flip(picture(&one), picture(&two))
+}
+
+/// A row without times and errors yet.
+fn blank(
+    name: &str,
+    plan: &Plan,
+    setting: &Setting,
+    frame: &Frame,
+    truth: &Truth,
+    executor: &Executor,
+) -> Row {
+    let work = frame.work_per_pixel().unwrap_or((0.0, 0.0));
+    Row {
+        preset: name.into(),
+        mode: setting.mode.name().into(),
+        parameters: setting.parameters(),
+        baseline: setting.changes.is_empty(),
+        size: plan.size,
+        device: executor.name(),
+        wall_ms: 0.0,
+        gpu_ms: None,
+        evaluations_per_pixel: work.0,
+        iterations_per_pixel: work.1,
+        depth_error: DepthError::default(),
+        behind: 0.0,
+        front: 0.0,
+        behind8: 0.0,
+        front8: 0.0,
+        holes: 0.0,
+        false_hits: 0.0,
+        start_violations: Vec::new(),
+        unconverged: 0.0,
+        flip: 0.0,
+        truth: TruthNote {
+            stride: truth.stride,
+            moved: truth.moved,
+        },
+        precision: plan.precision_warning(),
+    }
+}

@@ -1,0 +1,11 @@
+//! `conemarch bench`: what a picture costs and how wrong it is.
+
+pub mod calibrate;
+pub mod common;
+pub mod error;
+pub mod plot;
+pub mod row;
+pub mod setting;
+pub mod steps;
+pub mod table;
+pub mod verb;

@@ -1,0 +1,289 @@
+//! Time against error as a picture: a panel for each preset, both axes logarithmic.
+//!
+//! Each mode has a colour; settings that move one key of a mode are small dots of its
+//! colour. The line joins the settings that no other beats in both: the Pareto front.
+
+use std::fmt::Write as _;
+
+use super::row::Row;
+
+const PANEL: [f64; 2] = [460.0, 330.0];
+/// Left, top, right and bottom of the axes within a panel.
+const MARGIN: [f64; 4] = [58.0, 34.0, 18.0, 44.0];
+const COLUMNS: usize = 2;
+const LEGEND: f64 = 58.0;
+/// Modes and their colours (Okabe and Ito's, which colour-blind people can tell apart).
+const COLORS: [(&str, &str); 7] = [
+    ("ray", "#000000"),
+    ("ray-relaxed", "#999999"),
+    ("safe", "#0072b2"),
+    ("calibrated", "#56b4e9"),
+    ("slides-even", "#e69f00"),
+    ("slides-deep", "#d55e00"),
+    ("slides-fast", "#cc79a7"),
+];
+
+/// The picture of all rows.
+pub fn draw(rows: &[Row]) -> String {
+    let mut presets: Vec<&str> = Vec::new();
+    for row in rows {
+        if !presets.contains(&row.preset.as_str()) {
+            presets.push(&row.preset);
+        }
+    }
+    let columns = presets.len().clamp(1, COLUMNS);
+    let lines = presets.len().div_ceil(columns).max(1);
+    let (w, h) = (columns as f64 * PANEL[0], lines as f64 * PANEL[1] + LEGEND);
+    let mut svg = String::new();
+    // Writing to a string cannot fail, here and below.
+    let _ = writeln!(
+        svg,
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="11" fill="#333">"##
+    );
+    let _ = writeln!(svg, r##"<rect width="{w}" height="{h}" fill="#fff"/>"##);
+    for (i, preset) in presets.iter().enumerate() {
+        let own: Vec<&Row> = rows.iter().filter(|r| r.preset == *preset).collect();
+        let at = [
+            (i % columns) as f64 * PANEL[0],
+            (i / columns) as f64 * PANEL[1],
+        ];
+        panel(&mut svg, preset, &own, at);
+    }
+    legend(&mut svg, h - LEGEND + 18.0);
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// Rows that no other beats: none is both faster and less wrong, by time.
+pub fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
+    let mut sorted: Vec<&Row> = rows.iter().copied().filter(|r| comparable(r)).collect();
+    sorted.sort_by(|a, b| {
+        let time = a.wall_ms.total_cmp(&b.wall_ms);
+        time.then(a.wrong().total_cmp(&b.wrong()))
+    });
+    let mut best: Vec<&Row> = Vec::new();
+    for row in sorted {
+        if best.last().is_none_or(|b| row.wrong() < b.wrong()) {
+            best.push(row);
+        }
+    }
+    best
+}
+
+/// A setting of the hit rule asks for another picture: its error is against another truth.
+fn comparable(row: &Row) -> bool {
+    !row.parameters.contains_key("detail")
+}
+
+/// A logarithmic axis over some values, from `at` over `length`.
+struct Axis {
+    low: f64,
+    high: f64,
+    at: f64,
+    length: f64,
+}
+
+impl Axis {
+    fn new(values: impl Iterator<Item = f64>, at: f64, length: f64) -> Self {
+        let start = (f64::INFINITY, 0.0_f64);
+        let (low, high) = values.fold(start, |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) = if low.is_finite() {
+            (low, high)
+        } else {
+            (1.0, 1.0)
+        };
+        Self {
+            low: low / 1.25,
+            high: high.max(low) * 1.25,
+            at,
+            length,
+        }
+    }
+
+    fn place(&self, v: f64) -> f64 {
+        let share = (v.max(self.low) / self.low).ln() / (self.high / self.low).ln();
+        self.at + share * self.length
+    }
+
+    /// 1, 2 and 5 times powers of ten.
+    fn ticks(&self) -> Vec<f64> {
+        let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
+        let all = decades.flat_map(|e| [1.0, 2.0, 5.0].map(|m| m * 10_f64.powi(e)));
+        let inside: Vec<f64> = all.filter(|t| (self.low..=self.high).contains(t)).collect();
+        if inside.len() > 8 {
+            let whole = |t: &f64| (t.log10() - t.log10().round()).abs() < 1e-9;
+            return inside.into_iter().filter(whole).collect();
+        }
+        inside
+    }
+}
+
+/// No wrong pixel at all is shown as half of one.
+fn shown(row: &Row) -> f64 {
+    let pixels = f64::from(row.size[0]) * f64::from(row.size[1]);
+    100.0 * row.wrong().max(0.5 / pixels)
+}
+
+fn panel(svg: &mut String, preset: &str, rows: &[&Row], [left, top]: [f64; 2]) {
+    let rows: Vec<&Row> = rows.iter().copied().filter(|r| comparable(r)).collect();
+    let [x0, y0] = [left + MARGIN[0], top + MARGIN[1]];
+    let [w, h] = [
+        PANEL[0] - MARGIN[0] - MARGIN[2],
+        PANEL[1] - MARGIN[1] - MARGIN[3],
+    ];
+    let x = Axis::new(rows.iter().map(|r| r.wall_ms), x0, w);
+    // Downwards is better, so the least error is at the bottom.
+    let y = Axis::new(rows.iter().map(|r| shown(r)), y0 + h, -h);
+    let _ = writeln!(
+        svg,
+        r##"<text x="{x0}" y="{:.1}" font-size="13" font-weight="bold">{preset}</text>"##,
+        y0 - 12.0
+    );
+    for t in x.ticks() {
+        let at = x.place(t);
+        let _ = writeln!(
+            svg,
+            r##"<path d="M{at:.1} {y0:.1}v{h:.1}" stroke="#eee"/><text x="{at:.1}" y="{:.1}" text-anchor="middle">{t}</text>"##,
+            y0 + h + 14.0
+        );
+    }
+    for t in y.ticks() {
+        let at = y.place(t);
+        let label = (t * 1e6).round() / 1e6;
+        let _ = writeln!(
+            svg,
+            r##"<path d="M{x0:.1} {at:.1}h{w:.1}" stroke="#eee"/><text x="{:.1}" y="{:.1}" text-anchor="end">{label}</text>"##,
+            x0 - 5.0,
+            at + 4.0
+        );
+    }
+    let _ = writeln!(
+        svg,
+        r##"<rect x="{x0}" y="{y0}" width="{w}" height="{h}" fill="none" stroke="#999"/>"##
+    );
+    let _ = writeln!(
+        svg,
+        r##"<text x="{:.1}" y="{:.1}" text-anchor="middle">march and trace, ms</text><text transform="translate({:.1} {:.1}) rotate(-90)" text-anchor="middle">wrong pixels, %</text>"##,
+        x0 + 0.5 * w,
+        y0 + h + 32.0,
+        x0 - 44.0,
+        y0 + 0.5 * h
+    );
+    let best = front(&rows);
+    let line: Vec<String> = best
+        .iter()
+        .map(|r| format!("{:.1},{:.1}", x.place(r.wall_ms), y.place(shown(r))))
+        .collect();
+    let _ = writeln!(
+        svg,
+        r##"<polyline points="{}" fill="none" stroke="#009e73" stroke-width="1.5"/>"##,
+        line.join(" ")
+    );
+    for row in &rows {
+        let (cx, cy) = (x.place(row.wall_ms), y.place(shown(row)));
+        let (radius, stroke) = if row.baseline {
+            (5.0, "#fff")
+        } else {
+            (2.6, "none")
+        };
+        let _ = writeln!(
+            svg,
+            r##"<circle cx="{cx:.1}" cy="{cy:.1}" r="{radius}" fill="{}" stroke="{stroke}"><title>{}: {:.1} ms, {:.4} %</title></circle>"##,
+            color(&row.mode),
+            row.label(),
+            row.wall_ms,
+            100.0 * row.wrong()
+        );
+    }
+    names(svg, &best, &x, &y, x0 + w);
+}
+
+/// The names of the sweeps on the front, kept off each other.
+fn names(svg: &mut String, best: &[&Row], x: &Axis, y: &Axis, right: f64) {
+    let mut taken: Vec<[f64; 2]> = Vec::new();
+    for row in best.iter().filter(|r| !r.baseline) {
+        let (cx, cy) = (x.place(row.wall_ms), y.place(shown(row)));
+        let label = row.label().replace(", ", " ");
+        let mut at = cy - 5.0;
+        while taken
+            .iter()
+            .any(|t| (t[0] - cx).abs() < 110.0 && (t[1] - at).abs() < 10.0)
+        {
+            at -= 10.0;
+        }
+        taken.push([cx, at]);
+        let (side, offset) = if cx > right - 110.0 {
+            ("end", -5.0)
+        } else {
+            ("start", 5.0)
+        };
+        let _ = writeln!(
+            svg,
+            r##"<text x="{:.1}" y="{at:.1}" font-size="9" text-anchor="{side}" fill="#666">{label}</text>"##,
+            cx + offset
+        );
+    }
+}
+
+fn color(mode: &str) -> &'static str {
+    let found = COLORS.iter().find(|(name, _)| *name == mode);
+    found.map_or("#009e73", |(_, color)| color)
+}
+
+fn legend(svg: &mut String, y: f64) {
+    let mut x = 20.0;
+    for (name, color) in COLORS {
+        let _ = writeln!(
+            svg,
+            r##"<circle cx="{x}" cy="{:.1}" r="5" fill="{color}"/><text x="{:.1}" y="{y}">{name}</text>"##,
+            y - 4.0,
+            x + 9.0
+        );
+        x += 30.0 + 6.5 * name.len() as f64;
+    }
+    let _ = writeln!(
+        svg,
+        r##"<text x="20" y="{:.1}">Small dots: one key of the mode moved. Green line: no other setting is both faster and less wrong. Wrong: behind, lost or unconverged.</text>"##,
+        y + 20.0
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(wall_ms: f64, behind: f64) -> Row {
+        let text = format!(
+            r#"{{"preset":"p","mode":"safe","parameters":{{"shell":{behind}}},"baseline":false,"size":[100,100],"device":"d","wall_ms":{wall_ms},"gpu_ms":null,"evaluations_per_pixel":1,"iterations_per_pixel":1,"depth_error":{{"median":0,"p95":0,"p99":0,"max":0}},"behind":{behind},"front":0,"behind8":0,"front8":0,"holes":0,"false_hits":0,"start_violations":[],"unconverged":0,"flip":0,"truth":{{"stride":0.1,"moved":0}},"precision":null}}"#
+        );
+        serde_json::from_str(&text).expect("a row")
+    }
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        let rows = [
+            row(3.0, 0.1),
+            row(1.0, 0.5),
+            row(2.0, 0.6),
+            row(4.0, 0.1),
+            row(5.0, 0.0),
+        ];
+        let all: Vec<&Row> = rows.iter().collect();
+        let times: Vec<f64> = front(&all).iter().map(|r| r.wall_ms).collect();
+        assert_eq!(times, [1.0, 3.0, 5.0]);
+    }
+
+    #[test]
+    fn a_plot_is_whole_with_few_rows_and_with_none() {
+        for rows in [
+            vec![],
+            vec![row(1.0, 0.0)],
+            vec![row(1.0, 0.0), row(20.0, 0.3)],
+        ] {
+            let svg = draw(&rows);
+            assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
+            assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+            assert_eq!(svg.matches("<circle").count(), rows.len() + COLORS.len());
+        }
+    }
+}

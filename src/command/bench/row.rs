@@ -1,0 +1,140 @@
+//! One row of `bench error`: a preset, a setting, its work, time and error.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::compare::Report;
+
+/// Quantiles of |e| in footprints, over pixels that hit in both.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct DepthError {
+    /// Half of the pixels are closer.
+    pub median: f64,
+    /// 95 % are.
+    pub p95: f64,
+    /// 99 % are.
+    pub p99: f64,
+    /// All are.
+    pub max: f64,
+}
+
+/// How sure the reference is.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct TruthNote {
+    /// Factor on the estimate's steps.
+    pub stride: f64,
+    /// Share of sampled pixels that still move when it is halved.
+    pub moved: f64,
+}
+
+/// A measured setting. Shares are of all pixels, 0..1; errors in footprints.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Row {
+    /// Name of the preset.
+    pub preset: String,
+    /// Mode of the march.
+    pub mode: String,
+    /// Keys of `[march]` that differ from the preset's.
+    pub parameters: Map<String, Value>,
+    /// Whether nothing but the mode differs.
+    pub baseline: bool,
+    /// Pixels along each axis.
+    pub size: [u32; 2],
+    /// Who rendered.
+    pub device: String,
+    /// March and trace on the clock, median of warm runs.
+    pub wall_ms: f64,
+    /// March and trace on the device, where it has timestamps.
+    pub gpu_ms: Option<f64>,
+    /// Estimate evaluations of march and trace over pixels.
+    pub evaluations_per_pixel: f64,
+    /// Fold iterations of march and trace over pixels.
+    pub iterations_per_pixel: f64,
+    /// Quantiles of the depth error.
+    pub depth_error: DepthError,
+    /// Share more than 2 footprints too deep.
+    pub behind: f64,
+    /// Share more than 2 footprints too near.
+    pub front: f64,
+    /// Share more than 8 footprints too deep.
+    pub behind8: f64,
+    /// Share more than 8 footprints too near.
+    pub front8: f64,
+    /// Share of hits shown as sky.
+    pub holes: f64,
+    /// Share of sky shown as hits.
+    pub false_hits: f64,
+    /// Pixels whose cell's proof ends beyond their true hit, per level, coarse to fine.
+    pub start_violations: Vec<u64>,
+    /// Share that reached a limit.
+    pub unconverged: f64,
+    /// Mean FLIP difference of the pictures.
+    pub flip: f64,
+    /// How sure the truth is.
+    pub truth: TruthNote,
+    /// A warning where f32 cannot hold what the preset asks for.
+    pub precision: Option<String>,
+}
+
+impl Row {
+    /// Takes over the figures of a comparison.
+    pub fn fill(&mut self, report: &Report) {
+        let [median, p95, p99, max] = report.depth_error;
+        self.depth_error = DepthError {
+            median,
+            p95,
+            p99,
+            max,
+        };
+        self.behind = report.behind;
+        self.front = report.front;
+        self.behind8 = report.behind8;
+        self.front8 = report.front8;
+        self.holes = report.holes;
+        self.false_hits = report.false_hits;
+        self.start_violations = report.start_violations.iter().map(|v| v.1).collect();
+        self.unconverged = report.unconverged;
+    }
+
+    /// Share of pixels that are wrong: too deep, lost, or not finished.
+    pub fn wrong(&self) -> f64 {
+        self.behind + self.holes + self.unconverged
+    }
+
+    /// The mode and what differs, in a few words.
+    pub fn label(&self) -> String {
+        let word = |(key, value): (&String, &Value)| match value {
+            Value::String(text) => format!(", {key} {text}"),
+            other => format!(", {key} {other}"),
+        };
+        let more: String = self.parameters.iter().map(word).collect();
+        format!("{}{more}", self.mode)
+    }
+}
+
+/// A row as names and values, for CSV; objects other than `parameters` are taken apart.
+pub fn flat<R: Serialize>(row: &R) -> Vec<(String, String)> {
+    let mut flat = Vec::new();
+    let whole = serde_json::to_value(row).unwrap_or_default();
+    for (name, value) in whole.as_object().into_iter().flatten() {
+        match value {
+            Value::Object(parts) if name != "parameters" => {
+                for (part, value) in parts {
+                    flat.push((format!("{name}_{part}"), plain(value)));
+                }
+            }
+            _ => flat.push((name.clone(), plain(value))),
+        }
+    }
+    flat
+}
+
+/// A value as a cell of a table: text without quotes, nothing for null, lists spaced.
+fn plain(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Array(items) => items.iter().map(plain).collect::<Vec<_>>().join(" "),
+        other => other.to_string(),
+    }
+}

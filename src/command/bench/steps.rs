@@ -1,0 +1,286 @@
+//! `conemarch bench steps`: what every pass does, counted cell by cell.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use serde::{Deserialize, Serialize};
+
+use super::common::{Common, median};
+use super::row::flat;
+use super::setting::{Setting, baselines};
+use super::table;
+use crate::command::executor::Executor;
+use crate::command::failure::usage;
+use crate::command::{interrupt, print};
+use crate::frame::{Frame, State, Work};
+use crate::output::{BitDepth, Layer, Place, Shades, write_png};
+use crate::plan::{Extras, Plan};
+use crate::preset;
+use crate::render::RenderError;
+
+/// Options of `bench steps`.
+#[derive(Debug, Args)]
+pub struct StepsBench {
+    #[command(flatten)]
+    common: Common,
+    /// Only this mode
+    #[arg(long, value_name = "MODE")]
+    mode: Option<String>,
+    /// Draw a heat map of evaluations for every preset and mode into this folder
+    #[arg(long, value_name = "FOLDER")]
+    heat: Option<PathBuf>,
+}
+
+/// One pass of one preset in one mode. Quantiles are of evaluations per visited cell.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct StepsRow {
+    /// Name of the preset.
+    pub preset: String,
+    /// Mode of the march.
+    pub mode: String,
+    /// `march 1/16` or `trace`.
+    pub pass: String,
+    /// Pixels along each axis.
+    pub size: [u32; 2],
+    /// Who rendered.
+    pub device: String,
+    /// Cells of the level.
+    pub cells: u64,
+    /// Cells that did anything: the others lie under sky.
+    pub visited: u64,
+    /// Estimate evaluations.
+    pub evaluations: u64,
+    /// Fold iterations.
+    pub iterations: u64,
+    /// Half of the visited cells need at most so many evaluations.
+    pub p50: u32,
+    /// 90 % do.
+    pub p90: u32,
+    /// 99 % do.
+    pub p99: u32,
+    /// All do.
+    pub max: u32,
+    /// Share of all cells that are proven sky, or lie under one that is.
+    pub sky: f64,
+    /// Share of all cells that reached the step limit.
+    pub unconverged: f64,
+    /// Evaluations of tiles of 8 x 4 cells that run in step, over those needed.
+    pub waste_8x4: f64,
+    /// The same for 8 x 8.
+    pub waste_8x8: f64,
+    /// Visited cells by evaluations: 0, 1, 2, 3-4, 5-8, and so on by doubling.
+    pub histogram: Vec<u64>,
+    /// Time on the device, where it has timestamps; median of warm runs.
+    pub gpu_ms: Option<f64>,
+    /// Time on the clock; median of warm runs.
+    pub wall_ms: f64,
+}
+
+/// Warm runs that a median is taken of.
+const RUNS: usize = 5;
+
+/// Runs the measurement.
+///
+/// # Errors
+/// An unknown preset or mode, a device that fails, an unwritable file, an interrupt.
+pub fn run(args: &StepsBench) -> Result<()> {
+    interrupt::listen();
+    let plans = args.common.plans()?;
+    let settings = modes(args.mode.as_deref())?;
+    let files = args.common.files()?;
+    if let Some(folder) = &args.heat {
+        let shown = folder.display();
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("the folder `{shown}` cannot be made"))?;
+    }
+    let mut executor = args.common.executor()?;
+    let mut rows = Vec::new();
+    let mut maps = Vec::new();
+    for (name, plan) in &plans {
+        for setting in &settings {
+            let Some(plan) = setting.apply(plan) else {
+                continue;
+            };
+            let (measured, frame) = measure(&mut executor, name, &plan)?;
+            print::print(table::levels(&measured).as_bytes())?;
+            rows.extend(measured);
+            if let Some(folder) = &args.heat {
+                let file = format!("{name}-{}.png", plan.march.mode.name());
+                let mut place = Place::prepare(&folder.join(file))?;
+                let shades = Shades::new(Layer::Steps, &frame, &plan);
+                let text = preset::write(&plan);
+                place.write(|to| write_png(to, &shades, BitDepth::Eight, &text))?;
+                maps.push(place);
+            }
+        }
+    }
+    let flat: Vec<_> = rows.iter().map(flat).collect();
+    files.write(&rows, &flat, maps)
+}
+
+/// The mode of a name, or all.
+fn modes(name: Option<&str>) -> Result<Vec<Setting>> {
+    let all = baselines();
+    let Some(name) = name else { return Ok(all) };
+    let names: Vec<&str> = all.iter().map(|s| s.mode.name()).collect();
+    let found: Vec<_> = all
+        .iter()
+        .filter(|s| s.mode.name() == name)
+        .cloned()
+        .collect();
+    if found.is_empty() {
+        let names = names.join(", ");
+        return Err(usage(format!(
+            "there is no mode `{name}`; there is: {names}"
+        )));
+    }
+    Ok(found)
+}
+
+/// The passes of one plan, and the frame that was counted.
+fn measure(
+    executor: &mut Executor,
+    name: &str,
+    plan: &Plan,
+) -> Result<(Vec<StepsRow>, Frame), RenderError> {
+    let watch = &mut |_: &_| !interrupt::asked();
+    let counted = Extras {
+        count: true,
+        levels: true,
+        depth_only: true,
+        ..Extras::default()
+    };
+    let timed = Extras {
+        depth_only: true,
+        time: true,
+        ..Extras::default()
+    };
+    let frame = executor.render(plan, counted, watch)?;
+    let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); frame.passes.len()];
+    for run in 0..=RUNS {
+        let warm = executor.render(plan, timed, watch)?;
+        for (pass, [wall, gpu]) in warm.passes.iter().zip(&mut times) {
+            if run > 0 {
+                wall.push(pass.wall_ms);
+                gpu.extend(pass.gpu_ms);
+            }
+        }
+    }
+    let mut rows = Vec::new();
+    for (at, (pass, [mut wall, mut gpu])) in frame.passes.iter().zip(times).enumerate() {
+        let (work, states, width) = match frame.levels.get(at) {
+            Some(level) => (&level.work, &level.state, level.cells[0]),
+            None => (&frame.work, &frame.state, frame.size[0]),
+        };
+        let mut row = count(work, states, width as usize);
+        row.preset = name.into();
+        row.mode = plan.march.mode.name().into();
+        row.pass.clone_from(&pass.name);
+        row.size = plan.size;
+        row.device = executor.name();
+        row.wall_ms = median(&mut wall).unwrap_or(0.0);
+        row.gpu_ms = median(&mut gpu);
+        rows.push(row);
+    }
+    Ok((rows, frame))
+}
+
+/// The figures of one pass's cells.
+fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
+    let mut spent: Vec<u32> = work
+        .iter()
+        .map(|w| w.evaluations)
+        .filter(|n| *n > 0)
+        .collect();
+    spent.sort_unstable();
+    let quantile = |q: f64| {
+        let last = spent.len().saturating_sub(1) as f64;
+        spent.get((q * last).round() as usize).copied().unwrap_or(0)
+    };
+    let cells = work.len();
+    let share = |state: State| {
+        let n = states.iter().filter(|s| **s == state as u8).count();
+        n as f64 / cells.max(1) as f64
+    };
+    let mut histogram = vec![(cells - spent.len()) as u64];
+    for n in &spent {
+        // 1, 2, 3-4, 5-8 ...: the power of two that holds n.
+        let bin = 1 + n.next_power_of_two().ilog2() as usize;
+        if histogram.len() <= bin {
+            histogram.resize(bin + 1, 0);
+        }
+        histogram[bin] += 1;
+    }
+    StepsRow {
+        preset: String::new(),
+        mode: String::new(),
+        pass: String::new(),
+        size: [0, 0],
+        device: String::new(),
+        cells: cells as u64,
+        visited: spent.len() as u64,
+        evaluations: work.iter().map(|w| u64::from(w.evaluations)).sum(),
+        iterations: work.iter().map(|w| u64::from(w.iterations)).sum(),
+        p50: quantile(0.5),
+        p90: quantile(0.9),
+        p99: quantile(0.99),
+        max: quantile(1.0),
+        sky: share(State::Sky),
+        unconverged: share(State::Unconverged),
+        waste_8x4: waste(work, width, [8, 4]),
+        waste_8x8: waste(work, width, [8, 8]),
+        histogram,
+        gpu_ms: None,
+        wall_ms: 0.0,
+    }
+}
+
+/// What tiles cost whose lanes run until the last is done, over what their lanes need;
+/// lanes past the edge of the level idle too.
+fn waste(work: &[Work], width: usize, tile: [usize; 2]) -> f64 {
+    let height = work.len().checked_div(width).unwrap_or(0);
+    let (mut needed, mut spent) = (0_u64, 0_u64);
+    for y in (0..height).step_by(tile[1]) {
+        for x in (0..width).step_by(tile[0]) {
+            let rows = (y..(y + tile[1]).min(height)).map(|y| y * width);
+            let cells = rows.flat_map(|row| row + x..row + (x + tile[0]).min(width));
+            let mut longest = 0;
+            for cell in cells {
+                let n = u64::from(work[cell].evaluations);
+                needed += n;
+                longest = longest.max(n);
+            }
+            spent += longest * (tile[0] * tile[1]) as u64;
+        }
+    }
+    spent as f64 / needed.max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_counted() {
+        let of = |n: u32| Work {
+            evaluations: n,
+            iterations: 10 * n,
+        };
+        // A level of 9 x 2 cells, the ninth column under sky.
+        let mut work = vec![of(2); 18];
+        (work[8], work[17], work[3]) = (of(0), of(0), of(10));
+        let mut states = vec![State::Hit as u8; 18];
+        (states[8], states[17], states[3]) = (0, 0, State::Unconverged as u8);
+        let row = count(&work, &states, 9);
+        assert_eq!((row.cells, row.visited), (18, 16));
+        assert_eq!((row.evaluations, row.iterations), (40, 400));
+        assert_eq!((row.p50, row.p90, row.p99, row.max), (2, 2, 10, 10));
+        assert_eq!(row.histogram, [2, 0, 15, 0, 0, 1]);
+        assert!((row.sky - 2.0 / 18.0).abs() < 1e-12);
+        assert!((row.unconverged - 1.0 / 18.0).abs() < 1e-12);
+        // The first tile of 32 lanes waits for ten evaluations, the second for none.
+        assert!((row.waste_8x4 - 8.0).abs() < 1e-12);
+        assert!((row.waste_8x8 - 16.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,29 @@
+//! The verbs of `conemarch bench`.
+
+use anyhow::Result;
+use clap::Subcommand;
+
+use super::{calibrate, error, steps};
+
+/// What to measure.
+#[derive(Debug, Subcommand)]
+pub enum Bench {
+    /// Time and error of every mode against the truth
+    Error(error::ErrorBench),
+    /// Evaluations, iterations and lane waste of every pass
+    Steps(steps::StepsBench),
+    /// Propose lipschitz, shell and fudge for a hole budget
+    Calibrate(calibrate::CalibrateBench),
+}
+
+/// Runs a measurement.
+///
+/// # Errors
+/// An unknown preset, a device that fails, an unwritable file, an interrupt.
+pub fn run(bench: &Bench) -> Result<()> {
+    match bench {
+        Bench::Error(args) => error::run(args),
+        Bench::Steps(args) => steps::run(args),
+        Bench::Calibrate(args) => calibrate::run(args),
+    }
+}
