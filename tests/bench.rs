@@ -1,6 +1,8 @@
 //! The measurements of the command line: fields, files, figures and bad input. Presets are
 //! tiny and measured by the CPU executor, so that no adapter is needed.
 
+#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
 use serde_json::Value;
 
 #[allow(dead_code, reason = "other files use the rest")]

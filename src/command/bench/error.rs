@@ -62,6 +62,7 @@ pub fn run(args: &ErrorBench) -> Result<()> {
         rows.extend(measured);
     }
     print::print(table::means(&rows).as_bytes())?;
+    print::print(table::better_than_safe(&rows).as_bytes())?;
     print::print(table::slides(&rows).as_bytes())?;
     let mut more = Vec::new();
     if let Some(mut place) = plot {
