@@ -1,4 +1,4 @@
-//! Two Frames to an error report (METHOD 5).
+//! Two Frames to an error report (docs/method.md, 5).
 //!
 //! Errors are in footprints: `e = (t - t_ref) / footprint(t_ref)`, where a footprint is
 //! half a pixel's width at the reference's distance.
@@ -35,14 +35,34 @@ pub struct Report {
     pub start_violations: Vec<(u32, u64)>,
 }
 
+/// Signed depth error of each pixel in footprints: infinite where a hit is shown as sky,
+/// minus infinite where sky is shown as a hit, 0 where both are sky, none where the frame
+/// or the reference reached a limit.
+pub fn errors(frame: &Frame, reference: &Frame, view: &View) -> Vec<f64> {
+    let width = frame.size[0] as usize;
+    let (sky, hit) = (State::Sky as u8, State::Hit as u8);
+    let states = frame.state.iter().zip(&reference.state).enumerate();
+    let error = |(i, (&s, &r)): (usize, (&u8, &u8))| match (s, r) {
+        _ if s == sky && r == sky => 0.0,
+        _ if s == sky && r == hit => f64::INFINITY,
+        _ if s == hit && r == sky => f64::NEG_INFINITY,
+        _ if s == hit && r == hit => {
+            let t = f64::from(reference.depth[i]);
+            let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
+            (f64::from(frame.depth[i]) - t) / (ray.grain * t).max(f64::MIN_POSITIVE)
+        }
+        _ => f64::NAN,
+    };
+    states.map(error).collect()
+}
+
 /// Compares a frame with a reference of the same view.
 pub fn compare(frame: &Frame, reference: &Frame, view: &View) -> Report {
-    let width = frame.size[0] as usize;
     let hit = State::Hit as u8;
     let sky = State::Sky as u8;
     let mut report = Report::default();
-    let mut errors = Vec::new();
-    for i in 0..frame.state.len().min(reference.state.len()) {
+    let mut depths = Vec::new();
+    for (i, e) in errors(frame, reference, view).into_iter().enumerate() {
         let (s, r) = (frame.state[i], reference.state[i]);
         report.unconverged += f64::from(u8::from(s == State::Unconverged as u8));
         report.holes += f64::from(u8::from(r == hit && s == sky));
@@ -51,14 +71,11 @@ pub fn compare(frame: &Frame, reference: &Frame, view: &View) -> Report {
         if s != hit || r != hit {
             continue;
         }
-        let t_ref = f64::from(reference.depth[i]);
-        let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
-        let e = (f64::from(frame.depth[i]) - t_ref) / (ray.grain * t_ref).max(f64::MIN_POSITIVE);
         report.behind += f64::from(u8::from(e > 2.0));
         report.front += f64::from(u8::from(e < -2.0));
         report.behind8 += f64::from(u8::from(e > 8.0));
         report.front8 += f64::from(u8::from(e < -8.0));
-        errors.push(e.abs());
+        depths.push(e.abs());
     }
     let n = frame.state.len().max(1) as f64;
     for share in [
@@ -73,8 +90,8 @@ pub fn compare(frame: &Frame, reference: &Frame, view: &View) -> Report {
     ] {
         *share /= n;
     }
-    errors.sort_by(f64::total_cmp);
-    report.depth_error = [0.5, 0.95, 0.99, 1.0].map(|q| quantile(&errors, q));
+    depths.sort_by(f64::total_cmp);
+    report.depth_error = [0.5, 0.95, 0.99, 1.0].map(|q| quantile(&depths, q));
     report.start_violations = violations(frame, reference, view);
     report
 }
@@ -108,4 +125,51 @@ fn violations(frame: &Frame, reference: &Frame, view: &View) -> Vec<(u32, u64)> 
         (level.divisor, count)
     })
     .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::Camera;
+
+    #[test]
+    fn errors_are_counted_on_their_side_of_the_thresholds() {
+        let view = View::new(&Camera::default(), [11, 1]);
+        let grain = |x: u32| view.view_ray([x, 0]).grain;
+        let frame = |pixels: &[(State, f64)]| Frame {
+            size: [11, 1],
+            depth: pixels.iter().map(|p| p.1 as f32).collect(),
+            state: pixels.iter().map(|p| p.0 as u8).collect(),
+            ..Frame::default()
+        };
+        let offsets = [0.0, 1.9, 2.1, 8.1, -1.9, -2.1, -8.1];
+        let mut one = Vec::new();
+        let mut two = Vec::new();
+        for (x, e) in (0..).zip(offsets) {
+            one.push((State::Hit, 5.0));
+            two.push((State::Hit, 5.0 * (1.0 + e * grain(x))));
+        }
+        one.extend([State::Hit, State::Sky, State::Sky, State::Hit].map(|s| (s, 5.0)));
+        two.extend([State::Sky, State::Hit, State::Sky, State::Unconverged].map(|s| (s, 5.0)));
+        let report = compare(&frame(&two), &frame(&one), &view);
+        let pixels = |share: f64| (share * 11.0).round() as u32;
+        assert_eq!(pixels(report.behind), 2);
+        assert_eq!(pixels(report.behind8), 1);
+        assert_eq!(pixels(report.front), 2);
+        assert_eq!(pixels(report.front8), 1);
+        assert_eq!(pixels(report.holes), 1);
+        assert_eq!(pixels(report.false_hits), 1);
+        assert_eq!(pixels(report.unconverged), 1);
+        assert_eq!(pixels(report.mask), 3);
+        assert!(
+            (report.depth_error[0] - 2.1).abs() < 0.01,
+            "{:?}",
+            report.depth_error
+        );
+        assert!(
+            (report.depth_error[3] - 8.1).abs() < 0.01,
+            "{:?}",
+            report.depth_error
+        );
+    }
 }

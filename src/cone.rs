@@ -1,4 +1,4 @@
-//! The exact cone step (METHOD 2), and the slides' rule beside it.
+//! The exact cone step (docs/method.md, 2), and the slides' rule beside it.
 //!
 //! Given rays proven free up to a front and one ball known to be empty, how far are
 //! they proven free now? The answer is maximal for one ball, needs no tolerance at

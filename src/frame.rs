@@ -1,9 +1,5 @@
 //! The result of a render: layers of one value per pixel, and the figures of each pass.
 
-use glam::DVec3;
-
-use crate::view::View;
-
 /// What a pixel is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -114,21 +110,6 @@ impl Frame {
         let n = self.state.len().max(1);
         #[allow(clippy::cast_precision_loss, reason = "a ratio for reading")]
         Some((sum.0 as f64 / n as f64, sum.1 as f64 / n as f64))
-    }
-
-    /// World position of each pixel's hit; infinity for sky.
-    pub fn position(&self, view: &View) -> Vec<[f32; 3]> {
-        let width = self.size[0] as usize;
-        let at = |(i, t): (usize, &f32)| {
-            if t.is_infinite() {
-                return [f32::INFINITY; 3];
-            }
-            #[allow(clippy::cast_possible_truncation, reason = "indices of a u32 size")]
-            let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
-            let p: DVec3 = view.eye + ray.at(f64::from(*t));
-            p.as_vec3().to_array()
-        };
-        self.depth.iter().enumerate().map(at).collect()
     }
 
     /// Evaluations that led to each pixel: its ray's, and those of every cell above it.

@@ -200,8 +200,9 @@ impl Marching {
 
     /// Whether the fudge list fits the pyramid.
     pub fn check(&self) -> Result<(), Fault> {
-        let levels = self.coarsest.ilog2().max(1) as usize;
-        if self.fudge.len() > levels {
+        let levels = self.coarsest.ilog2() as usize;
+        // Elsewhere nothing reads the list, and a coarser or finer start is no fault.
+        if self.mode == Mode::Calibrated && self.fudge.len() > levels.max(1) {
             return Err(Fault::new(
                 "march.fudge",
                 format!(
@@ -276,5 +277,42 @@ impl Marching {
                 ConeRule::Exact
             },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slides_budgets_are_theirs() {
+        let budget = |mode| {
+            let march = Marching {
+                mode,
+                ..Marching::default()
+            };
+            let levels = march.pyramid().levels;
+            let steps: Vec<u32> = levels.iter().map(|l| l.steps).collect();
+            (steps, march.ray_steps())
+        };
+        assert_eq!(budget(Mode::SlidesEven), (vec![25; 4], 25));
+        assert_eq!(budget(Mode::SlidesDeep), (vec![512; 4], 128));
+        assert_eq!(budget(Mode::SlidesFast), (vec![512; 4], 32));
+        assert_eq!(budget(Mode::Safe), (vec![256; 4], 256));
+        assert_eq!(budget(Mode::Ray), (vec![], 256));
+    }
+
+    #[test]
+    fn factors_are_counted_only_where_they_are_read() {
+        let mut march = Marching {
+            coarsest: 8,
+            fudge: vec![1.0; 4],
+            ..Marching::default()
+        };
+        assert!(march.check().is_ok());
+        march.mode = Mode::Calibrated;
+        assert!(march.check().is_err());
+        march.fudge.pop();
+        assert!(march.check().is_ok());
     }
 }

@@ -179,7 +179,7 @@ impl Plan {
     /// A sentence about precision where f32 cannot hold what the plan asks for.
     ///
     /// The estimate's noise in f32 is about 2e-8 of the size of the coordinates
-    /// (METHOD 6: 1e-7 at 5); a footprint under a hundred times that is damaged.
+    /// (docs/method.md, 6); a footprint under a hundred times that is damaged.
     pub fn precision_warning(&self) -> Option<String> {
         let Subject::Distance { shape, .. } = &self.subject else {
             return None;
@@ -212,15 +212,7 @@ impl Plan {
         let mut text = String::new();
         let [w, h] = self.size;
         let _ = writeln!(text, "{w} x {h}, mode {}", self.march.mode.name());
-        if let Scene::Distance(d) = &scene {
-            let _ = writeln!(
-                text,
-                "{}: {} iterations, lipschitz {}",
-                d.shape.name(),
-                d.iterations,
-                d.shape.lipschitz()
-            );
-        }
+        let _ = writeln!(text, "{}", scene.twin().describe());
         let mut programs: Vec<Program> = Vec::new();
         text.push_str("passes\n");
         for pass in self.passes() {

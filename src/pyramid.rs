@@ -1,4 +1,4 @@
-//! The pyramid of image-space resolutions (METHOD 1).
+//! The pyramid of image-space resolutions (docs/method.md, 1).
 //!
 //! A level with divisor D has `ceil(W/D) x ceil(H/D)` cells; cell (i, j) covers the
 //! D x D pixels from (iD, jD), cut by the image. Divisors double exactly, so a

@@ -10,11 +10,10 @@ use std::rc::Rc;
 use std::time::Instant;
 
 use bytemuck::bytes_of;
-use thiserror::Error;
 
 use crate::frame::Frame;
 use crate::gpu::buffer::{Buffer, uniform};
-use crate::gpu::device::{Device, DeviceError};
+use crate::gpu::device::Device;
 use crate::gpu::kernel::{Kernel, KernelError};
 use crate::pass::queue::{COUNT_AT, Turn};
 use crate::plan::{Extras, Pass, Plan};
@@ -23,38 +22,14 @@ use crate::shader::Program;
 
 mod collect;
 mod dispatch;
+mod error;
 mod job;
 
 pub(crate) use collect::blank;
 use collect::{Bound, UNWRITTEN, collect};
 use dispatch::{Dispatcher, Filled, clear_count};
+pub use error::RenderError;
 use job::{Job, Setup};
-
-/// Why there is no frame.
-#[derive(Debug, Error)]
-pub enum RenderError {
-    /// The device failed.
-    #[error(transparent)]
-    Device(#[from] DeviceError),
-    /// A program failed.
-    #[error(transparent)]
-    Kernel(#[from] KernelError),
-    /// The caller asked to stop.
-    #[error("cancelled")]
-    Cancelled,
-    /// The device claims to be done, but cells were never visited.
-    #[error(
-        "the device `{device}` left {cells} cells of pass `{pass}` unwritten and reported no error; try a smaller --size, another --device, or --device cpu"
-    )]
-    Unwritten {
-        /// Its name.
-        device: String,
-        /// The pass.
-        pass: String,
-        /// How many.
-        cells: usize,
-    },
-}
 
 /// How the work is cut. It never changes a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! The truth that pictures are compared with (METHOD 5), and where it is kept.
+//! The truth that pictures are compared with (docs/method.md, 5), and where it is kept.
 //!
 //! Truths are kept in the user's cache folder, under a hash of everything that decides
 //! them: the plan's text and this very program. A program that was built anew, or a plan
@@ -246,6 +246,7 @@ mod tests {
         let (made, before) = cached(Some(&cache), &plan(), &mut |_| true).expect("made");
         let (found, after) = cached(Some(&cache), &plan(), &mut |_| true).expect("found");
         assert!(!before && after);
+        assert!(made.stride <= 0.1 && made.moved < CONVERGED);
         assert_eq!(found.frame.depth, made.frame.depth);
         assert_eq!(found.frame.state, made.frame.state);
         assert_eq!(found.frame.radiance, made.frame.radiance);

@@ -1,4 +1,4 @@
-//! The camera: the ray of a pixel and the cone of a cell (METHOD 1).
+//! The camera: the ray of a pixel and the cone of a cell (docs/method.md, 1).
 //!
 //! World coordinates are right-handed. Distances are radial: t is measured along each
 //! ray's own unit direction, so that a number proven for a cell holds for every ray
@@ -8,6 +8,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
+use crate::frame::Frame;
 use crate::key::{Fault, Key, Number, Triple};
 use crate::pyramid::Block;
 use crate::shader::Module;
@@ -219,7 +220,7 @@ impl View {
     /// The cone over the centres of a cell's pixels, the cell cut by the image.
     ///
     /// `k = min(2, 2|h| / (2|u| - |h|))` with h the half diagonal and u the
-    /// un-normalised axis; 2 where the cell is wider than that (METHOD 1).
+    /// un-normalised axis; 2 where the cell is wider than that (docs/method.md, 1).
     pub fn view_cone(&self, cell: [u32; 2], divisor: u32) -> Beam {
         let low = cell.map(|c| c * divisor);
         let high = [0, 1].map(|i| (low[i] + divisor).min(self.size[i]));
@@ -241,5 +242,46 @@ impl View {
             grain0: 0.0,
             grain: 0.5 * self.pixel / (n - h).max(1.0),
         }
+    }
+
+    /// World position of each pixel's hit in a frame of this view; infinity for sky.
+    pub fn positions(&self, frame: &Frame) -> Vec<[f32; 3]> {
+        let width = frame.size[0] as usize;
+        let at = |(i, t): (usize, &f32)| {
+            if t.is_infinite() {
+                return [f32::INFINITY; 3];
+            }
+            #[allow(clippy::cast_possible_truncation, reason = "indices of a u32 size")]
+            let ray = self.view_ray([(i % width) as u32, (i / width) as u32]);
+            let p: DVec3 = self.eye + ray.at(f64::from(*t));
+            p.as_vec3().to_array()
+        };
+        frame.depth.iter().enumerate().map(at).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_lie_on_the_rays() {
+        let camera = Camera {
+            eye: DVec3::new(1.0, -2.0, 3.0),
+            ..Camera::default()
+        };
+        let view = View::new(&camera, [3, 1]);
+        let frame = Frame {
+            size: [3, 1],
+            depth: vec![2.0, 4.0, f32::INFINITY],
+            ..Frame::default()
+        };
+        let found = view.positions(&frame);
+        for (x, t) in [(0, 2.0), (1, 4.0)] {
+            let want = camera.eye + t * view.view_ray([x, 0]).axis;
+            let got = DVec3::from_array(found[x as usize].map(f64::from));
+            assert!((got - want).length() < 1e-6, "{got} {want}");
+        }
+        assert_eq!(found[2], [f32::INFINITY; 3]);
     }
 }

@@ -380,7 +380,7 @@ fn wrong_usage_is_exit_code_2() {
     }
     let cases: [(&[&str], &[&str]); 15] = [
         (
-            &["--layer", "error"],
+            &["--layer", "colour"],
             &["--layer", "possible values: color, depth"],
         ),
         (&["--depth", "12"], &["--depth", "8, 16"]),
@@ -474,7 +474,7 @@ fn failures_are_exit_code_1() {
     let nobody = ["render", "mandelbox", "--size", "8x8", "--device"];
     for device in ["99", "no such adapter"] {
         let args = [&nobody[..], &[device]].concat();
-        folder.fails(&args, 1, &["no adapter matches", device, "cpu"]);
+        folder.fails(&args, 1, &["there is no adapter", device, "cpu"]);
     }
 }
 
@@ -502,6 +502,80 @@ fn a_picture_that_does_not_fit_into_memory_is_refused_with_one_that_does() {
         "65536x65536",
     ];
     folder.fails(&args, 1, &["65536x65536", " bytes of memory", "--size "]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_picture_that_finds_a_full_disk_says_which() {
+    let folder = Folder::new();
+    std::os::unix::fs::symlink("/dev/full", folder.0.join("full.png")).expect("a link");
+    let words = ["full.png", "No space left", "elsewhere"];
+    folder.fails(&tiny("mandelbox", &["-o", "full.png"]), 1, &words);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn nobody_need_listen_to_standard_error() {
+    let folder = Folder::new();
+    let deaf = |args: &[&str]| {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full");
+        let mut command = folder.command(args);
+        let status = command
+            .stderr(full.expect("/dev/full"))
+            .stdout(Stdio::null());
+        status.status().expect("the program starts").code()
+    };
+    assert_eq!(deaf(&tiny("mandelbox", &["-o", "a.png"])), Some(0));
+    assert_eq!(folder.files(), ["a.png"]);
+    assert_eq!(deaf(&tiny("nothing", &[])), Some(2));
+    assert_eq!(deaf(&["render"]), Some(2));
+    assert_eq!(deaf(&tiny("mandelbox", &["-o", "no/a.png"])), Some(1));
+}
+
+#[test]
+fn shares_are_of_what_is_in_the_picture() {
+    let folder = Folder::new();
+    let few = ["--set", "march.steps=2", "--stats", "s.json", "-o", "a.png"];
+    folder.done(&tiny("mandelbox", &few));
+    let stats: Value = serde_json::from_slice(&folder.bytes("s.json")).expect("JSON");
+    let share = |name: &str| stats[name].as_f64().expect("a share");
+    assert!(share("unconverged") > 0.0, "{stats}");
+    let all = share("hit") + share("sky") + share("unconverged");
+    assert!((all - 1.0).abs() < 1e-12, "{stats}");
+}
+
+#[test]
+fn errors_are_a_layer() {
+    let folder = Folder::new();
+    let deep = [
+        "--layer",
+        "error",
+        "-o",
+        "a.png",
+        "--set",
+        "march.mode=slides-fast",
+    ];
+    folder.done(&tiny("bench-thin", &deep));
+    folder.done(&tiny(
+        "bench-thin",
+        &[
+            "--layer",
+            "error",
+            "-o",
+            "b.png",
+            "--set",
+            "march.mode=truth",
+        ],
+    ));
+    let [wrong, right] = ["a.png", "b.png"].map(|name| decode(&folder.bytes(name)).pixels);
+    // Nothing of the truth is too deep; red says that much of the slides' picture is.
+    let red = |p: &[u8]| {
+        p.chunks(3)
+            .filter(|c| c[0] > c[2].saturating_add(150))
+            .count()
+    };
+    assert_eq!(red(&right), 0);
+    assert!(red(&wrong) > 10, "{}", red(&wrong));
 }
 
 #[cfg(target_os = "linux")]

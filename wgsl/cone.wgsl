@@ -1,4 +1,4 @@
-// The exact cone step (METHOD 2): how far one empty ball carries a cone's front.
+// The exact cone step (docs/method.md, 2): how far one empty ball carries a cone's front.
 
 override CONE_TRUST: f32;
 override CONE_ROUND_DOWN: f32;

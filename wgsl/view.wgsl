@@ -1,4 +1,4 @@
-// The pinhole camera: the ray of a pixel and the cone of a cell (METHOD 1).
+// The pinhole camera: the ray of a pixel and the cone of a cell (docs/method.md, 1).
 //
 // Every index is one of the full image's pixel grid, also when only a block of the
 // image is rendered: the same pixel gives the same bits in any block.

@@ -1,10 +1,9 @@
 //! `conemarch completions SHELL`
 
 use anyhow::Result;
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 
-use super::line::Line;
 use super::print::print;
 
 /// What `completions` takes.
@@ -15,9 +14,12 @@ pub struct Completions {
     shell: Shell,
 }
 
-/// Prints the completion script of a shell.
-pub fn run(args: &Completions) -> Result<()> {
+/// Prints the completion script of a shell for a command line.
+///
+/// # Errors
+/// Standard output cannot be written.
+pub fn run(args: &Completions, line: &mut Command) -> Result<()> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Line::command(), "conemarch", &mut script);
+    clap_complete::generate(args.shell, line, "conemarch", &mut script);
     print(&script)
 }

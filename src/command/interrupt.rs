@@ -1,12 +1,13 @@
 //! Ctrl-C: the render stops at its next opportunity and leaves no file.
 
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
 use std::process::exit;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
 use super::failure::CANCELLED;
+use super::print::say;
 use crate::output;
 
 static ASKED: AtomicBool = AtomicBool::new(false);
@@ -40,8 +41,8 @@ fn end() -> ! {
     let _kept = output::clear();
     if io::stderr().is_terminal() {
         // The progress bar's line, which nobody else will clear now.
-        eprint!("\r\x1b[2K");
+        let _ = write!(io::stderr(), "\r\x1b[2K");
     }
-    eprintln!("error: {CANCELLED}");
+    say(&format!("error: {CANCELLED}"));
     exit(1);
 }

@@ -6,8 +6,9 @@ use std::sync::Mutex;
 
 use anyhow::Result;
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
+use super::print::say;
 use super::{bench, completions, devices, failure, presets, render};
 
 /// Renders distance-estimated fractals by multi-pass cone marching.
@@ -56,7 +57,7 @@ pub fn run() -> ExitCode {
     match catch_unwind(AssertUnwindSafe(|| line.run())) {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(e)) => {
-            eprintln!("error: {}", failure::sentence(&e));
+            say(&format!("error: {}", failure::sentence(&e)));
             ExitCode::from(failure::code(&e))
         }
         Err(_) => {
@@ -65,7 +66,9 @@ pub fn run() -> ExitCode {
                 .ok()
                 .and_then(|s| s.clone())
                 .unwrap_or_default();
-            eprintln!("error: a fault in conemarch itself, please report it: {said}");
+            say(&format!(
+                "error: a fault in conemarch itself, please report it: {said}"
+            ));
             ExitCode::FAILURE
         }
     }
@@ -80,11 +83,11 @@ fn refuse(error: &clap::Error) -> ExitCode {
             ExitCode::SUCCESS
         }
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            eprintln!("error: a command is missing; `conemarch --help` lists the commands");
+            say("error: a command is missing; `conemarch --help` lists the commands");
             ExitCode::from(2)
         }
         _ => {
-            eprintln!("error: {}", failure::flatten(error));
+            say(&format!("error: {}", failure::flatten(error)));
             ExitCode::from(2)
         }
     }
@@ -97,7 +100,7 @@ impl Line {
             Verb::Bench(bench) => bench::verb::run(bench),
             Verb::Presets(args) => presets::run(args),
             Verb::Devices => devices::run(),
-            Verb::Completions(args) => completions::run(args),
+            Verb::Completions(args) => completions::run(args, &mut Self::command()),
         }
     }
 }

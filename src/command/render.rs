@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::executor::Executor;
 use super::failure::usage;
-use super::print::print;
+use super::print::{print, say};
 use super::stats::{Stats, shares};
 use super::{interrupt, memory, size};
 use crate::frame::Frame;
@@ -20,6 +20,7 @@ use crate::output::{BitDepth, Layer, Place, Shades, commit, write_exr, write_png
 use crate::plan::{Extras, Plan};
 use crate::preset::{self, Override, Preset};
 use crate::render::{Progress, RenderError};
+use crate::truth::{self, Cache};
 
 /// What `render` takes.
 #[derive(Args, Debug)]
@@ -69,7 +70,7 @@ pub struct Render {
     explain: bool,
 }
 
-const LAYERS: [(&str, Layer, &str); 6] = [
+const LAYERS: [(&str, Layer, &str); 7] = [
     ("color", Layer::Color, "light, tone-mapped"),
     (
         "depth",
@@ -95,6 +96,11 @@ const LAYERS: [(&str, Layer, &str); 6] = [
         "state",
         Layer::State,
         "sky dark blue, hit light grey, unconverged magenta",
+    ),
+    (
+        "error",
+        Layer::Error,
+        "depth against the truth: grey none, red 8 footprints too deep or lost, blue too near",
     ),
 ];
 
@@ -167,28 +173,48 @@ pub fn run(args: &Render) -> Result<()> {
     let picture = Sink::prepare(&output)?;
     let figures = args.stats.as_deref().map(Sink::prepare).transpose()?;
     let (mut executor, who) = Executor::open(&choice)?;
-    eprintln!("rendering on {who}");
+    say(&format!("rendering on {who}"));
     // The CPU executor has f64, and nothing to be warned of.
     if let (Executor::Gpu(_), Some(warning)) = (&executor, plan.precision_warning()) {
-        eprintln!("warning: {warning}");
+        say(&format!("warning: {warning}"));
     }
     let frame = march(&mut executor, &plan, extras(args, format))?;
     let preset = preset::write(&plan);
-    let draw = || Shades::new(args.layer, &frame, &plan);
+    let truth = match args.layer {
+        Layer::Error => {
+            say("rendering the truth to compare with, in f64");
+            let watch = &mut |_: &_| !interrupt::asked();
+            Some(truth::cached(Cache::user().as_ref(), &plan, watch)?.0)
+        }
+        _ => None,
+    };
+    let view = plan.view();
+    let draw = || {
+        let shades = Shades::new(args.layer, &frame, &plan);
+        match &truth {
+            Some(truth) => shades.against(&truth.frame, &view),
+            None => shades,
+        }
+    };
     let depth = args.depth.unwrap_or_default();
     let mut places = Vec::new();
     let mut printed = Vec::new();
     match picture {
         Sink::Stdout => write_png(&mut Cursor::new(&mut printed), &draw(), depth, &preset)?,
         Sink::File(mut place) => {
-            place.write(|to| match format {
-                Format::Png => write_png(to, &draw(), depth, &preset),
-                Format::Exr => write_exr(to, &frame, &plan),
-            })?;
+            let mut content = Vec::new();
+            let to = &mut Cursor::new(&mut content);
+            match format {
+                Format::Png => write_png(to, &draw(), depth, &preset)?,
+                Format::Exr => write_exr(to, &frame, &plan)?,
+            }
+            place.write_all(&content)?;
             places.push(place);
         }
     }
     if let Some(figures) = figures {
+        let mut frame = frame.clone();
+        warm_times(&mut executor, &plan, &mut frame)?;
         let stats = Stats::new(&name, &plan, &executor, &frame);
         let mut text = serde_json::to_vec_pretty(&stats)?;
         text.push(b'\n');
@@ -205,7 +231,7 @@ pub fn run(args: &Render) -> Result<()> {
     }
     print(&printed)?;
     commit(places)?;
-    eprintln!("{}", summary(&output, &frame));
+    say(&summary(&output, &frame));
     Ok(())
 }
 
@@ -274,6 +300,37 @@ fn march(executor: &mut Executor, plan: &Plan, extras: Extras) -> Result<Frame> 
     let frame = executor.render(plan, extras, &mut watch);
     bar.finish_and_clear();
     Ok(frame?)
+}
+
+/// Longest march that is done again for its time, in milliseconds.
+const MOST_AGAIN: f64 = 5_000.0;
+/// Warm runs that a median is taken of.
+const AGAIN: usize = 3;
+
+/// Puts the times of warm runs into a frame, as the first one compiled its programs and
+/// counted; only what takes very long keeps the times of that one.
+fn warm_times(executor: &mut Executor, plan: &Plan, frame: &mut Frame) -> Result<()> {
+    if frame.march_ms > MOST_AGAIN {
+        return Ok(());
+    }
+    let extras = Extras {
+        depth_only: true,
+        time: true,
+        ..Extras::default()
+    };
+    let watch = &mut |_: &_| !interrupt::asked();
+    let mut runs = Vec::new();
+    for _ in 0..AGAIN {
+        runs.push(executor.render(plan, extras, watch)?);
+    }
+    runs.sort_by(|a, b| a.march_ms.total_cmp(&b.march_ms));
+    let middle = &runs[AGAIN / 2];
+    frame.march_ms = middle.march_ms;
+    for (pass, warm) in frame.passes.iter_mut().zip(&middle.passes) {
+        pass.gpu_ms = warm.gpu_ms;
+        pass.wall_ms = warm.wall_ms;
+    }
+    Ok(())
 }
 
 /// One line about a finished picture.

@@ -1,4 +1,4 @@
-//! The Mandelbox (METHOD 3).
+//! The Mandelbox (docs/method.md, 3).
 //!
 //! Folds about a box and a ball, rotates, scales, and adds the starting point (or a
 //! constant, in Julia mode). Its estimate is the same at every exit, monotone in the

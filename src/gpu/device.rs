@@ -14,9 +14,9 @@ const STORAGE_BUFFERS: u32 = 14;
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum DeviceError {
     /// No adapter fits the choice.
-    #[error("no adapter matches `{choice}`; there is: {there_is}")]
+    #[error("there is no {choice}; there is: {there_is}")]
     NoMatch {
-        /// What was asked for.
+        /// What was asked for, in words.
         choice: String,
         /// What there is, in a line.
         there_is: String,
@@ -148,8 +148,8 @@ impl Adapters {
                 ),
                 (None, None) => return Ok(None),
             },
-            Choice::Hardware => (best(hardware), "as asked", "gpu"),
-            Choice::Software => (best(software), "as asked", "software"),
+            Choice::Hardware => (best(hardware), "as asked", "hardware adapter"),
+            Choice::Software => (best(software), "as asked", "software adapter"),
             Choice::Index(i) => (Some(*i).filter(|i| *i < infos.len()), "as asked", ""),
             Choice::Named(part) => {
                 let part = part.to_lowercase();
@@ -158,8 +158,8 @@ impl Adapters {
             }
         };
         let asked = match choice {
-            Choice::Index(i) => i.to_string(),
-            Choice::Named(part) => part.clone(),
+            Choice::Index(i) => format!("adapter {i}"),
+            Choice::Named(part) => format!("adapter called `{part}`"),
             _ => asked.to_string(),
         };
         match found {

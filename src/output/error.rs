@@ -34,6 +34,12 @@ impl OutputError {
         }
     }
 
+    /// A failure while content is written, which is a full disk mostly.
+    pub(super) fn full(path: &Path, e: &io::Error) -> Self {
+        let would = "free some space, or name a file elsewhere";
+        Self::file(path, format!("cannot be written: {e}; {would}"))
+    }
+
     /// A failure of the file system while doing something.
     pub(super) fn io(path: &Path, doing: &str, e: &io::Error) -> Self {
         Self::file(path, format!("{doing}: {e}"))

@@ -28,7 +28,7 @@ pub fn write_exr(
         list.push(AnyChannel::new(name, FlatSamples::F32(values)));
     };
     let one = |of: &[[f32; 3]], i: usize| of.iter().map(|v| v[i]).collect::<Vec<f32>>();
-    let position = frame.position(&plan.view());
+    let position = plan.view().positions(frame);
     for (i, (rgb, xyz)) in ["R", "G", "B"].iter().zip(["X", "Y", "Z"]).enumerate() {
         channel(rgb, one(&frame.radiance, i));
         channel(&format!("normal.{xyz}"), one(&frame.normal, i));

@@ -6,9 +6,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::compare::errors;
 use crate::frame::{Frame, State};
 use crate::pass::look::{Light, srgb};
 use crate::plan::{Extras, Plan};
+use crate::view::View;
 
 /// What a picture can show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,6 +31,10 @@ pub enum Layer {
     Steps,
     /// Sky dark blue, hit light grey, unconverged magenta.
     State,
+    /// Depth error against the truth: light grey none, through orange to dark red at 8
+    /// footprints too deep and for holes, through blue to dark blue at 8 too near and for
+    /// false hits; unconverged magenta.
+    Error,
 }
 
 impl Layer {
@@ -56,6 +62,7 @@ pub struct Shades<'a> {
     light: Light,
     position: Vec<[f32; 3]>,
     steps: Vec<f32>,
+    error: Vec<f64>,
     /// What is black and what is white.
     low: DVec3,
     high: DVec3,
@@ -75,6 +82,11 @@ const HEAT: [DVec3; 6] = [
 /// Farthest grey of depth: sky stays apart from it.
 const FARTHEST: f64 = 0.95;
 
+/// Error in footprints that is as dark as any larger one.
+const MOST_APART: f64 = 8.0;
+const TOO_DEEP: [DVec3; 2] = [DVec3::new(0.90, 0.55, 0.10), DVec3::new(0.55, 0.0, 0.05)];
+const TOO_NEAR: [DVec3; 2] = [DVec3::new(0.25, 0.60, 0.90), DVec3::new(0.05, 0.10, 0.50)];
+
 const SKY: DVec3 = DVec3::new(0.09, 0.15, 0.30);
 const HIT: DVec3 = DVec3::new(0.82, 0.82, 0.82);
 const UNCONVERGED: DVec3 = DVec3::new(1.0, 0.0, 1.0);
@@ -88,6 +100,7 @@ impl<'a> Shades<'a> {
             light: plan.light(),
             position: Vec::new(),
             steps: Vec::new(),
+            error: Vec::new(),
             low: DVec3::ZERO,
             high: DVec3::ONE,
         };
@@ -98,7 +111,7 @@ impl<'a> Shades<'a> {
                 shades.between(range);
             }
             Layer::Position => {
-                shades.position = frame.position(&plan.view());
+                shades.position = plan.view().positions(frame);
                 let there = shades.position.iter().filter(|p| p[0].is_finite());
                 let range: Vec<DVec3> = there.map(|p| vector(*p)).collect();
                 shades.between(range.into_iter());
@@ -107,9 +120,15 @@ impl<'a> Shades<'a> {
                 shades.steps = frame.steps();
                 shades.high = DVec3::splat(percentile_99(&shades.steps));
             }
-            Layer::Color | Layer::Normal | Layer::State => {}
+            Layer::Color | Layer::Normal | Layer::State | Layer::Error => {}
         }
         shades
+    }
+
+    /// The same with the truth that [`Layer::Error`] compares with.
+    pub fn against(mut self, truth: &Frame, view: &View) -> Self {
+        self.error = errors(self.frame, truth, view);
+        self
     }
 
     /// Pixels along each axis.
@@ -162,6 +181,7 @@ impl<'a> Shades<'a> {
                 let x = f64::from(self.steps[i]);
                 heat(self.share(DVec3::splat(x)).x)
             }
+            Layer::Error => apart(self.error.get(i).copied().unwrap_or(f64::NAN)),
             Layer::State => match State::from_code(u32::from(self.frame.state[i])) {
                 Some(State::Sky) => SKY,
                 Some(State::Hit) => HIT,
@@ -192,6 +212,19 @@ impl<'a> Shades<'a> {
 
 fn vector(v: [f32; 3]) -> DVec3 {
     DVec3::from_array(v.map(f64::from))
+}
+
+/// The colour of a signed error in footprints. The root makes small ones seen.
+fn apart(e: f64) -> DVec3 {
+    if e.is_nan() {
+        return UNCONVERGED;
+    }
+    let x = (e.abs() / MOST_APART).min(1.0).sqrt();
+    let stops = if e > 0.0 { TOO_DEEP } else { TOO_NEAR };
+    match x {
+        x if x < 0.5 => HIT.lerp(stops[0], 2.0 * x),
+        x => stops[0].lerp(stops[1], 2.0 * x - 1.0),
+    }
 }
 
 fn heat(x: f64) -> DVec3 {

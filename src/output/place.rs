@@ -96,7 +96,7 @@ impl Place {
         content: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), OutputError>,
     ) -> Result<(), OutputError> {
         let shown = self.shown.clone();
-        let fail = |e: io::Error| OutputError::io(&shown, "cannot be written", &e);
+        let fail = |e: io::Error| OutputError::full(&shown, &e);
         if self.held.is_some() {
             self.file.set_len(0).map_err(fail)?;
             self.file.rewind().map_err(fail)?;
@@ -112,7 +112,7 @@ impl Place {
     /// The disk is full.
     pub fn write_all(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         let shown = self.shown.clone();
-        let fail = |e: io::Error| OutputError::io(&shown, "cannot be written", &e);
+        let fail = |e: io::Error| OutputError::full(&shown, &e);
         self.write(|to| to.write_all(bytes).map_err(fail))
     }
 }

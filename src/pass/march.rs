@@ -1,4 +1,4 @@
-//! One level of the pyramid: cones from the parents' fronts (METHOD 1 and 2).
+//! One level of the pyramid: cones from the parents' fronts (docs/method.md, 1 and 2).
 //! Twin: `wgsl/pass/march.wgsl`.
 
 use bytemuck::{Pod, Zeroable};

@@ -82,7 +82,12 @@ fn failure(path: &Path, why: impl Into<String>) -> PresetError {
 
 /// The preset's text in a file, be it the file itself or a picture's.
 fn file_text(path: &Path) -> Result<String, PresetError> {
-    let unreadable = |e: std::io::Error| failure(path, format!("cannot be read: {e}"));
+    let unreadable = |e: std::io::Error| {
+        failure(
+            path,
+            format!("cannot be read: {e}; check its path and rights, or name a built-in preset"),
+        )
+    };
     let mut file = File::open(path).map_err(unreadable)?;
     if path.is_dir() {
         return Err(failure(
@@ -121,11 +126,20 @@ fn picture_text(path: &Path, picture: impl Read) -> Result<String, PresetError> 
     // of the file is enough. What it lacks then shows as a broken picture.
     let mut head = Vec::new();
     let mut part = BufReader::new(picture).take(4 * MOST_BYTES);
-    part.read_to_end(&mut head)
-        .map_err(|e| failure(path, format!("cannot be read: {e}")))?;
+    part.read_to_end(&mut head).map_err(|e| {
+        failure(
+            path,
+            format!("cannot be read: {e}; check its path and rights, or name a built-in preset"),
+        )
+    })?;
     let reader = png::Decoder::new(std::io::Cursor::new(head))
         .read_info()
-        .map_err(|e| failure(path, format!("is a broken PNG: {e}")))?;
+        .map_err(|e| {
+            failure(
+                path,
+                format!("is a broken PNG: {e}; render it again from its preset"),
+            )
+        })?;
     let chunks = &reader.info().utf8_text;
     let chunk = chunks.iter().find(|c| c.keyword == PNG_KEYWORD);
     let Some(chunk) = chunk else {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use super::RenderError;
+use super::error::RenderError;
 use super::job::Job;
 use crate::frame::{Frame, LevelLayer, PassFigures, State, Work};
 use crate::gpu::buffer::Buffer;

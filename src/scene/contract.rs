@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use crate::frame::Work;
-use crate::key::Fault;
 use crate::shader::Module;
 use crate::view::Beam;
 
@@ -84,6 +83,6 @@ pub trait Twin {
     fn modules(&self) -> Vec<Module>;
     /// Bytes of the uniforms by the names of the WGSL variables.
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)>;
-    /// Whether the parameters fit together.
-    fn check(&self) -> Result<(), Fault>;
+    /// A line for people: what it is, with the numbers that it was resolved to.
+    fn describe(&self) -> String;
 }

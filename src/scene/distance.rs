@@ -1,6 +1,6 @@
 //! A scene given by a distance estimate.
 //!
-//! Cones advance by the exact step, rays by sphere tracing with relaxation (METHOD 2).
+//! Cones advance by the exact step, rays by sphere tracing with relaxation (docs/method.md, 2).
 //! The bounds are part of the field: its value is the larger of the estimate and the
 //! distance to the bounds, for steps, hits and normals alike. So the surface that is
 //! seen is closed and within the hit threshold of the bounds, instead of being cut by
@@ -15,7 +15,6 @@ use super::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::cone::ConeRule;
 use crate::formula::{Bounds, Shape};
 use crate::frame::Work;
-use crate::key::Fault;
 use crate::shader::Module;
 use crate::view::{Beam, footprint};
 use crate::wgsl;
@@ -249,8 +248,9 @@ impl Twin for Distance {
         all
     }
 
-    fn check(&self) -> Result<(), Fault> {
-        self.shape.check()
+    fn describe(&self) -> String {
+        let (name, n) = (self.shape.name(), self.iterations);
+        format!("{name}: {n} iterations, lipschitz {}", self.lipschitz)
     }
 }
 

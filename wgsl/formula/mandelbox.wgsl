@@ -1,4 +1,4 @@
-// The Mandelbox (METHOD 3): box fold, ball fold, rotation, scale, translation.
+// The Mandelbox (docs/method.md, 3): box fold, ball fold, rotation, scale, translation.
 //
 //     b = 2 clamp(z, -L, L) - z;   m = f2 / clamp(|b|^2, r2, f2)
 //     z' = s m R b + c;            w' = |s| m w + 1

@@ -1,5 +1,5 @@
 // A scene given by a distance estimate: cones by the exact step, rays by sphere
-// tracing with relaxation (METHOD 2). Positions come relative to the eye.
+// tracing with relaxation (docs/method.md, 2). Positions come relative to the eye.
 //
 // The bounds are part of the field: its value is the larger of the estimate and the
 // distance to the bounds, for steps, hits and normals alike. So the surface that is
@@ -85,20 +85,26 @@ fn bounds_far() -> f32 {
 /// faces lean outwards by its slope.
 fn bounds_interval(ray: Beam) -> vec2<f32> {
     let p = (distance_scene.eye - distance_scene.centre) + ray.origin;
-    // Widened by the rounding of p and of the quotients.
     let within = DISTANCE_WITHIN * distance_scene.detail;
-    let room = distance_scene.half + within * ray.grain0
-        + 1e-6 * (abs(p) + distance_scene.half);
+    let room = distance_scene.half + within * ray.grain0;
+    // More than p and the quotients are rounded by. The near faces stand back by it: a
+    // start before the threshold is reached would miss what lies just within. The far
+    // ones stand out.
+    let slack = 5e-7 * (abs(p) + distance_scene.half);
     let lean = within * ray.grain;
     // A ray as flat as the lean may stay between two faces for ever: its quotients are
     // made huge, with no infinity in between.
     let flat = abs(ray.axis) <= vec3<f32>(lean + 1e-7);
-    let low = select((-room - p) / (ray.axis + lean), vec3<f32>(-1e30), flat);
-    let high = select((room - p) / (ray.axis - lean), vec3<f32>(1e30), flat);
-    let one = min(low, high);
-    let two = max(low, high);
-    let near = max(one.x, max(one.y, one.z));
-    let far = min(two.x, min(two.y, two.z));
+    let low = 1.0 / (ray.axis + lean);
+    let high = 1.0 / (ray.axis - lean);
+    let inner = room - slack;
+    let outer = room + slack;
+    let one = min((-inner - p) * low, (inner - p) * high);
+    let two = max((-outer - p) * low, (outer - p) * high);
+    let starts = select(one, vec3<f32>(-1e30), flat);
+    let ends = select(two, vec3<f32>(1e30), flat);
+    let near = max(starts.x, max(starts.y, starts.z));
+    let far = min(ends.x, min(ends.y, ends.z));
     let margin = distance_scene.detail * footprint(ray, distance_scene.far);
     let b = dot(p, ray.axis);
     let r = (distance_scene.radius + margin) * (1.0 + 1e-6);

@@ -7,6 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::command::executor::Executor;
+use crate::command::print::say;
 use crate::command::size;
 use crate::gpu::device::{Choice, DeviceError};
 use crate::output::{self, Place};
@@ -59,9 +60,9 @@ impl Common {
     /// The choice matches nothing, or the adapter does not open.
     pub fn executor(&self) -> Result<Executor, DeviceError> {
         let (executor, who) = Executor::open(&Choice::read(&self.device))?;
-        eprintln!("measuring on {who}");
+        say(&format!("measuring on {who}"));
         if executor.is_untimed() {
-            eprintln!("this device has no timestamps: times are those of the clock");
+            say("this device has no timestamps: times are those of the clock");
         }
         Ok(executor)
     }

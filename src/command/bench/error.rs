@@ -15,7 +15,8 @@ use super::row::{DepthError, Row, TruthNote, flat};
 use super::setting::{Setting, baselines, sweeps};
 use super::{plot, table};
 use crate::command::executor::Executor;
-use crate::command::{interrupt, print};
+use crate::command::interrupt;
+use crate::command::print::{print, say};
 use crate::compare::compare;
 use crate::flip::{Picture, flip};
 use crate::frame::Frame;
@@ -58,12 +59,12 @@ pub fn run(args: &ErrorBench) -> Result<()> {
     let mut rows = Vec::new();
     for (name, plan) in &plans {
         let measured = measure(&mut executor, cache.as_ref(), name, plan, &settings)?;
-        print::print(table::preset(&measured).as_bytes())?;
+        print(table::preset(&measured).as_bytes())?;
         rows.extend(measured);
     }
-    print::print(table::means(&rows).as_bytes())?;
-    print::print(table::better_than_safe(&rows).as_bytes())?;
-    print::print(table::slides(&rows).as_bytes())?;
+    print(table::means(&rows).as_bytes())?;
+    print(table::better_than_safe(&rows).as_bytes())?;
+    print(table::slides(&rows).as_bytes())?;
     let mut more = Vec::new();
     if let Some(mut place) = plot {
         place.write_all(plot::draw(&rows).as_bytes())?;
@@ -86,13 +87,13 @@ impl Truths<'_> {
         if !self.found.contains_key(&key) {
             let watch = &mut |_: &_| !interrupt::asked();
             let (truth, kept) = cached(self.cache, plan, watch)?;
-            eprintln!(
+            say(&format!(
                 "{}: truth{} at {} of the estimate, {:.4} % of pixels still move",
                 self.name,
                 if kept { ", kept from before," } else { "" },
                 truth.stride,
                 100.0 * truth.moved
-            );
+            ));
             self.found.insert(key, truth);
         }
         Ok(&self.found[&key])

@@ -1,0 +1,32 @@
+//! Why there is no frame.
+
+use thiserror::Error;
+
+use crate::gpu::device::DeviceError;
+use crate::gpu::kernel::KernelError;
+
+/// Why there is no frame.
+#[derive(Debug, Error)]
+pub enum RenderError {
+    /// The device failed.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    /// A program failed.
+    #[error(transparent)]
+    Kernel(#[from] KernelError),
+    /// The caller asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+    /// The device claims to be done, but cells were never visited.
+    #[error(
+        "the device `{device}` left {cells} cells of pass `{pass}` unwritten and reported no error; try a smaller --size, another --device, or --device cpu"
+    )]
+    Unwritten {
+        /// Its name.
+        device: String,
+        /// The pass.
+        pass: String,
+        /// How many.
+        cells: usize,
+    },
+}
