@@ -279,8 +279,9 @@ impl Solid for Distance {
         let next = self.rule.cone_front(front, front, d, cone.k);
         Advance {
             front: next,
-            // After a short gain the rest is better left to the four thinner children.
-            going: next - front > DISTANCE_ENOUGH * d,
+            // After a short gain the rest is better left to the four thinner children;
+            // where there is no ball, so is all of it.
+            going: next - front > DISTANCE_ENOUGH * d.max(0.0),
         }
     }
 

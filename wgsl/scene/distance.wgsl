@@ -123,8 +123,9 @@ fn advance(cone: Beam, front: f32) -> Advance {
         d = max(d, e - cone.r0);
     }
     let next = cone_front(front, front, d, cone.k);
-    // After a short gain the rest is better left to the four thinner children.
-    return Advance(next, next - front > DISTANCE_ENOUGH * d);
+    // After a short gain the rest is better left to the four thinner children; where there
+    // is no ball, so is all of it.
+    return Advance(next, next - front > DISTANCE_ENOUGH * max(d, 0.0));
 }
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
