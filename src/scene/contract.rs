@@ -86,4 +86,6 @@ pub trait Twin {
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)>;
     /// Whether the parameters fit together.
     fn check(&self) -> Result<(), Fault>;
+    /// Rounds of inner loops that one step may take: what a step costs at most.
+    fn rounds(&self) -> u32;
 }

@@ -252,6 +252,10 @@ impl Twin for Distance {
     fn check(&self) -> Result<(), Fault> {
         self.shape.check()
     }
+
+    fn rounds(&self) -> u32 {
+        self.iterations
+    }
 }
 
 /// The state of a ray between two steps.

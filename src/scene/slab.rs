@@ -162,6 +162,10 @@ impl Twin for Slab {
     fn check(&self) -> Result<(), Fault> {
         Ok(())
     }
+
+    fn rounds(&self) -> u32 {
+        0
+    }
 }
 
 /// A ray whose meeting with the slab is already solved.
