@@ -15,6 +15,7 @@ mod adapter;
 #[allow(dead_code, reason = "tests use the rest")]
 mod common {
     pub mod exact;
+    pub mod groups;
     pub mod hard;
     pub mod precision;
     pub mod probe;
@@ -28,7 +29,8 @@ use std::fmt::Write as _;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{Context, Result};
-use common::hard::{self, GROUPS};
+use common::groups::GROUPS;
+use common::hard;
 use common::precision::{Sample, has_f64, quantiles, samples};
 use common::strain::{Outcome, strain};
 use conemarch::formula::mandelbox::Mandelbox;

@@ -16,6 +16,7 @@ mod adapter;
 mod common {
     pub mod any_plan;
     pub mod exact;
+    pub mod groups;
     pub mod hard;
     pub mod random;
     pub mod solved;
@@ -23,6 +24,7 @@ mod common {
 }
 
 use common::any_plan::any_plan;
+use common::groups;
 use common::hard::{self, Case, SIZE};
 use common::solved::camera;
 use common::strain::{self, Outcome, both, strain};
@@ -38,7 +40,7 @@ use proptest::test_runner::{Config, TestRunner};
 
 /// Renders the plans of a group and asserts its bounds; what came out.
 fn check(test: &str) -> Vec<(Case, Outcome)> {
-    let group = hard::group(test);
+    let group = groups::group(test);
     let measured: Vec<(Case, Outcome)> = (group.cases)()
         .into_iter()
         .map(|(name, plan)| {
@@ -264,7 +266,7 @@ fn hits_are_where_the_estimate_is_within_the_threshold() {
 /// A cone whose front lies in the shell has no ball, and stops instead of asking again.
 #[test]
 fn a_cone_without_a_ball_stops_at_once() {
-    let cases = (hard::group("scales_with_a_thick_shell").cases)();
+    let cases = (groups::group("scales_with_a_thick_shell").cases)();
     let (_, plan) = &cases[0];
     let limited = State::Unconverged as u8;
     for frame in both(plan) {
