@@ -84,7 +84,7 @@ pub fn faults(plan: &Plan, frame: &Frame) -> Vec<String> {
         count(&|i| {
             let length = frame.normal[i].iter().map(|x| x * x).sum::<f32>().sqrt();
             let wanted = f32::from(u8::from(!sky(i)));
-            !((length - wanted).abs() < UNIT)
+            length.is_nan() || (length - wanted).abs() >= UNIT
         }),
     );
     let position = frame.position(&plan.view());
