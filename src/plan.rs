@@ -179,13 +179,14 @@ impl Plan {
     /// A sentence about precision where f32 cannot hold what the plan asks for.
     ///
     /// The estimate's noise in f32 is about 2e-8 of the size of the coordinates
-    /// (docs/method.md, 6); a footprint under a hundred times that is damaged.
+    /// (docs/method.md, 6), and those of an orbit are of the size of the bounds
+    /// wherever it starts; a footprint under a hundred times that is damaged.
     pub fn precision_warning(&self) -> Option<String> {
         let Subject::Distance { shape, .. } = &self.subject else {
             return None;
         };
         let finest = self.finest_footprint(shape);
-        let floor = 2e-6 * shape.bounds().half.max_element().clamp(1e-3, 5.0);
+        let floor = 2e-6 * shape.bounds().half.max_element();
         (finest < 0.99 * floor).then(|| {
             format!(
                 "the finest footprint, {finest:.1e}, is under the f32 floor of about {floor:.0e}: details that near are noise. Move the camera away, or render with --device cpu"

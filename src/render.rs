@@ -18,6 +18,7 @@ use crate::gpu::kernel::{Kernel, KernelError};
 use crate::pass::queue::{COUNT_AT, Turn};
 use crate::plan::{Extras, Pass, Plan};
 use crate::pyramid::Block;
+use crate::scene::Scene;
 use crate::shader::Program;
 
 mod collect;
@@ -70,6 +71,18 @@ pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 /// Steps of the longest dispatch: with a block of a million pixels still well under
 /// the time after which drivers give a device up.
 const MOST_STEPS_AT_ONCE: u32 = 256;
+
+/// Rounds of all loops together that an invocation may take in one dispatch of a pass that
+/// can be cut. Mesa's software Vulkan ends every loop after 65 535 of them, without a
+/// word: at 287 iterations and 256 steps all pixels were wrong. Some are left for loops
+/// that are not counted here.
+const MOST_ROUNDS_AT_ONCE: u32 = 60_000;
+
+/// Steps of the longest dispatch over a scene.
+fn most_steps(scene: &Scene) -> u32 {
+    let rounds = scene.twin().rounds().saturating_add(1);
+    (MOST_ROUNDS_AT_ONCE / rounds).clamp(1, MOST_STEPS_AT_ONCE)
+}
 
 /// Renders plans on one device.
 pub struct Renderer {
@@ -215,8 +228,9 @@ impl Renderer {
         self.device.wait()?;
         let start = Instant::now();
         let figures = &mut frame.passes[at];
+        let most = most_steps(job.scene);
         let mut now = Turn {
-            chunk: self.cutting.chunk.clamp(1, MOST_STEPS_AT_ONCE),
+            chunk: self.cutting.chunk.clamp(1, most),
             done: 0,
             limit: setup.limit,
             row: 0,
@@ -251,7 +265,7 @@ impl Renderer {
             if now.done >= now.limit {
                 break;
             }
-            now.chunk = (now.chunk * 4).min(MOST_STEPS_AT_ONCE);
+            now.chunk = (now.chunk * 4).min(most);
             count = now.to_cells(told.moving);
             read = filled;
             filled = queues[usize::from(Rc::ptr_eq(&read, &queues[0]))].clone();

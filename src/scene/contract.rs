@@ -85,4 +85,6 @@ pub trait Twin {
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)>;
     /// A line for people: what it is, with the numbers that it was resolved to.
     fn describe(&self) -> String;
+    /// Rounds of inner loops that one step may take: what a step costs at most.
+    fn rounds(&self) -> u32;
 }

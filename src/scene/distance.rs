@@ -252,6 +252,10 @@ impl Twin for Distance {
         let (name, n) = (self.shape.name(), self.iterations);
         format!("{name}: {n} iterations, lipschitz {}", self.lipschitz)
     }
+
+    fn rounds(&self) -> u32 {
+        self.iterations
+    }
 }
 
 /// The state of a ray between two steps.
@@ -279,8 +283,9 @@ impl Solid for Distance {
         let next = self.rule.cone_front(front, front, d, cone.k);
         Advance {
             front: next,
-            // After a short gain the rest is better left to the four thinner children.
-            going: next - front > DISTANCE_ENOUGH * d,
+            // After a short gain the rest is better left to the four thinner children;
+            // where there is no ball, so is all of it.
+            going: next - front > DISTANCE_ENOUGH * d.max(0.0),
         }
     }
 

@@ -162,6 +162,10 @@ impl Twin for Slab {
     fn describe(&self) -> String {
         "slab, solved in closed form".into()
     }
+
+    fn rounds(&self) -> u32 {
+        0
+    }
 }
 
 /// A ray whose meeting with the slab is already solved.

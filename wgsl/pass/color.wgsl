@@ -24,7 +24,9 @@ fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec3<f32> {
     // Light thrown back by lit neighbours: warm, from below and behind.
     let bounce = look.light_color * (0.12 * look.fill * (1.0 - up));
     var c = albedo * (look.light_color * (look.key * lit) + (ambient + bounce) * open);
-    let half_way = normalize(look.light - ray.axis);
+    // Of no length where a ray goes straight into the light, which has no direction then.
+    let between = look.light - ray.axis;
+    let half_way = between / max(length(between), 1e-20);
     let shine = pow(max(0.0, dot(n, half_way)), 40.0);
     c += look.light_color * (look.gloss * lit * shine);
     return c;

@@ -88,16 +88,19 @@ fn bounds_interval(ray: Beam) -> vec2<f32> {
     let within = DISTANCE_WITHIN * distance_scene.detail;
     let room = distance_scene.half + within * ray.grain0;
     // More than p and the quotients are rounded by. The near faces stand back by it: a
-    // start before the threshold is reached would miss what lies just within. The far
-    // ones stand out.
+    // start before the threshold is reached would miss what lies just within; but no
+    // farther than a part of the threshold, or hits very near the eye would lie behind the
+    // faces. The far ones stand out.
     let slack = 5e-7 * (abs(p) + distance_scene.half);
+    let clear = max(abs(p) - distance_scene.half, vec3<f32>(0.0));
+    let back = min(slack, 0.25 * within * (ray.grain0 + ray.grain * clear));
     let lean = within * ray.grain;
     // A ray as flat as the lean may stay between two faces for ever: its quotients are
     // made huge, with no infinity in between.
     let flat = abs(ray.axis) <= vec3<f32>(lean + 1e-7);
     let low = 1.0 / (ray.axis + lean);
     let high = 1.0 / (ray.axis - lean);
-    let inner = room - slack;
+    let inner = room - back;
     let outer = room + slack;
     let one = min((-inner - p) * low, (inner - p) * high);
     let two = max((-outer - p) * low, (outer - p) * high);
@@ -129,8 +132,9 @@ fn advance(cone: Beam, front: f32) -> Advance {
         d = max(d, e - cone.r0);
     }
     let next = cone_front(front, front, d, cone.k);
-    // After a short gain the rest is better left to the four thinner children.
-    return Advance(next, next - front > DISTANCE_ENOUGH * d);
+    // After a short gain the rest is better left to the four thinner children; where there
+    // is no ball, so is all of it.
+    return Advance(next, next - front > DISTANCE_ENOUGH * max(d, 0.0));
 }
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
