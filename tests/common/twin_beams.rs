@@ -157,7 +157,7 @@ fn the_part_of_a_ray_near_the_bounds_agrees() {
     let mut random = Random::new(6);
     let question = |_| {
         let axis = (random.cube(12.0) - plan.camera.eye).normalize();
-        let grain = DVec3::Y * random.between(0.0, 0.01);
+        let grain = DVec3::Y * random.between(0.0, 0.001);
         [
             four(random.cube(0.1), 0.0),
             four(axis, 0.0),
@@ -183,12 +183,18 @@ fn the_part_of_a_ray_near_the_bounds_agrees() {
         errors(&plan),
         errors(&of(2.0 * MOVED)),
     );
-    // What f32 finds holds what f64 finds: nothing within the bounds is cut off.
+    // Nothing within the bounds is cut off: where f32 starts later than f64 it is still
+    // outside them, but for the rounding of a position 30 away.
     let told = probe_of(&plan, probe!("interval")).ask(&asked);
+    let bounds = scene.shape.bounds();
     for (q, a) in asked.iter().zip(&told) {
-        let (near, far) = scene.bounds_interval(&beam(q));
-        let held = f64::from(a[0][0]) <= near && f64::from(a[0][1]) >= far;
-        assert!(near > far || held, "{near} {far} {a:?}");
+        let ray = beam(q);
+        let (near, far) = scene.bounds_interval(&ray);
+        let [start, end] = [0, 1].map(|i| f64::from(a[0][i]));
+        let at = plan.camera.eye - bounds.centre + ray.at(start);
+        let outside = (at.abs() - bounds.half).max_element();
+        let held = (start <= near || outside > -3e-6) && end >= far;
+        assert!(near > far || held, "{near} {far} {outside} {a:?}");
     }
 }
 
