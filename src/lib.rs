@@ -14,6 +14,7 @@ pub mod flip;
 pub mod formula;
 pub mod frame;
 pub mod gpu;
+pub mod heightfield;
 pub mod key;
 pub mod mode;
 pub mod output;

@@ -1,0 +1,194 @@
+//! Heights on a grid, and the surface between them.
+//!
+//! Lengths along x and y are in texels, one square texel being 1; heights are in 0..=1
+//! and become lengths only in a scene, by the relief's depth. Sample (i, j) lies at
+//! x = i, y = j. Each axis either ends at its last sample or wraps to its first.
+//! Twin: `wgsl/heightfield/heights.wgsl`.
+
+use glam::DVec2;
+use thiserror::Error;
+
+/// Why numbers are no height map.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum HeightsError {
+    /// An axis without samples, or with more than a map may have.
+    #[error("a height map of {0} x {1} samples: each axis has 1 to {MOST_SAMPLES}")]
+    Size(u32, u32),
+    /// Another number of samples than the size says.
+    #[error("{found} heights for {wanted} samples")]
+    Count {
+        /// Samples of the size.
+        wanted: usize,
+        /// Numbers given.
+        found: usize,
+    },
+    /// A height that is no number, or outside 0..=1.
+    #[error("the height at column {x}, row {y} is {height}: heights are numbers from 0 to 1")]
+    Height {
+        /// Column.
+        x: u32,
+        /// Row.
+        y: u32,
+        /// What is there.
+        height: f32,
+    },
+}
+
+/// Longest axis of a height map: all positions and squared distances between samples
+/// are exact in f64, and positions in f32 keep a thousandth of a texel.
+pub const MOST_SAMPLES: u32 = 8192;
+
+/// What lies between the samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Patches {
+    /// The bilinear patch of four samples: cell (i, j) spans samples i..=i+1, j..=j+1.
+    #[default]
+    Bilinear,
+    /// A box as high as one sample: cell (i, j) spans positions i..=i+1, j..=j+1.
+    Boxes,
+}
+
+/// A grid of heights.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heights {
+    size: [u32; 2],
+    wrap: [bool; 2],
+    data: Vec<f32>,
+}
+
+impl Heights {
+    /// Heights row by row, each in 0..=1.
+    ///
+    /// # Errors
+    /// Sizes outside 1..=[`MOST_SAMPLES`], another number of heights, and heights that
+    /// are not numbers from 0 to 1.
+    pub fn new(size: [u32; 2], wrap: [bool; 2], data: Vec<f32>) -> Result<Self, HeightsError> {
+        if size.iter().any(|n| !(1..=MOST_SAMPLES).contains(n)) {
+            return Err(HeightsError::Size(size[0], size[1]));
+        }
+        let wanted = size[0] as usize * size[1] as usize;
+        if data.len() != wanted {
+            let found = data.len();
+            return Err(HeightsError::Count { wanted, found });
+        }
+        if let Some(i) = data.iter().position(|h| !(0.0..=1.0).contains(h)) {
+            return Err(HeightsError::Height {
+                x: (i % size[0] as usize) as u32,
+                y: (i / size[0] as usize) as u32,
+                height: data[i],
+            });
+        }
+        Ok(Self { size, wrap, data })
+    }
+
+    /// Samples along each axis.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Which axes wrap.
+    pub fn wrap(&self) -> [bool; 2] {
+        self.wrap
+    }
+
+    /// All heights, row by row.
+    pub fn data(&self) -> &[f32] {
+        &self.data
+    }
+
+    /// The sample that an index names: beyond the ends the last one, or on a wrapping
+    /// axis the one that comes round.
+    pub fn index(&self, axis: usize, i: i64) -> u32 {
+        let n = i64::from(self.size[axis]);
+        let i = if self.wrap[axis] {
+            i.rem_euclid(n)
+        } else {
+            i.clamp(0, n - 1)
+        };
+        i as u32
+    }
+
+    /// The height of a sample, its indices brought into the grid by [`Self::index`].
+    pub fn at(&self, x: i64, y: i64) -> f64 {
+        let (x, y) = (self.index(0, x), self.index(1, y));
+        f64::from(self.data[(y * self.size[0] + x) as usize])
+    }
+
+    /// Cells along each axis. Between n samples that do not wrap there are n - 1
+    /// bilinear patches, and one flat one where there is a single sample.
+    pub fn cells(&self, patches: Patches) -> [u32; 2] {
+        [0, 1].map(|a| {
+            if patches == Patches::Boxes || self.wrap[a] {
+                self.size[a]
+            } else {
+                (self.size[a] - 1).max(1)
+            }
+        })
+    }
+
+    /// The four corner heights of a bilinear cell: (0, 0), (1, 0), (0, 1), (1, 1). All
+    /// are the same for a box.
+    pub fn corners(&self, patches: Patches, x: i64, y: i64) -> [f64; 4] {
+        match patches {
+            Patches::Bilinear => [
+                self.at(x, y),
+                self.at(x + 1, y),
+                self.at(x, y + 1),
+                self.at(x + 1, y + 1),
+            ],
+            Patches::Boxes => [self.at(x, y); 4],
+        }
+    }
+
+    /// The highest point of a cell, its *apex*.
+    pub fn apex(&self, patches: Patches, x: i64, y: i64) -> f64 {
+        let c = self.corners(patches, x, y);
+        c[0].max(c[1]).max(c[2]).max(c[3])
+    }
+
+    /// Apexes of all cells, row by row.
+    pub fn apexes(&self, patches: Patches) -> Vec<f32> {
+        let [w, h] = self.cells(patches);
+        let cells = (0..h).flat_map(|y| (0..w).map(move |x| (i64::from(x), i64::from(y))));
+        cells
+            .map(|(x, y)| self.apex(patches, x, y) as f32)
+            .collect()
+    }
+
+    /// The height of the surface at a position; outside the grid that of its border, or
+    /// of the tile that comes round.
+    pub fn height(&self, patches: Patches, p: DVec2) -> f64 {
+        let cell = p.floor();
+        let f = p - cell;
+        let c = self.corners(patches, cell.x as i64, cell.y as i64);
+        let low = c[0] + f.x * (c[1] - c[0]);
+        let high = c[2] + f.x * (c[3] - c[2]);
+        low + f.y * (high - low)
+    }
+}
+
+/// One axis as distances see it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axis {
+    /// Places on it.
+    pub count: u32,
+    /// Whether the last is next to the first.
+    pub wrap: bool,
+}
+
+impl Axis {
+    /// Steps from a place to the nearest of the places `low..=high`, going round where
+    /// that is shorter. 0 if it is one of them.
+    pub fn gap(self, from: u32, low: u32, high: u32) -> u32 {
+        let ahead = low.saturating_sub(from);
+        let back = from.saturating_sub(high);
+        let direct = ahead.max(back);
+        if !self.wrap || direct == 0 {
+            return direct;
+        }
+        // One way round: on past the end to `low`, or back past the start to `high`.
+        let round_up = low + self.count - from;
+        let round_down = from + self.count - high;
+        direct.min(round_up).min(round_down)
+    }
+}

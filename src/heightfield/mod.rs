@@ -1,0 +1,7 @@
+//! Heightfields: height maps, maxima, cone maps and what traces them.
+
+pub mod conemap;
+pub mod field;
+pub mod heights;
+pub mod maxmip;
+pub mod patch;
