@@ -291,17 +291,36 @@ impl Slot for Size<'_> {
         Value::Array(self.0.map(|n| Value::Integer(i64::from(n))).to_vec())
     }
     fn set(&mut self, value: &Value) -> Result<(), String> {
+        let set = Counts(self.0, 1, self.1).set(value);
+        set.map_err(|_| self.expects())
+    }
+    fn expects(&self) -> String {
+        format!("[width, height] in pixels, each from 1 to {}", self.1)
+    }
+}
+
+/// Two whole numbers, for x and y, each in a closed range.
+pub struct Counts<'a>(pub &'a mut [u32; 2], pub u32, pub u32);
+
+impl Slot for Counts<'_> {
+    fn get(&self) -> Value {
+        Value::Array(self.0.map(|n| Value::Integer(i64::from(n))).to_vec())
+    }
+    fn set(&mut self, value: &Value) -> Result<(), String> {
         let list = value.as_array().filter(|a| a.len() == 2);
         let mut out = [0; 2];
         for (i, v) in list.ok_or_else(|| self.expects())?.iter().enumerate() {
-            let read = Count(&mut out[i], 1, self.1).set(v);
+            let read = Count(&mut out[i], self.1, self.2).set(v);
             read.map_err(|_| self.expects())?;
         }
         *self.0 = out;
         Ok(())
     }
     fn expects(&self) -> String {
-        format!("[width, height] in pixels, each from 1 to {}", self.1)
+        format!(
+            "two whole numbers like [2, 2], each from {} to {}",
+            self.1, self.2
+        )
     }
 }
 

@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use glam::DVec3;
 
 use crate::formula::Shape;
+use crate::heightfield::shape::HeightfieldShape;
 use crate::key::{AutoCount, Fault, Key, Size};
 use crate::mode::Marching;
 use crate::pass::look::{self, Light, Look};
@@ -37,11 +38,30 @@ pub enum Subject {
         /// Iteration limit.
         iterations: Option<u32>,
     },
+    /// A relief over a height map.
+    Heightfield(HeightfieldShape),
     /// A slab.
     Slab(SlabShape),
 }
 
 impl Subject {
+    /// Every kind of subject, with its defaults; the shape of the first is replaced by
+    /// the one that is named.
+    pub fn all() -> Vec<Self> {
+        let first = Shape::all()
+            .into_iter()
+            .take(1)
+            .map(|shape| Self::Distance {
+                shape,
+                iterations: None,
+            });
+        let rest = [
+            Self::Heightfield(HeightfieldShape::default()),
+            Self::Slab(SlabShape::default()),
+        ];
+        first.chain(rest).collect()
+    }
+
     /// The keys of `[scene]`, beside `kind` and `formula`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         match self {
@@ -54,6 +74,7 @@ impl Subject {
                 ));
                 keys
             }
+            Self::Heightfield(relief) => relief.keys(),
             Self::Slab(shape) => shape.keys(),
         }
     }
@@ -62,6 +83,7 @@ impl Subject {
     pub fn words(&self) -> (&'static str, Option<&'static str>) {
         match self {
             Self::Distance { shape, .. } => ("distance", Some(shape.name())),
+            Self::Heightfield(_) => ("heightfield", None),
             Self::Slab(_) => ("slab", None),
         }
     }
@@ -117,6 +139,7 @@ impl Plan {
     pub fn check(&self) -> Result<(), Fault> {
         match &self.subject {
             Subject::Distance { shape, .. } => shape.check()?,
+            Subject::Heightfield(relief) => relief.check()?,
             Subject::Slab(shape) => shape.check()?,
         }
         self.camera.check()?;
@@ -172,7 +195,7 @@ impl Plan {
     pub fn lipschitz(&self) -> f64 {
         match &self.subject {
             Subject::Distance { shape, .. } => shape.lipschitz(),
-            Subject::Slab(_) => 1.0,
+            Subject::Heightfield(_) | Subject::Slab(_) => 1.0,
         }
     }
 

@@ -3,5 +3,9 @@
 pub mod conemap;
 pub mod field;
 pub mod heights;
+pub mod kept;
 pub mod maxmip;
 pub mod patch;
+pub mod placed;
+pub mod shape;
+pub mod under;

@@ -1,5 +1,7 @@
 //! Text and overrides to a Plan, every value checked.
 
+use std::path::Path;
+
 use toml::Value;
 
 use super::document::{Entry, Override, SECTIONS, Said, brief, line_of, parse, unknown_section};
@@ -8,10 +10,11 @@ use super::nearest::nearest;
 use crate::formula::Shape;
 use crate::key::{Fault, Key, Slot, Text};
 use crate::plan::{Plan, Subject};
-use crate::scene::slab::SlabShape;
 
-/// Kinds of scene.
-const KINDS: [&str; 2] = ["distance", "slab"];
+/// Words for `scene.kind`.
+fn kinds() -> Vec<&'static str> {
+    Subject::all().iter().map(|s| s.words().0).collect()
+}
 
 /// Reads a preset. `origin` is what errors call it: a file's path, mostly.
 ///
@@ -20,7 +23,13 @@ const KINDS: [&str; 2] = ["distance", "slab"];
 /// values. The error names file, line, key, value and what would do.
 pub fn read(text: &str, origin: &str) -> Result<Plan, PresetError> {
     let entries = parse(text, origin)?;
-    Reader { text, origin }.plan(&entries)
+    let folder = Path::new("");
+    Reader {
+        text,
+        origin,
+        folder,
+    }
+    .plan(&entries)
 }
 
 /// Reads a preset with overrides. The preset must be right without them, too.
@@ -31,7 +40,24 @@ pub fn read(text: &str, origin: &str) -> Result<Plan, PresetError> {
 /// # Errors
 /// As [`read`]; faults that only the overrides bring are theirs.
 pub fn read_with(text: &str, origin: &str, overrides: &[Override]) -> Result<Plan, PresetError> {
-    let reader = Reader { text, origin };
+    read_in(Path::new(""), text, origin, overrides)
+}
+
+/// As [`read_with`]; files that the preset names are relative to a folder.
+///
+/// # Errors
+/// As [`read_with`].
+pub fn read_in(
+    folder: &Path,
+    text: &str,
+    origin: &str,
+    overrides: &[Override],
+) -> Result<Plan, PresetError> {
+    let reader = Reader {
+        text,
+        origin,
+        folder,
+    };
     let mut entries = parse(text, origin)?;
     let alone = reader.plan(&entries)?;
     if overrides.is_empty() {
@@ -48,12 +74,11 @@ pub fn read_with(text: &str, origin: &str, overrides: &[Override]) -> Result<Pla
         })
         .collect();
     if !changed.is_empty() {
-        let slab = changed
-            .iter()
-            .any(|e| e.key == "kind" && e.value.as_str() == Some("slab"));
+        let kind = changed.iter().rev().find(|e| e.key == "kind");
+        let formula = kind.is_none_or(|e| e.value.as_str() == Some("distance"));
         let keeps = |e: &Entry| match e.key.as_str() {
             "kind" => true,
-            "formula" | "iterations" => !slab,
+            "formula" | "iterations" => formula,
             _ => false,
         };
         entries.retain(|e| e.section != "scene" || keeps(e));
@@ -66,6 +91,7 @@ pub fn read_with(text: &str, origin: &str, overrides: &[Override]) -> Result<Pla
 struct Reader<'a> {
     text: &'a str,
     origin: &'a str,
+    folder: &'a Path,
 }
 
 impl Reader<'_> {
@@ -87,24 +113,27 @@ impl Reader<'_> {
     /// The subject that `scene.kind` and `scene.formula` choose.
     fn subject(&self, entries: &[Entry]) -> Result<Subject, PresetError> {
         let Some(kind) = last(entries, "kind") else {
-            return Err(self.missing("scene.kind is missing; kind = \"distance\" with a formula would do, or kind = \"slab\""));
+            return Err(self.missing("scene.kind is missing; kind = \"distance\" with a formula would do, or kind = \"heightfield\""));
         };
-        match self.word(kind, &KINDS)? {
-            "distance" => {
-                let Some(formula) = last(entries, "formula") else {
-                    let names = Shape::all();
-                    let names: Vec<&str> = names.iter().map(|s| s.name()).collect();
-                    let why = format!("scene.formula is missing; it is one of {}", quoted(&names));
-                    return Err(self.missing(&why));
-                };
-                let shape = self.formula(formula)?;
-                Ok(Subject::Distance {
-                    shape,
-                    iterations: None,
-                })
-            }
-            _ => Ok(Subject::Slab(SlabShape::default())),
+        let word = self.word(kind, &kinds())?;
+        if word == "distance" {
+            let Some(formula) = last(entries, "formula") else {
+                let names = Shape::all();
+                let names: Vec<&str> = names.iter().map(|s| s.name()).collect();
+                let why = format!("scene.formula is missing; it is one of {}", quoted(&names));
+                return Err(self.missing(&why));
+            };
+            let shape = self.formula(formula)?;
+            return Ok(Subject::Distance {
+                shape,
+                iterations: None,
+            });
         }
+        let mut found = Subject::all().into_iter().find(|s| s.words().0 == word);
+        if let Some(Subject::Heightfield(relief)) = &mut found {
+            relief.source.folder = self.folder.to_path_buf();
+        }
+        found.ok_or_else(|| self.value(kind, "there is no such kind of scene"))
     }
 
     /// The formula that an entry names.
@@ -137,7 +166,7 @@ impl Reader<'_> {
         if entry.section == "scene" {
             match (entry.key.as_str(), formula) {
                 // The last of each has chosen the subject; the others are checked, too.
-                ("kind", _) => return self.word(entry, &KINDS).map(|_| ()),
+                ("kind", _) => return self.word(entry, &kinds()).map(|_| ()),
                 ("formula", Some(_)) => return self.formula(entry).map(|_| ()),
                 ("formula", None) => {
                     let why = format!("a {kind} has no formula; leave it out");

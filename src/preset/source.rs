@@ -9,7 +9,7 @@ use super::builtin::{BUILTIN, builtin};
 use super::document::{Override, brief};
 use super::error::PresetError;
 use super::nearest::nearest;
-use super::read::read_with;
+use super::read::{read_in, read_with};
 use crate::plan::Plan;
 
 /// Largest preset that is read: far more than any preset needs, and little enough to
@@ -59,7 +59,7 @@ pub fn load(argument: &str, overrides: &[Override]) -> Result<Preset, PresetErro
     let name = path.file_stem().map(|s| s.to_string_lossy().into_owned());
     Ok(Preset {
         name: name.unwrap_or_else(|| "preset".into()),
-        plan: read_with(&text, argument, overrides)?,
+        plan: read_in(path.parent().unwrap_or(path), &text, argument, overrides)?,
     })
 }
 

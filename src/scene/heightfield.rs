@@ -1,0 +1,289 @@
+//! A scene of a relief: a block whose top is a height map (docs/method.md, 4).
+//!
+//! Rays are traced by one of the tracers of [`crate::heightfield::trace`], in local
+//! units. Coarse cones and empty balls ask the maxima under them; what these prove holds
+//! for any surface under the cells' apexes. Occlusion by `clearance` therefore knows
+//! nothing finer than a cell. Twin: `wgsl/scene/heightfield.wgsl`.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable, bytes_of};
+use glam::{DVec2, DVec3, Vec3};
+
+use super::contract::{Advance, Hit, Solid, Step, Surface, Twin};
+use crate::cone::ConeRule;
+use crate::frame::Work;
+use crate::heightfield::placed::Placed;
+use crate::heightfield::relief::Relief;
+use crate::heightfield::trace::{self, AnyTracer, LocalRay, Trace, TraceHit, Tracer};
+use crate::heightfield::under::{self, under_highest};
+use crate::shader::Module;
+use crate::view::Beam;
+use crate::wgsl;
+
+/// Halvings of the longest sweep, and doublings of the least ball: enough to come from
+/// a map of 8192 texels down to a quarter of one.
+const HEIGHTFIELD_HALVINGS: u32 = 15;
+/// Rounds of all loops in one step: of `advance` that many sweeps, each a walk over the
+/// levels of the pyramid in up to four runs.
+const HEIGHTFIELD_ROUNDS: u32 = HEIGHTFIELD_HALVINGS * 4 * 16;
+
+/// The scene as WGSL reads it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct HeightfieldUniform {
+    /// World directions to texels along x.
+    pub row_x: Vec3,
+    /// Length of a texel.
+    pub texel: f32,
+    /// World directions to texels along y.
+    pub row_y: Vec3,
+    /// Length of the whole height.
+    pub depth: f32,
+    /// World directions to heights.
+    pub row_z: Vec3,
+    /// Nothing is farther from the eye.
+    pub far: f32,
+    /// The eye in local units.
+    pub eye: Vec3,
+    /// Unused.
+    pub pad0: f32,
+    /// More than what local coordinates are rounded by.
+    pub slack: Vec3,
+    /// Unused.
+    pub pad1: f32,
+}
+
+/// A relief seen from an eye.
+#[derive(Clone, Debug)]
+pub struct Heightfield {
+    relief: Arc<Relief>,
+    tracer: AnyTracer,
+    placed: Placed,
+    eye: DVec3,
+    far: f64,
+    rule: ConeRule,
+}
+
+impl Heightfield {
+    /// A relief that stands in the world, seen from an eye.
+    pub fn new(
+        relief: Arc<Relief>,
+        tracer: AnyTracer,
+        placed: Placed,
+        eye: DVec3,
+        rule: ConeRule,
+    ) -> Self {
+        Self {
+            relief,
+            tracer,
+            far: placed.farthest(eye),
+            placed,
+            eye,
+            rule,
+        }
+    }
+
+    fn local(&self, ray: &Beam) -> LocalRay {
+        LocalRay {
+            origin: self.placed.position(self.eye + ray.origin),
+            axis: self.placed.direction(ray.axis),
+        }
+    }
+
+    fn units(&self) -> DVec3 {
+        DVec3::new(self.placed.texel, self.placed.texel, self.placed.depth)
+    }
+
+    /// Whether a ball of a world radius swept from one local position to another meets
+    /// no part of the block that is filled.
+    fn sweep_is_free(&self, one: DVec3, two: DVec3, radius: f64, work: &mut Work) -> bool {
+        work.evaluations += 1;
+        let room = radius / self.units();
+        let (low, high) = (one.min(two) - room, one.max(two) + room);
+        let top = || under_highest(&self.relief, low.truncate(), high.truncate());
+        high.z < 0.0 || low.z > 1.0 || low.z > top()
+    }
+
+    /// What f32 may be off by in local coordinates: some roundings of numbers of the size
+    /// of the eye's distance and of the block.
+    fn slack(&self) -> DVec3 {
+        let eye = self.placed.position(self.eye).abs();
+        let sides = self.placed.sides.extend(1.0);
+        5e-7 * (eye + sides + self.far / self.units())
+    }
+}
+
+impl Twin for Heightfield {
+    fn modules(&self) -> Vec<Module> {
+        let mut all = vec![
+            self.rule.module(),
+            under::module(),
+            wgsl!(
+                "scene/heightfield.wgsl",
+                "HEIGHTFIELD_HALVINGS" = f64::from(HEIGHTFIELD_HALVINGS),
+                "HIT_CARRIES_MARK" = 1.0
+            ),
+        ];
+        all.extend(self.tracer.modules());
+        all
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
+    fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {
+        let [row_x, row_y, row_z] = self.placed.rows().map(|r| r.as_vec3());
+        let scene = HeightfieldUniform {
+            row_x,
+            texel: self.placed.texel as f32,
+            row_y,
+            depth: self.placed.depth as f32,
+            row_z,
+            // Rounded up: the corner itself must not count as past everything.
+            far: (self.far * (1.0 + 1e-6)) as f32,
+            eye: self.placed.position(self.eye).as_vec3(),
+            pad0: 0.0,
+            slack: self.slack().as_vec3(),
+            pad1: 0.0,
+        };
+        let mut all = vec![("heightfield_parameters", bytes_of(&scene).to_vec())];
+        all.extend(self.tracer.buffers());
+        all
+    }
+
+    fn describe(&self) -> String {
+        let [w, h] = self.relief.heights().size();
+        format!("heightfield: {w} x {h} samples, tracer {}", self.tracer.name())
+    }
+
+    fn rounds(&self) -> u32 {
+        HEIGHTFIELD_ROUNDS
+    }
+}
+
+impl Solid for Heightfield {
+    type Walk = Trace;
+
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance {
+        let ray = self.local(cone);
+        let here = ray.at(front);
+        let away = self.placed.distance(here) - cone.r0;
+        // Far outside, the distance to the block carries the cone farther.
+        let carried = self.rule.cone_front(front, front, away, cone.k);
+        if away > 0.0 && carried - front > 0.5 * away {
+            return Advance {
+                front: carried,
+                going: true,
+            };
+        }
+        let thick = cone.r0 + cone.k * front;
+        let mut length = self.far * 1.0001 - front;
+        for _ in 0..HEIGHTFIELD_HALVINGS {
+            let end = front + length;
+            if self.sweep_is_free(here, ray.at(end), cone.r0 + cone.k * end, work) {
+                return Advance {
+                    front: end,
+                    going: true,
+                };
+            }
+            length *= 0.5;
+            // A short gain is better left to the four thinner children.
+            if length < 0.5 * thick {
+                break;
+            }
+        }
+        Advance {
+            front: front.max(carried),
+            going: false,
+        }
+    }
+
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Trace {
+        let end = self.far.min(t_max);
+        self.tracer.begin(&self.local(ray), front, end, work)
+    }
+
+    fn walk_step(&self, ray: &Beam, walk: &mut Trace, work: &mut Work) -> Step {
+        match self.tracer.step(&self.local(ray), walk, work) {
+            trace::Step::Moving => Step::Moving,
+            trace::Step::Hit => Step::Hit,
+            trace::Step::Out => Step::Out,
+            trace::Step::Spent => Step::Spent,
+        }
+    }
+
+    fn walk_hit(&self, walk: &Trace) -> Hit {
+        let hit = self.tracer.hit(walk);
+        Hit {
+            t: hit.s,
+            id: hit.id,
+            uv: hit.uv,
+        }
+    }
+
+    fn walk_radius(&self, walk: &Trace) -> f64 {
+        self.tracer.gap(walk) * self.placed.depth
+    }
+
+    fn clearance(&self, q: DVec3) -> f64 {
+        let p = self.placed.position(self.eye + q);
+        let mut free = self.placed.distance(p);
+        let mut radius = 0.5 * self.placed.texel;
+        for _ in 0..HEIGHTFIELD_HALVINGS {
+            let room = DVec2::splat(radius / self.placed.texel);
+            let top = under_highest(&self.relief, p.truncate() - room, p.truncate() + room);
+            let gap = (p.z - top) * self.placed.depth;
+            free = free.max(radius.min(gap));
+            if gap < radius {
+                break;
+            }
+            radius *= 2.0;
+        }
+        free.max(0.0)
+    }
+
+    fn surface(&self, _ray: &Beam, hit: &Hit) -> Surface {
+        let hit = TraceHit {
+            s: hit.t,
+            id: hit.id,
+            uv: hit.uv,
+        };
+        let wall = match hit.face() {
+            trace::SURFACE => None,
+            trace::WALL_X_LOW => Some(-DVec3::X),
+            trace::WALL_X_HIGH => Some(DVec3::X),
+            trace::WALL_Y_LOW => Some(-DVec3::Y),
+            trace::WALL_Y_HIGH => Some(DVec3::Y),
+            _ => Some(-DVec3::Z),
+        };
+        if let Some(side) = wall {
+            return Surface {
+                normal: self.placed.side(side),
+                pigment: DVec3::new(0.0, 0.3, 0.3),
+            };
+        }
+        let (cell, width) = (hit.cell(), self.relief.cells()[0]);
+        let cell = [cell % width, cell / width].map(|n| n as i32);
+        let [a, b, c, d] = self.relief.corners(cell);
+        let [u, v] = hit.uv;
+        let slope = DVec2::new(
+            (b - a) + v * ((d - c) - (b - a)),
+            (c - a) + u * ((d - b) - (c - a)),
+        );
+        let low = a + u * (b - a);
+        let high = c + u * (d - c);
+        let steep = slope * (self.placed.depth / self.placed.texel);
+        Surface {
+            normal: self.placed.normal(slope),
+            // Height picks the hue; steep ground is darker.
+            pigment: DVec3::new(
+                low + v * (high - low),
+                steep.extend(1.0).length().recip(),
+                0.5,
+            ),
+        }
+    }
+
+    fn bounds_far(&self) -> f64 {
+        self.far
+    }
+}

@@ -1,0 +1,171 @@
+// A scene of a relief: a block whose top is a height map. Rays are traced by a module of
+// `heightfield/trace`, in local units: texels along the block's sides, heights upwards.
+// Coarse cones and empty balls are tested against the maxima under them.
+
+struct HeightfieldUniform {
+    /// Rows of the matrix from world directions to local units.
+    row_x: vec3<f32>,
+    /// Length of a texel.
+    texel: f32,
+    row_y: vec3<f32>,
+    /// Length of the whole height.
+    depth: f32,
+    row_z: vec3<f32>,
+    /// Nothing is farther from the eye.
+    far: f32,
+    /// The eye, in local units.
+    eye: vec3<f32>,
+    pad0: f32,
+    /// More than what local coordinates are rounded by.
+    slack: vec3<f32>,
+    pad1: f32,
+}
+
+/// Regions that a cone is tested over are halved at most so often.
+override HEIGHTFIELD_HALVINGS: u32;
+override HIT_CARRIES_MARK: bool;
+
+@group(0) @binding(0) var<storage, read> heightfield_parameters: HeightfieldUniform;
+var<private> heightfield: HeightfieldUniform;
+
+struct Walk {
+    t: f32,
+    radius: f32,
+    trace: Trace,
+}
+
+fn scene_load() {
+    heightfield = heightfield_parameters;
+    relief_load();
+}
+
+fn bounds_far() -> f32 {
+    return heightfield.far;
+}
+
+/// A world direction in local units.
+fn to_local(v: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(
+        dot(heightfield.row_x, v), dot(heightfield.row_y, v), dot(heightfield.row_z, v),
+    );
+}
+
+fn local_units() -> vec3<f32> {
+    return vec3<f32>(heightfield.texel, heightfield.texel, heightfield.depth);
+}
+
+/// Distance from a local position to the block, in the world's length; negative inside.
+fn block_distance(p: vec3<f32>) -> f32 {
+    let half = 0.5 * vec3<f32>(vec2<f32>(relief.domain), 1.0);
+    let o = (abs(p - half) - half) * local_units();
+    return length(max(o, vec3<f32>(0.0))) + min(max(o.x, max(o.y, o.z)), 0.0);
+}
+
+/// Whether a ball of a world radius swept from one local position to another meets no
+/// part of the block that is filled.
+fn sweep_is_free(one: vec3<f32>, two: vec3<f32>, radius: f32) -> bool {
+    count_evaluation();
+    let room = radius / local_units() + heightfield.slack;
+    let low = min(one, two) - room;
+    let high = max(one, two) + room;
+    return high.z < 0.0 || low.z > 1.0 || low.z > under_highest(low.xy, high.xy);
+}
+
+/// How far a cone is free: the longest of a row of halved lengths whose whole sweep
+/// clears the maxima under it. Rays of the cone at t are within r0 + k t of the axis.
+fn advance(cone: Beam, front: f32) -> Advance {
+    let origin = heightfield.eye + to_local(cone.origin);
+    let axis = to_local(cone.axis);
+    let here = origin + front * axis;
+    let away = block_distance(here) - cone.r0;
+    // Far outside, the distance to the block carries the cone farther.
+    let carried = cone_front(front, front, away, cone.k);
+    if away > 0.0 && carried - front > 0.5 * away {
+        return Advance(carried, true);
+    }
+    let thick = cone.r0 + cone.k * front;
+    var length = heightfield.far * 1.0001 - front;
+    for (var i = 0u; i < HEIGHTFIELD_HALVINGS; i++) {
+        let end = front + length;
+        if sweep_is_free(here, origin + end * axis, cone.r0 + cone.k * end) {
+            return Advance(end, true);
+        }
+        length *= 0.5;
+        // A short gain is better left to the four thinner children.
+        if length < 0.5 * thick {
+            break;
+        }
+    }
+    return Advance(max(front, carried), false);
+}
+
+fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
+    let origin = heightfield.eye + to_local(ray.origin);
+    let end = min(heightfield.far, t_max);
+    let trace = trace_begin(origin, to_local(ray.axis), front, end);
+    return Walk(front, 0.0, trace);
+}
+
+fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
+    var trace = (*walk).trace;
+    let origin = heightfield.eye + to_local(ray.origin);
+    let s = trace_step(origin, to_local(ray.axis), &trace);
+    (*walk).trace = trace;
+    (*walk).t = trace_hit(trace).t;
+    (*walk).radius = trace_gap(trace) * heightfield.depth;
+    return s;
+}
+
+fn walk_hit(walk: Walk) -> Hit {
+    return trace_hit(walk.trace);
+}
+
+/// Radius of a surely empty ball: for boxes of doubling size about the point, what lies
+/// under them, or the box.
+fn clearance(q: vec3<f32>) -> f32 {
+    let p = heightfield.eye + to_local(q);
+    var free = block_distance(p);
+    var radius = 0.5 * heightfield.texel;
+    for (var i = 0u; i < HEIGHTFIELD_HALVINGS; i++) {
+        count_evaluation();
+        let room = radius / heightfield.texel + heightfield.slack.xy;
+        let top = under_highest(p.xy - room, p.xy + room);
+        let gap = (p.z - heightfield.slack.z - top) * heightfield.depth;
+        free = max(free, min(radius, gap));
+        if gap < radius {
+            break;
+        }
+        radius *= 2.0;
+    }
+    return max(0.0, free);
+}
+
+/// The world's direction of a local one of unit lengths.
+fn to_world(v: vec3<f32>) -> vec3<f32> {
+    return heightfield.texel * (v.x * heightfield.row_x + v.y * heightfield.row_y)
+        + heightfield.depth * v.z * heightfield.row_z;
+}
+
+fn surface(ray: Beam, hit: Hit) -> Surface {
+    let face = hit.id >> FACE_BITS;
+    if face != 0u {
+        var n = vec3<f32>(0.0, 0.0, -1.0);
+        if face <= 2u {
+            n = vec3<f32>(select(1.0, -1.0, face == 1u), 0.0, 0.0);
+        } else if face <= 4u {
+            n = vec3<f32>(0.0, select(1.0, -1.0, face == 3u), 0.0);
+        }
+        return Surface(to_world(n), vec3<f32>(0.0, 0.3, 0.3));
+    }
+    let index = i32(hit.id & 0x0fffffffu);
+    let cell = vec2<i32>(index % relief.cells.x, index / relief.cells.x);
+    let c = relief_corners(cell);
+    let slope = vec2<f32>(
+        mix(c.y - c.x, c.w - c.z, hit.uv.y), mix(c.z - c.x, c.w - c.y, hit.uv.x),
+    );
+    let steep = slope * (heightfield.depth / heightfield.texel);
+    let n = normalize(vec3<f32>(-steep, 1.0));
+    let z = mix(mix(c.x, c.y, hit.uv.x), mix(c.z, c.w, hit.uv.x), hit.uv.y);
+    // Height picks the hue; steep ground is darker.
+    return Surface(to_world(n), vec3<f32>(z, n.z, 0.5));
+}
