@@ -5,3 +5,5 @@ pub mod field;
 pub mod heights;
 pub mod maxmip;
 pub mod patch;
+pub mod relief;
+pub mod trace;
