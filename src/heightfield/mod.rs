@@ -7,5 +7,7 @@ pub mod kept;
 pub mod maxmip;
 pub mod patch;
 pub mod placed;
+pub mod relief;
 pub mod shape;
+pub mod trace;
 pub mod under;

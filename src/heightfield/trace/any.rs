@@ -1,0 +1,71 @@
+//! Any of the tracers, for who chooses one by its name. The only place that tells them
+//! apart.
+
+use super::cones::Cones;
+use super::contract::{LocalRay, Step, Trace, TraceHit, Tracer};
+use super::linear::LinearBinary;
+use super::max_mip::MaxMipTracer;
+use super::oracle::Oracle;
+use super::relaxed::WalkRelaxed;
+use super::walk::Walk;
+use crate::frame::Work;
+use crate::shader::Module;
+
+/// One of the tracers.
+#[derive(Clone, Debug)]
+pub enum AnyTracer {
+    /// Every cell: the truth.
+    Oracle(Oracle),
+    /// The cone walk.
+    Walk(Walk),
+    /// The walk with relaxed cones.
+    WalkRelaxed(WalkRelaxed),
+    /// The pyramid of maxima.
+    MaxMip(MaxMipTracer),
+    /// Equal steps and halvings.
+    LinearBinary(LinearBinary),
+    /// Cones over samples, in one of their manners.
+    Cones(Cones),
+}
+
+/// Does the same to whichever tracer it is.
+macro_rules! each {
+    ($any:expr, $tracer:ident => $answer:expr) => {
+        match $any {
+            AnyTracer::Oracle($tracer) => $answer,
+            AnyTracer::Walk($tracer) => $answer,
+            AnyTracer::WalkRelaxed($tracer) => $answer,
+            AnyTracer::MaxMip($tracer) => $answer,
+            AnyTracer::LinearBinary($tracer) => $answer,
+            AnyTracer::Cones($tracer) => $answer,
+        }
+    };
+}
+
+impl Tracer for AnyTracer {
+    type Walk = Trace;
+
+    fn begin(&self, ray: &LocalRay, from: f64, to: f64, work: &mut Work) -> Trace {
+        each!(self, t => t.begin(ray, from, to, work))
+    }
+
+    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+        each!(self, t => t.step(ray, trace, work))
+    }
+
+    fn hit(&self, trace: &Trace) -> TraceHit {
+        each!(self, t => t.hit(trace))
+    }
+
+    fn gap(&self, trace: &Trace) -> f64 {
+        each!(self, t => t.gap(trace))
+    }
+
+    fn modules(&self) -> Vec<Module> {
+        each!(self, t => t.modules())
+    }
+
+    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
+        each!(self, t => t.buffers())
+    }
+}

@@ -1,0 +1,119 @@
+//! First hits by the pyramid of maxima (Tevs, Ihrke, Seidel: Maximum Mipmaps for Fast,
+//! Accurate, and Scalable Dynamic Height Field Rendering, I3D 2008): exact, needs no cone
+//! map. Twin: `wgsl/heightfield/trace/max_mip.wgsl`.
+//!
+//! A step looks at one node of the pyramid. A ray that stays above the node's maximum
+//! while it is over it passes on to the next node, and to one that is twice as wide where
+//! its parent ends there too. Else it looks at the child below, or in a cell solves the
+//! patch. The pyramid has levels of any size, and each tile begins one of its own.
+
+use std::sync::Arc;
+
+use super::super::relief::{Numbers, Relief};
+use super::contract::{LocalRay, Step, Trace, TraceHit, Tracer};
+use super::course::{
+    course_begin, course_cross, course_end, course_exit, course_land, course_solve, trace_hit,
+};
+use crate::frame::Work;
+use crate::shader::Module;
+use crate::wgsl;
+
+/// Descent of the pyramid over a relief.
+#[derive(Clone, Debug)]
+pub struct MaxMipTracer {
+    relief: Arc<Relief>,
+}
+
+impl MaxMipTracer {
+    /// The tracer of a relief.
+    pub fn new(relief: Arc<Relief>) -> Self {
+        Self { relief }
+    }
+}
+
+/// The node of a level that a cell lies under: its maximum, and the cells `low..high` of
+/// the domain that it covers.
+fn node(relief: &Relief, cell: [i32; 2], level: u32) -> (f64, [i32; 2], [i32; 2]) {
+    let local = relief.tile_cell(cell);
+    let place = local.map(|i| i >> level);
+    let maximum = relief.maxima().levels[level as usize].at(place[0], place[1]);
+    let tile = [0, 1].map(|a| cell[a] - local[a] as i32);
+    let low = [0, 1].map(|a| tile[a] + (place[a] << level) as i32);
+    let high = [0, 1].map(|a| {
+        let end = ((place[a] + 1) << level).min(relief.cells()[a]);
+        tile[a] + end as i32
+    });
+    (f64::from(maximum), low, high)
+}
+
+/// Whether the parents of two neighbouring nodes' levels part at a line, too: it ends a
+/// node of the next level, or a tile.
+fn parts(relief: &Relief, axis: usize, line: i32, level: u32) -> bool {
+    let local = line.rem_euclid(relief.cells()[axis] as i32);
+    local & ((2 << level) - 1) == 0
+}
+
+impl Tracer for MaxMipTracer {
+    type Walk = Trace;
+
+    fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
+        let mut trace = course_begin(&self.relief, ray, from, to);
+        trace.level = self.relief.maxima().levels.len() as u32 - 1;
+        trace
+    }
+
+    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+        if trace.state != Step::Moving {
+            return trace.state;
+        }
+        work.evaluations += 1;
+        let relief = &*self.relief;
+        let level = trace.level;
+        let (maximum, low, high) = node(relief, trace.cell, level);
+        let (exit, axis) = course_exit(ray, low, high);
+        let to = exit.min(trace.end);
+        trace.gap = ray.height(trace.s).min(ray.height(to)) - maximum;
+        if trace.gap <= 0.0 {
+            if level > 0 {
+                trace.level -= 1;
+                return Step::Moving;
+            }
+            if course_solve(relief, ray, trace, to) {
+                return Step::Hit;
+            }
+        }
+        if exit >= trace.end {
+            return course_end(relief, ray, trace);
+        }
+        // The cell at the node's edge, then across it.
+        if level > 0 {
+            course_land(relief, ray, trace, exit);
+        } else {
+            course_cross(ray, trace, exit, axis);
+        }
+        let line = if ray.axis[axis] > 0.0 { high } else { low }[axis];
+        let top = relief.maxima().levels.len() as u32 - 1;
+        if level < top && parts(relief, axis, line, level) {
+            trace.level += 1;
+        }
+        Step::Moving
+    }
+
+    fn hit(&self, trace: &Trace) -> TraceHit {
+        trace_hit(trace)
+    }
+
+    fn gap(&self, trace: &Trace) -> f64 {
+        trace.gap
+    }
+
+    fn modules(&self) -> Vec<Module> {
+        let mut all = self.relief.modules();
+        all.push(wgsl!("heightfield/trace/max_mip.wgsl"));
+        all
+    }
+
+    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
+        self.relief.buffers(None, Numbers::default())
+    }
+}

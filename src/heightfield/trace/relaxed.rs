@@ -1,0 +1,114 @@
+//! The cone walk with relaxed cones: exact for every ray, wider cones for those that do
+//! not rise. Twin: `wgsl/heightfield/trace/relaxed.wgsl`.
+//!
+//! Only cells that fall away along some way from c limit its cone. A ray that goes down
+//! or level and comes under the surface where nothing falls stays under it until the jump
+//! ends; so a jump crosses the surface once at most, and the height at its end says
+//! whether it did (Policarpo and Oliveira's idea, with the rule of falling edges of Bán,
+//! Valasek, Bálint, Vad, Robust Cone Step Mapping, EGSR 2024, on cells and with the offset
+//! of the walk). A rising ray may come out again anywhere: it goes cell by cell, until it
+//! is above everything.
+
+use std::sync::Arc;
+
+use super::super::conemap::{ConeMap, MapKind};
+use super::super::relief::{Numbers, Relief};
+use super::contract::{LocalRay, Step, Trace, TraceError, TraceHit, Tracer};
+use super::course::{
+    FAR, course_begin, course_cross, course_end, course_exit, course_land, course_solve, trace_hit,
+};
+use super::refine::{Refine, refine, refine_over};
+use super::walk::{WALK_TRUST, check_map, cone_way};
+use crate::frame::Work;
+use crate::shader::Module;
+use crate::wgsl;
+
+/// Walk with relaxed cones over a relief.
+#[derive(Clone, Debug)]
+pub struct WalkRelaxed {
+    relief: Arc<Relief>,
+    map: Arc<ConeMap>,
+}
+
+impl WalkRelaxed {
+    /// A walk with the cones of a map.
+    ///
+    /// # Errors
+    /// The map is of another kind, or of another relief.
+    pub fn new(relief: Arc<Relief>, map: Arc<ConeMap>) -> Result<Self, TraceError> {
+        check_map("walk-relaxed", &[MapKind::WalkRelaxed], &relief, &map)?;
+        Ok(Self { relief, map })
+    }
+}
+
+impl Tracer for WalkRelaxed {
+    type Walk = Trace;
+
+    fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
+        course_begin(&self.relief, ray, from, to)
+    }
+
+    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+        if trace.state != Step::Moving {
+            return trace.state;
+        }
+        work.evaluations += 1;
+        let relief = &*self.relief;
+        let apex = relief.apex(trace.cell);
+        let (exit, axis) = course_exit(ray, trace.cell, trace.cell.map(|i| i + 1));
+        let to = exit.min(trace.end);
+        let z = ray.height(trace.s);
+        trace.gap = z.min(ray.height(to)) - apex;
+        if trace.gap <= 0.0 && course_solve(relief, ray, trace, to) {
+            return Step::Hit;
+        }
+        let rising = ray.axis.z > 0.0;
+        let way = if !rising {
+            let ratio = self.map.ratios[relief.number(trace.cell) as usize] * WALK_TRUST;
+            cone_way(ray, ratio, z - apex, self.map.offset)
+        } else if z > f64::from(relief.maxima().top()) {
+            FAR
+        } else {
+            0.0
+        };
+        let next = trace.s + way * WALK_TRUST;
+        if exit >= trace.end || (rising && next >= trace.end) {
+            return course_end(relief, ray, trace);
+        }
+        if next <= exit {
+            course_cross(ray, trace, exit, axis);
+            return Step::Moving;
+        }
+        let next = next.min(trace.end);
+        let ended = next >= trace.end;
+        if (ended && trace.falls) || refine_over(relief, ray, next) <= 0.0 {
+            refine(relief, ray, trace, [exit, next], Refine::Settle, work);
+            return Step::Hit;
+        }
+        if ended {
+            return course_end(relief, ray, trace);
+        }
+        course_land(relief, ray, trace, next);
+        Step::Moving
+    }
+
+    fn hit(&self, trace: &Trace) -> TraceHit {
+        trace_hit(trace)
+    }
+
+    fn gap(&self, trace: &Trace) -> f64 {
+        trace.gap
+    }
+
+    fn modules(&self) -> Vec<Module> {
+        let mut all = self.relief.modules();
+        all.push(wgsl!("heightfield/trace/cone.wgsl"));
+        all.push(wgsl!("heightfield/trace/refine.wgsl"));
+        all.push(wgsl!("heightfield/trace/relaxed.wgsl"));
+        all
+    }
+
+    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
+        self.relief.buffers(Some(&self.map), Numbers::default())
+    }
+}

@@ -1,0 +1,80 @@
+// A relief: heights, what lies between them, how often they repeat. It fills
+// 0 <= z <= surface over a domain of `cells * tiles` cells, in texels and heights
+// (docs/method.md, 4). What a ray is, this file does not know.
+
+struct ReliefUniform {
+    samples: vec2<i32>,
+    /// Cells of one tile, and of all tiles.
+    cells: vec2<i32>,
+    domain: vec2<i32>,
+    wrap: vec2<u32>,
+    /// Places of the cone map.
+    places: vec2<i32>,
+    /// Room that the walk's cones leave, in texels.
+    offset: f32,
+    /// Factor on cone steps.
+    scale: f32,
+    levels: u32,
+    /// Steps that a tracer has, 0 for as many as the caller allows; the distance at which
+    /// it has half of them; rounds of refinement.
+    steps: u32,
+    lod: f32,
+    rounds: u32,
+    /// Where each level of the pyramid starts.
+    starts: array<vec4<u32>, 4>,
+}
+
+/// Boxes as high as one sample, in place of bilinear patches between four.
+override RELIEF_BOXES: bool;
+
+@group(0) @binding(4) var<storage, read> relief_parameters: ReliefUniform;
+@group(0) @binding(5) var<storage, read> heights: array<f32>;
+@group(0) @binding(6) var<storage, read> ratios: array<f32>;
+@group(0) @binding(7) var<storage, read> maxima: array<f32>;
+var<private> relief: ReliefUniform;
+
+fn relief_load() {
+    relief = relief_parameters;
+}
+
+/// The cell of the first tile that a cell of the domain repeats. Only a ray in its first
+/// tile or beyond asks, so that nothing is negative.
+fn relief_tile_cell(cell: vec2<i32>) -> vec2<i32> {
+    return max(cell, vec2<i32>(0)) % relief.cells;
+}
+
+/// The sample that indices from 0 to the size name: the one past the last is the first
+/// again, or on an axis that ends the last.
+fn relief_sample(at: vec2<i32>) -> f32 {
+    let round = select(relief.samples - 1, vec2<i32>(0), relief.wrap == vec2<u32>(1u));
+    let i = select(at, round, at >= relief.samples);
+    return heights[i.y * relief.samples.x + i.x];
+}
+
+/// Corner heights of a cell of the domain: (0, 0), (1, 0), (0, 1), (1, 1).
+fn relief_corners(cell: vec2<i32>) -> vec4<f32> {
+    let c = relief_tile_cell(cell);
+    if RELIEF_BOXES {
+        return vec4<f32>(relief_sample(c));
+    }
+    return vec4<f32>(
+        relief_sample(c),
+        relief_sample(c + vec2<i32>(1, 0)),
+        relief_sample(c + vec2<i32>(0, 1)),
+        relief_sample(c + vec2<i32>(1, 1)),
+    );
+}
+
+/// Height of the surface in a cell at a place in 0..1.
+fn relief_height(cell: vec2<i32>, at: vec2<f32>) -> f32 {
+    let c = relief_corners(cell);
+    let low = c.x + at.x * (c.y - c.x);
+    let high = c.z + at.x * (c.w - c.z);
+    return low + at.y * (high - low);
+}
+
+/// The number of a cell: of its tile's cell, row by row.
+fn relief_number(cell: vec2<i32>) -> u32 {
+    let c = relief_tile_cell(cell);
+    return u32(c.y * relief.cells.x + c.x);
+}

@@ -1,0 +1,130 @@
+// Tracers with one cone per sample: those of the papers, put right (Dummer 2006; Policarpo
+// and Oliveira 2007). A step is the cone's, and goes to the cell's edge at least; the first
+// place under the surface ends the search and is refined between it and the one before. A
+// ray that has used up its own steps has not converged. The cones keep clear of samples, not
+// of the surface between them: rays may pass through thin parts of it.
+
+/// Height and ratio of the nearest sample, in place of the surface's height and the ratio
+/// between the samples.
+override CONES_NEAREST: bool;
+/// Each cell's patch is solved on the way.
+override CONES_SOLVE: bool;
+/// One cone for each side: +x, -x, +y, -y.
+override CONES_QUAD: bool;
+/// The number of steps follows the view.
+override CONES_VIEW: bool;
+/// Brackets are refined by false positions, else by halvings; solved ones settle.
+override CONES_SECANT: bool;
+
+/// A sample's place in its tile, for indices from -1 to the size.
+fn cones_place(at: vec2<i32>) -> i32 {
+    let n = relief.samples;
+    let wraps = relief.wrap == vec2<u32>(1u);
+    let i = select(clamp(at, vec2<i32>(0), n - 1), (at + n) % n, wraps);
+    return i.y * n.x + i.x;
+}
+
+/// The ratio at a sample, for the side that the ray goes to.
+fn cones_ratio(d: vec3<f32>, at: vec2<i32>) -> f32 {
+    let place = cones_place(at);
+    if !CONES_QUAD {
+        return ratios[place];
+    }
+    let x = select(0, 1, d.x < 0.0);
+    let y = select(2, 3, d.y < 0.0);
+    return ratios[4 * place + select(y, x, abs(d.x) >= abs(d.y))];
+}
+
+/// Height and ratio of the cone over the ray at s, in a cell.
+fn cones_at(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {
+    let at = course_uv(o, d, cell, s);
+    let own = relief_tile_cell(cell);
+    // A box's sample lies in its middle, a patch's in its corners.
+    if CONES_NEAREST {
+        let place = own + select(vec2<i32>(at + 0.5), vec2<i32>(0), RELIEF_BOXES);
+        return vec2<f32>(heights[cones_place(place)], cones_ratio(d, place));
+    }
+    let middle = at - 0.5;
+    let shift = select(vec2<f32>(0.0), floor(middle), RELIEF_BOXES);
+    let f = select(at, middle - shift, RELIEF_BOXES);
+    let i = own + vec2<i32>(shift);
+    let a = cones_ratio(d, i);
+    let b = cones_ratio(d, i + vec2<i32>(1, 0));
+    let c = cones_ratio(d, i + vec2<i32>(0, 1));
+    let e = cones_ratio(d, i + vec2<i32>(1, 1));
+    let low = a + f.x * (b - a);
+    let high = c + f.x * (e - c);
+    return vec2<f32>(relief_height(cell, at), low + f.y * (high - low));
+}
+
+/// Steps of a ray that begins at s: steps * (0.5 + the horizontal part of its direction in
+/// texture widths and heights), fewer with the distance; 0 for no limit.
+fn cones_budget(d: vec3<f32>, s: f32) -> u32 {
+    if !CONES_VIEW {
+        return relief.steps;
+    }
+    let flat = d.xy / vec2<f32>(relief.cells);
+    let whole = max(length(vec3<f32>(flat, d.z)), 1e-30);
+    var far = 1.0;
+    if relief.lod > 0.0 {
+        far = 1.0 + max(s, 0.0) / relief.lod;
+    }
+    return u32(max(ceil(f32(relief.steps) * (0.5 + length(flat) / whole) / far), 1.0));
+}
+
+fn trace_begin(o: vec3<f32>, d: vec3<f32>, from: f32, to: f32) -> Trace {
+    var trace = course_begin(o, d, from, to);
+    trace.left = cones_budget(d, trace.s);
+    return trace;
+}
+
+fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
+    if (*trace).state != STATE_MOVING {
+        return (*trace).state;
+    }
+    count_evaluation();
+    let cell = (*trace).cell;
+    let s = (*trace).s;
+    let end = (*trace).end;
+    let exit = course_exit(o, d, cell, cell + 1);
+    let to = min(exit.x, end);
+    let z = o.z + s * d.z;
+    (*trace).gap = min(z, o.z + to * d.z) - relief_apex(cell);
+    if refine_over(o, d, s) <= 0.0 {
+        course_hit(o, d, trace, s);
+        return STATE_HIT;
+    }
+    if CONES_SOLVE && (*trace).gap <= 0.0 {
+        if course_solve(o, d, trace, to) {
+            return STATE_HIT;
+        }
+    }
+    let cone = cones_at(o, d, cell, s);
+    let way = cone_way(d, cone.y, z - cone.x, 0.0) * relief.scale;
+    let next = min(max(s + way, exit.x), end);
+    let ended = next >= end;
+    // At the bottom the ray is under the surface by definition.
+    if (ended && (*trace).falls == 1u) || refine_over(o, d, next) <= 0.0 {
+        if CONES_SOLVE {
+            refine_settle(o, d, trace, vec2<f32>(to, next));
+        } else if CONES_SECANT {
+            refine_secant(o, d, trace, vec2<f32>(s, next));
+        } else {
+            refine_binary(o, d, trace, vec2<f32>(s, next));
+        }
+        return STATE_HIT;
+    }
+    if ended {
+        return course_end(o, d, trace);
+    }
+    if next > exit.x {
+        course_land(o, d, trace, next);
+    } else {
+        course_cross(d, trace, exit);
+    }
+    if (*trace).left == 1u {
+        (*trace).state = STATE_UNCONVERGED;
+    }
+    (*trace).left = max((*trace).left, 1u) - 1u;
+    return (*trace).state;
+}

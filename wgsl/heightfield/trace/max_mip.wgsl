@@ -1,0 +1,54 @@
+// First hits by the pyramid of maxima (Tevs, Ihrke, Seidel 2008): exact, needs no cone
+// map. A step looks at one node. A ray above its maximum all the way over it passes on,
+// and to a node twice as wide where the parent ends there too; else it looks at the child
+// below, or in a cell solves the patch.
+
+fn trace_begin(o: vec3<f32>, d: vec3<f32>, from: f32, to: f32) -> Trace {
+    var trace = course_begin(o, d, from, to);
+    trace.level = relief.levels - 1u;
+    return trace;
+}
+
+fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
+    if (*trace).state != STATE_MOVING {
+        return (*trace).state;
+    }
+    count_evaluation();
+    // The node over the cell, and the cells of the domain under it.
+    let level = (*trace).level;
+    let own = relief_tile_cell((*trace).cell);
+    let tile = (*trace).cell - own;
+    let node = vec2<u32>(own) >> vec2<u32>(level);
+    let low = tile + vec2<i32>(node << vec2<u32>(level));
+    let high = tile + min(vec2<i32>((node + 1u) << vec2<u32>(level)), relief.cells);
+    let exit = course_exit(o, d, low, high);
+    let to = min(exit.x, (*trace).end);
+    let lowest = min(o.z + (*trace).s * d.z, o.z + to * d.z);
+    (*trace).gap = lowest - maxima_at(level, node);
+    if (*trace).gap <= 0.0 {
+        if level > 0u {
+            (*trace).level = level - 1u;
+            return STATE_MOVING;
+        }
+        if course_solve(o, d, trace, to) {
+            return STATE_HIT;
+        }
+    }
+    if exit.x >= (*trace).end {
+        return course_end(o, d, trace);
+    }
+    if level > 0u {
+        course_land(o, d, trace, exit.x);
+    } else {
+        course_cross(d, trace, exit);
+    }
+    // Up where the line ends a node of the next level too, or the tile.
+    let lines = course_lines(d, low, high);
+    let line = select(lines.y, lines.x, exit.y == 0.0);
+    let width = select(relief.cells.y, relief.cells.x, exit.y == 0.0);
+    let parts = ((line % width) & ((2i << level) - 1)) == 0;
+    if parts && level + 1u < relief.levels {
+        (*trace).level = level + 1u;
+    }
+    return STATE_MOVING;
+}

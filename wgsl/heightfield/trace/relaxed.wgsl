@@ -1,0 +1,57 @@
+// The cone walk with relaxed cones: exact for every ray, wider for those that do not rise.
+// Only cells that fall away along some way limit a cone, so that a jump of a ray that goes
+// down or level crosses the surface once at most, and the height at its end says whether it
+// did. A rising ray goes cell by cell until it is above everything.
+
+fn trace_begin(o: vec3<f32>, d: vec3<f32>, from: f32, to: f32) -> Trace {
+    return course_begin(o, d, from, to);
+}
+
+/// How far the ray may go on from over a cell.
+fn relaxed_way(d: vec3<f32>, cell: vec2<i32>, z: f32, apex: f32) -> f32 {
+    if d.z <= 0.0 {
+        let ratio = ratios[relief_number(cell)] * WALK_TRUST_RATIO;
+        return cone_way(d, ratio, z - apex, relief.offset);
+    }
+    let top = maxima_at(relief.levels - 1u, vec2<u32>(0u));
+    return select(0.0, COURSE_FAR, z > top);
+}
+
+fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
+    if (*trace).state != STATE_MOVING {
+        return (*trace).state;
+    }
+    count_evaluation();
+    let cell = (*trace).cell;
+    let apex = relief_apex(cell);
+    let end = (*trace).end;
+    let exit = course_exit(o, d, cell, cell + 1);
+    let to = min(exit.x, end);
+    let z = o.z + (*trace).s * d.z;
+    (*trace).gap = min(z, o.z + to * d.z) - apex;
+    if (*trace).gap <= 0.0 {
+        if course_solve(o, d, trace, to) {
+            return STATE_HIT;
+        }
+    }
+    var next = (*trace).s + relaxed_way(d, cell, z, apex) * WALK_TRUST_WAY;
+    if exit.x >= end || (d.z > 0.0 && next >= end) {
+        return course_end(o, d, trace);
+    }
+    if next <= exit.x {
+        course_cross(d, trace, exit);
+        return STATE_MOVING;
+    }
+    let ended = next >= end;
+    next = min(next, end);
+    // At the bottom the ray is under the surface by definition.
+    if (ended && (*trace).falls == 1u) || refine_over(o, d, next) <= 0.0 {
+        refine_settle(o, d, trace, vec2<f32>(exit.x, next));
+        return STATE_HIT;
+    }
+    if ended {
+        return course_end(o, d, trace);
+    }
+    course_land(o, d, trace, next);
+    return STATE_MOVING;
+}
