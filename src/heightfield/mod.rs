@@ -3,5 +3,8 @@
 pub mod conemap;
 pub mod field;
 pub mod heights;
+pub mod load;
+pub mod mapfile;
 pub mod maxmip;
 pub mod patch;
+pub mod raster;
