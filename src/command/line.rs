@@ -9,7 +9,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use super::print::say;
-use super::{bench, completions, devices, failure, presets, render};
+use super::{bench, completions, conemap, devices, failure, presets, render};
 
 /// Renders distance-estimated fractals by multi-pass cone marching.
 ///
@@ -28,6 +28,9 @@ enum Verb {
     /// Measure run time against error
     #[command(subcommand)]
     Bench(bench::verb::Bench),
+    /// Make, inspect and convert cone maps of heights
+    #[command(name = "conemap", subcommand)]
+    ConeMap(conemap::verb::ConeMapVerb),
     /// List the built-in presets, or print one
     Presets(presets::Presets),
     /// List the devices that can render
@@ -98,6 +101,7 @@ impl Line {
         match &self.verb {
             Verb::Render(args) => render::run(args),
             Verb::Bench(bench) => bench::verb::run(bench),
+            Verb::ConeMap(verb) => conemap::verb::run(verb),
             Verb::Presets(args) => presets::run(args),
             Verb::Devices => devices::run(),
             Verb::Completions(args) => completions::run(args, &mut Self::command()),

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod completions;
+pub mod conemap;
 pub mod devices;
 pub mod executor;
 pub mod failure;

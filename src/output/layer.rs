@@ -227,7 +227,8 @@ fn apart(e: f64) -> DVec3 {
     }
 }
 
-fn heat(x: f64) -> DVec3 {
+/// The colour of a share of 0..=1 in a heat map.
+pub(crate) fn heat(x: f64) -> DVec3 {
     let at = x * (HEAT.len() - 1) as f64;
     let i = (at as usize).min(HEAT.len() - 2);
     HEAT[i].lerp(HEAT[i + 1], at - i as f64)

@@ -3,11 +3,14 @@
 mod error;
 mod exr;
 mod layer;
+mod map;
 mod place;
 mod png;
 
 pub use error::OutputError;
 pub use exr::write_exr;
+pub(crate) use layer::heat;
 pub use layer::{Layer, Shades};
+pub use map::{WriteMapError, write_map};
 pub use place::{Place, clear, commit};
 pub use png::{BitDepth, write_png};

@@ -1,0 +1,70 @@
+//! `conemarch conemap convert MAP -o MAP`
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::{Args, ValueHint};
+
+use super::common::{Output, Sink, Strange, Writing, of_map, shown, wraps};
+use crate::command::failure::usage;
+use crate::command::interrupt;
+use crate::command::print::say;
+use crate::heightfield::mapfile::{decode_bytes, encode, kind_word};
+
+/// What `convert` takes.
+#[derive(Args, Debug)]
+pub struct Convert {
+    /// The cone map to convert: a .png or .exr file
+    #[arg(value_name = "MAP", value_hint = ValueHint::FilePath)]
+    map: PathBuf,
+
+    #[command(flatten)]
+    output: Output,
+
+    #[command(flatten)]
+    writing: Writing,
+
+    #[command(flatten)]
+    strange: Strange,
+
+    /// Which axes another program's map wraps along
+    #[arg(long, value_name = "AXES", default_value = "none", value_parser = wraps(), requires = "from")]
+    wrap: [bool; 2],
+}
+
+/// Converts a map.
+///
+/// # Errors
+/// No map, a layout that cannot hold it, an unwritable file.
+pub fn run(args: &Convert) -> Result<()> {
+    let Some(output) = &args.output.output else {
+        return Err(usage(
+            "there is nowhere to write to; give -o MAP.png or -o MAP.exr",
+        ));
+    };
+    let file = args.strange.decode(&args.map, args.wrap)?;
+    let form = args.writing.form(output, file.map.kind)?;
+    interrupt::listen();
+    let sink = Sink::prepare(output)?;
+    let bytes = encode(&file, &form).map_err(of_map)?;
+    let again = decode_bytes(&bytes).map_err(anyhow::Error::msg);
+    let mean = again.context("the map could not be read back")?.map.mean();
+    sink.finish(&bytes)?;
+    let [w, h] = file.map.size;
+    say(&format!(
+        "{}  {w} x {h}  {}, layout {}  {}",
+        shown(output),
+        kind_word(file.map.kind),
+        form.layout.name(),
+        kept(file.map.mean(), mean)
+    ));
+    Ok(())
+}
+
+/// How much of the ratios a file has kept.
+pub fn kept(before: f64, after: f64) -> String {
+    let share = if before > 0.0 { after / before } else { 1.0 };
+    // Never rounded up to all of it.
+    let share = (share * 1e4).floor() / 1e2;
+    format!("mean ratio {after:.2} texels, {share} % of what it was")
+}

@@ -1,0 +1,263 @@
+//! What is in a map, as text for a terminal: a few lines, then a histogram.
+
+use std::fmt::Write as _;
+
+use crate::heightfield::conemap::{MapKind, WIDEST};
+use crate::heightfield::heights::Patches;
+use crate::heightfield::load::Loaded;
+use crate::heightfield::mapfile::{Bits, Layout, MapFile, kind_word, promise, slopes, wrap_word};
+
+/// Longest bar of a histogram.
+const BAR: f64 = 40.0;
+/// Bars end at an eighth of a character.
+const EIGHTHS: [&str; 8] = ["", "▏", "▎", "▍", "▌", "▋", "▊", "▉"];
+
+/// Numbers in order, for quantiles.
+struct Sorted(Vec<f64>);
+
+impl Sorted {
+    fn new(values: impl Iterator<Item = f64>) -> Self {
+        let mut values: Vec<f64> = values.collect();
+        values.sort_unstable_by(f64::total_cmp);
+        Self(values)
+    }
+
+    fn at(&self, share: f64) -> f64 {
+        let last = self.0.len().saturating_sub(1);
+        self.0
+            .get((share * last as f64) as usize)
+            .copied()
+            .unwrap_or(0.0)
+    }
+
+    fn mean(&self) -> f64 {
+        self.0.iter().sum::<f64>() / self.0.len().max(1) as f64
+    }
+
+    /// How many are under a bound.
+    fn under(&self, bound: f64) -> usize {
+        self.0.partition_point(|v| *v < bound)
+    }
+}
+
+/// Four figures, and no more than anyone reads.
+fn figure(x: f64) -> String {
+    match x.abs() {
+        0.0 => "0".into(),
+        a if a >= 1000.0 => format!("{x:.0}"),
+        a if a >= 100.0 => format!("{x:.1}"),
+        a if a >= 1.0 => format!("{x:.2}"),
+        a if a >= 1e-3 => format!("{x:.4}"),
+        _ => format!("{x:.1e}"),
+    }
+}
+
+fn percent(count: usize, all: usize) -> String {
+    format!("{:.1} %", 100.0 * count as f64 / all.max(1) as f64)
+}
+
+fn row(text: &mut String, name: &str, what: &str) {
+    let _ = writeln!(text, "  {name:<9} {what}");
+}
+
+/// Rows of a histogram: what, how many of how many.
+fn histogram(text: &mut String, rows: &[(String, usize)], all: usize) {
+    let longest = rows.iter().map(|(_, n)| *n).max().unwrap_or(0).max(1);
+    let width = rows.iter().map(|(name, _)| name.chars().count()).max();
+    let width = width.unwrap_or(0);
+    for (name, n) in rows {
+        let eighths = (BAR * 8.0 * *n as f64 / longest as f64).round() as usize;
+        // What is there at all is seen.
+        let eighths = eighths.max(usize::from(*n > 0));
+        let bar = "█".repeat(eighths / 8) + EIGHTHS[eighths % 8];
+        let line = format!("  {name:>width$}  {:>7}  {bar}", percent(*n, all));
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+}
+
+/// Tells what a cone map holds.
+pub fn describe_map(name: &str, file: &MapFile) -> String {
+    let mut text = format!("{name}\n");
+    let map = &file.map;
+    let label = &file.label;
+    let [w, h] = map.size;
+    row(
+        &mut text,
+        "cone map",
+        &format!(
+            "{w} x {h}, kind {}: {}",
+            kind_word(map.kind),
+            promise(map.kind)
+        ),
+    );
+    row(&mut text, "file", &form(file));
+    let [sw, sh] = label.samples;
+    let mut heights = format!("{sw} x {sh} samples, wrap {}", wrap_word(map.wrap));
+    if matches!(map.kind, MapKind::Walk | MapKind::WalkRelaxed) {
+        let surface = match label.patches {
+            Patches::Bilinear => "bilinear patches",
+            Patches::Boxes => "boxes",
+        };
+        let _ = write!(heights, ", {surface}, offset {} texels", figure(map.offset));
+    }
+    if let Some(digest) = &label.digest {
+        let _ = write!(
+            heights,
+            ", SHA-256 {}...",
+            digest.chars().take(12).collect::<String>()
+        );
+    }
+    row(&mut text, "heights", &heights);
+    let by = label.generator.as_deref().unwrap_or("another program");
+    row(&mut text, "made by", &maker(by));
+    let ratios = Sorted::new(map.ratios.iter().copied());
+    let all = ratios.0.len();
+    let scale = label.scale;
+    row(
+        &mut text,
+        "ratios",
+        &format!(
+            "mean {} texels per height ({} of the width), median {}",
+            figure(ratios.mean()),
+            figure(ratios.mean() / scale),
+            figure(ratios.at(0.5))
+        ),
+    );
+    row(
+        &mut text,
+        "",
+        &format!(
+            "from {} to {}; {} are 0, {} are {} or wider",
+            figure(ratios.at(0.0)),
+            figure(ratios.at(1.0)),
+            percent(all - ratios.0.iter().filter(|r| **r > 0.0).count(), all),
+            percent(all - ratios.under(scale), all),
+            figure(scale)
+        ),
+    );
+    let _ = writeln!(text, "\n  ratios in texels");
+    histogram(&mut text, &octaves(&ratios, scale), all);
+    text
+}
+
+/// What made a map, with a warning where that is no promise.
+fn maker(by: &str) -> String {
+    let first = by.split(',').next().unwrap_or_default();
+    match first {
+        "center" => format!("{by}: some cones are too wide, samples may lie inside"),
+        "relaxed-search" => format!("{by}: some cones are too wide, rays may cross twice"),
+        "another program" => format!("{by}: its cones may have been rounded up"),
+        _ => by.to_string(),
+    }
+}
+
+fn form(file: &MapFile) -> String {
+    let form = &file.form;
+    if form.layout == Layout::Full {
+        return format!(
+            "EXR, 32-bit floats, 1 means {} texels",
+            figure(file.label.scale)
+        );
+    }
+    let bits = match form.bits {
+        Bits::Eight => 8,
+        Bits::Sixteen => 16,
+    };
+    format!(
+        "PNG, layout {}, {bits} bit, ratios {}, 1 means {} texels",
+        form.layout.name(),
+        if form.root {
+            "as square roots"
+        } else {
+            "linear"
+        },
+        figure(file.label.scale)
+    )
+}
+
+/// Ratios by doubling bounds, from the first that is under some of them up to the scale
+/// or the widest.
+fn octaves(ratios: &Sorted, scale: f64) -> Vec<(String, usize)> {
+    let all = ratios.0.len();
+    let zero = ratios.0.partition_point(|r| *r <= 0.0);
+    // More rows at the low end than these would only be long.
+    let top = (scale.log2().ceil() as i32).max(0);
+    let low = (top - 12).max(-3);
+    let mut bounds: Vec<f64> = (low..=top).map(f64::from).map(f64::exp2).collect();
+    if ratios.at(1.0) > 2.0 * scale {
+        bounds.extend(
+            [4.0 * bounds[bounds.len() - 1], WIDEST]
+                .iter()
+                .filter(|b| **b > scale),
+        );
+        bounds.sort_by(f64::total_cmp);
+        bounds.dedup();
+    }
+    let mut rows = vec![("0".to_string(), zero)];
+    let mut before = zero;
+    let mut from = None;
+    for bound in &bounds {
+        let n = ratios.under(*bound).max(zero);
+        let name = match from {
+            None => format!("under {}", short(*bound)),
+            Some(from) => format!("{} to {}", short(from), short(*bound)),
+        };
+        rows.push((name, n - before));
+        (before, from) = (n, Some(*bound));
+    }
+    let last = bounds.last().copied().unwrap_or(0.0);
+    rows.push((format!("{} and wider", short(last)), all - before));
+    // Empty rows before the first and after the last full one say nothing.
+    let full = |r: &(String, usize)| r.1 > 0;
+    let first = rows.iter().position(full).unwrap_or(0);
+    let end = rows.iter().rposition(full).map_or(rows.len(), |i| i + 1);
+    rows[first..end].to_vec()
+}
+
+fn short(x: f64) -> String {
+    if x >= 1.0 {
+        format!("{x:.0}")
+    } else {
+        format!("1/{:.0}", 1.0 / x)
+    }
+}
+
+/// Tells what a height map holds.
+pub fn describe_heights(name: &str, loaded: &Loaded) -> String {
+    let mut text = format!("{name}\n");
+    let heights = &loaded.heights;
+    let [w, h] = heights.size();
+    let what = format!(
+        "{w} x {h} samples, wrap {}, {}",
+        wrap_word(heights.wrap()),
+        loaded.form
+    );
+    row(&mut text, "heights", &what);
+    let sorted = Sorted::new(heights.data().iter().map(|z| f64::from(*z)));
+    let range = format!(
+        "from {} to {}, mean {}, median {}",
+        figure(sorted.at(0.0)),
+        figure(sorted.at(1.0)),
+        figure(sorted.mean()),
+        figure(sorted.at(0.5))
+    );
+    row(&mut text, "", &range);
+    let steep = Sorted::new(slopes(heights).into_iter().map(|[x, y]| x.hypot(y)));
+    let what = format!(
+        "mean {} of the height per texel, steepest {}",
+        figure(steep.mean()),
+        figure(steep.at(1.0))
+    );
+    row(&mut text, "slopes", &what);
+    let _ = writeln!(text, "\n  heights");
+    let bound = |i: usize| i as f64 / 10.0;
+    let rows: Vec<(String, usize)> = (0..10)
+        .map(|i| {
+            let end = if i == 9 { f64::INFINITY } else { bound(i + 1) };
+            let n = sorted.under(end) - sorted.under(bound(i));
+            (format!("{:.1} to {:.1}", bound(i), bound(i + 1)), n)
+        })
+        .collect();
+    histogram(&mut text, &rows, sorted.0.len());
+    text
+}

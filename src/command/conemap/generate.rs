@@ -1,0 +1,93 @@
+//! Who makes a cone map, and the bar while it is made.
+
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::command::interrupt;
+use crate::gpu::device::{Adapters, Choice, Device, DeviceError};
+use crate::heightfield::conemap::ConeMap;
+use crate::heightfield::generate::generator::{GenerateError, Generator, Options};
+use crate::heightfield::heights::{Heights, Patches};
+use crate::render::RenderError;
+
+/// Who makes cones.
+pub enum Maker {
+    /// A device, in f32, rounded down.
+    Gpu(Box<Device>),
+    /// All cores, in f64.
+    Cpu,
+}
+
+impl Maker {
+    /// Opens what a choice means, and says in a line who it is and why. Unlike a render,
+    /// `auto` passes over software adapters: they are the same cores, and f64 on them is
+    /// both sharper and faster.
+    ///
+    /// # Errors
+    /// The choice matches nothing, or the adapter does not open.
+    pub fn open(choice: &Choice) -> Result<(Self, String), DeviceError> {
+        let cpu = |why: &str| {
+            let threads = rayon::current_num_threads();
+            let who = format!("the CPU, f64 on {threads} threads ({why})");
+            Ok((Self::Cpu, who))
+        };
+        let auto = *choice == Choice::Auto;
+        let wanted = if auto { &Choice::Hardware } else { choice };
+        if *wanted == Choice::Cpu {
+            return cpu("as asked");
+        }
+        let adapters = Adapters::find();
+        let (adapter, why) = match adapters.choose(wanted) {
+            Ok(Some(found)) => found,
+            Ok(None) => return cpu("as there is no adapter"),
+            Err(_) if auto => return cpu("as there is no hardware adapter"),
+            Err(e) => return Err(e),
+        };
+        match Device::open(adapter) {
+            Ok(device) => {
+                let who = format!("{} ({why})", device.info.name);
+                Ok((Self::Gpu(Box::new(device)), who))
+            }
+            Err(e) if auto => {
+                let name = adapter.get_info().name;
+                cpu(&format!("as {name} did not open: {e}"))
+            }
+            Err(e) => Err(e),
+        }
+    }
+}
+
+/// Makes a map with a bar on terminals, until done or interrupted.
+///
+/// # Errors
+/// The device failed, or an interrupt.
+pub fn generate(
+    maker: &Maker,
+    generator: Generator,
+    heights: &Heights,
+    patches: Patches,
+    options: &Options,
+) -> Result<ConeMap> {
+    let bar = if std::io::stderr().is_terminal() {
+        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
+        ProgressBar::new(1000).with_style(style.context("the progress bar")?)
+    } else {
+        ProgressBar::hidden()
+    };
+    bar.set_message(generator.name());
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let watch = &mut |done: f64| {
+        bar.set_position((done * 1000.0) as u64);
+        !interrupt::asked()
+    };
+    let made =
+        crate::heightfield::generate::make(maker, generator, heights, patches, options, watch);
+    bar.finish_and_clear();
+    made.map_err(|e| match e {
+        GenerateError::Cancelled => RenderError::Cancelled.into(),
+        e => e.into(),
+    })
+}

@@ -1,0 +1,177 @@
+//! `conemarch conemap make HEIGHTS`
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueHint};
+
+use super::common::{Output, Reading, Sink, Writing, of_map, shown};
+use super::convert::kept;
+use super::generate::{Maker, generate};
+use crate::command::failure::usage;
+use crate::command::print::say;
+use crate::command::{interrupt, memory};
+use crate::gpu::device::Choice;
+use crate::heightfield::generate::generator::{Generator, Options};
+use crate::heightfield::heights::Patches;
+use crate::heightfield::mapfile::{MapFile, decode_bytes, encode, kind_word};
+
+/// What `make` takes.
+#[derive(Args, Debug)]
+pub struct Make {
+    /// A height map (PNG, EXR, TIFF or .raw), or a field like fbm:512x512,seed=7,power=2.2
+    ///
+    /// Of several channels the first is the height. Numbers of floats must be 0 to 1, or
+    /// --normalize brings them there. Fields are fbm, ridges, spikes, checker, sine and
+    /// noise; size, seed and power may be left out.
+    #[arg(value_name = "HEIGHTS", value_hint = ValueHint::FilePath)]
+    heights: String,
+
+    #[command(flatten)]
+    output: Output,
+
+    /// How to make it
+    #[arg(long, value_name = "NAME", default_value = "exact", value_parser = generators())]
+    generator: Generator,
+
+    #[command(flatten)]
+    reading: Reading,
+
+    #[command(flatten)]
+    writing: Writing,
+
+    /// Take each sample for a flat box instead of joining four by a patch
+    ///
+    /// Only the maps of walks depend on it.
+    #[arg(long)]
+    boxes: bool,
+
+    /// Room in texels that the cones of walk and walk-relaxed leave
+    #[arg(long, value_name = "TEXELS")]
+    offset: Option<f64>,
+
+    /// Steps along each ray of relaxed-search
+    #[arg(long, value_name = "COUNT")]
+    search_steps: Option<u32>,
+
+    /// Make every cone as narrow as the narrowest of its eight neighbours
+    #[arg(long)]
+    least_of_nine: bool,
+
+    /// auto, gpu, software, cpu, an index, or part of a name
+    ///
+    /// auto is a hardware adapter, or the CPU in f64 where there is none.
+    #[arg(long, value_name = "DEVICE", default_value = "auto")]
+    device: String,
+}
+
+fn generators() -> impl TypedValueParser<Value = Generator> {
+    let values = Generator::ALL.map(|g| PossibleValue::new(g.name()));
+    PossibleValuesParser::new(values)
+        .map(|word| Generator::named(&word).unwrap_or(Generator::Exact))
+}
+
+/// Most memory that making and writing a map takes at once, for each ratio: heights,
+/// maxima, the ratios, and the file encoded and read back, measured and rounded up.
+const BYTES_PER_RATIO: u64 = 64;
+
+/// Makes a map.
+///
+/// # Errors
+/// No heights, a device that fails, an unwritable file, an interrupt.
+pub fn run(args: &Make) -> Result<()> {
+    let generator = args.generator;
+    let options = options(args)?;
+    let loaded = args.reading.load(&args.heights)?;
+    let heights = &loaded.heights;
+    let output = match &args.output.output {
+        Some(path) => path.clone(),
+        // Never the name of the heights themselves, and the format that keeps all.
+        None => PathBuf::from(format!("{}-cones.exr", loaded.name)),
+    };
+    let form = args.writing.form(&output, generator.kind())?;
+    let [w, h] = heights.size();
+    let needed = u64::from(w) * u64::from(h) * generator.channels() as u64 * BYTES_PER_RATIO;
+    let available = memory::available();
+    if needed > available {
+        anyhow::bail!(
+            "a cone map of {w} x {h} needs about {needed} bytes of memory, and {available} are available; scale the heights down, or cut them"
+        );
+    }
+    interrupt::listen();
+    let sink = Sink::prepare(&output)?;
+    let patches = if args.boxes {
+        Patches::Boxes
+    } else {
+        Patches::Bilinear
+    };
+    let (maker, who) = Maker::open(&Choice::read(&args.device))?;
+    say(&format!("making cones on {who}"));
+    let start = Instant::now();
+    let map = generate(&maker, generator, heights, patches, &options)?;
+    let took = start.elapsed().as_secs_f64() * 1e3;
+    let file = MapFile::new(map, heights, patches, &made_by(generator, &options));
+    let bytes = encode(&file, &form).map_err(of_map)?;
+    let again = decode_bytes(&bytes).map_err(anyhow::Error::msg);
+    let mean = again.context("the map could not be read back")?.map.mean();
+    if interrupt::asked() {
+        return Err(crate::render::RenderError::Cancelled.into());
+    }
+    sink.finish(&bytes)?;
+    let [w, h] = file.map.size;
+    say(&format!(
+        "{}  {w} x {h}  {} by {}, layout {}  {took:.0} ms  {}",
+        shown(&output),
+        kind_word(file.map.kind),
+        generator.name(),
+        form.layout.name(),
+        kept(file.map.mean(), mean)
+    ));
+    Ok(())
+}
+
+/// What the generator is told; options that it does not know are wrong usage.
+fn options(args: &Make) -> Result<Options> {
+    let generator = args.generator;
+    let strange = |option: &str, whose: &str| {
+        let name = generator.name();
+        usage(format!(
+            "--{option} is for {whose}, and the generator is {name}; leave it out"
+        ))
+    };
+    let mut options = Options {
+        least_of_nine: args.least_of_nine,
+        ..Options::default()
+    };
+    if let Some(offset) = args.offset {
+        if !generator.over_cells() {
+            return Err(strange("offset", "walk and walk-relaxed"));
+        }
+        options.offset = offset;
+    }
+    if args.boxes && !generator.over_cells() {
+        return Err(strange("boxes", "walk and walk-relaxed"));
+    }
+    if let Some(steps) = args.search_steps {
+        if generator != Generator::RelaxedSearch {
+            return Err(strange("search-steps", "relaxed-search"));
+        }
+        options.search_steps = steps;
+    }
+    options.check().map_err(|e| usage(e.to_string()))?;
+    Ok(options)
+}
+
+/// The generator as a label calls it, with what it was told.
+fn made_by(generator: Generator, options: &Options) -> String {
+    let mut words = generator.name().to_string();
+    if generator == Generator::RelaxedSearch {
+        words.push_str(&format!(", {} steps", options.search_steps));
+    }
+    if options.least_of_nine {
+        words.push_str(", least of nine");
+    }
+    words
+}

@@ -1,0 +1,153 @@
+//! The channels of a map as panels.
+
+use glam::DVec3;
+
+use super::canvas::{Bar, Canvas, Panel};
+use crate::heightfield::heights::Heights;
+use crate::heightfield::mapfile::{Layout, MapFile, slopes};
+use crate::output::heat;
+
+/// Ends of a scale of two signs: blue under, orange over (of one lightness).
+const UNDER: DVec3 = DVec3::new(0.10, 0.32, 0.62);
+const OVER: DVec3 = DVec3::new(0.75, 0.33, 0.05);
+const EVEN: DVec3 = DVec3::splat(0.96);
+
+fn signed(x: f64) -> DVec3 {
+    let end = if x < 0.0 { UNDER } else { OVER };
+    EVEN.lerp(end, x.abs().min(1.0))
+}
+
+/// A number on a bar: at most four characters that matter.
+fn mark(x: f64) -> String {
+    match x.abs() {
+        a if a >= 99.95 || x.fract() == 0.0 => format!("{x:.0}"),
+        a if a >= 0.995 => format!("{x:.1}"),
+        a if a >= 0.01 => format!("{x:.3}"),
+        _ => format!("{x:.5}"),
+    }
+}
+
+fn height_panel(size: [u32; 2], heights: &[f32]) -> Panel<'_> {
+    let width = size[0];
+    Panel {
+        caption: "height".into(),
+        size,
+        color: Box::new(move |x, y| DVec3::splat(f64::from(heights[(y * width + x) as usize]))),
+        bar: Some(Bar {
+            color: Box::new(DVec3::splat),
+            marks: ["0".into(), "0.5".into(), "1".into()],
+        }),
+    }
+}
+
+/// Ratios in a heat map of their square root, since most are small. `step` of them
+/// belong to each place, and one counts.
+fn ratio_panel<'a>(file: &'a MapFile, caption: &str, which: usize, step: usize) -> Panel<'a> {
+    let map = &file.map;
+    let width = map.size[0];
+    let most = map.ratios.iter().copied().fold(0.0, f64::max);
+    // Up to what the papers' channels hold, and no farther than there is something.
+    let high = most.min(file.label.scale).max(1e-9);
+    Panel {
+        caption: caption.into(),
+        size: map.size,
+        color: Box::new(move |x, y| {
+            let ratio = map.ratios[(y * width + x) as usize * step + which];
+            heat((ratio / high).clamp(0.0, 1.0).sqrt())
+        }),
+        bar: Some(Bar {
+            color: Box::new(heat),
+            marks: [
+                "0".into(),
+                mark(high / 4.0),
+                format!("{} texels", mark(high)),
+            ],
+        }),
+    }
+}
+
+/// A channel that is even at one half, with its farthest value as its scale.
+fn signed_panel<'a>(size: [u32; 2], caption: &str, shares: &'a [f32]) -> Panel<'a> {
+    let width = size[0];
+    let far = shares.iter().map(|s| (f64::from(*s) - 0.5).abs());
+    let far = far.fold(0.0, f64::max).max(1e-9);
+    Panel {
+        caption: caption.into(),
+        size,
+        color: Box::new(move |x, y| {
+            let share = f64::from(shares[(y * width + x) as usize]);
+            signed((share - 0.5) / far)
+        }),
+        bar: Some(Bar {
+            color: Box::new(|x| signed(2.0 * x - 1.0)),
+            marks: [mark(-far), "0".into(), mark(far)],
+        }),
+    }
+}
+
+/// The channels of a cone map.
+pub fn map_panels(file: &MapFile) -> Canvas {
+    let size = file.map.size;
+    let mut panels = Vec::new();
+    if let Some(heights) = &file.heights {
+        panels.push(height_panel(size, heights));
+    }
+    let places = size[0] as usize * size[1] as usize;
+    if file.map.ratios.len() == places {
+        panels.push(ratio_panel(file, "ratio", 0, 1));
+    } else {
+        for (i, side) in ["+x", "-x", "+y", "-y"].iter().enumerate() {
+            panels.push(ratio_panel(file, &format!("ratio {side}"), i, 4));
+        }
+    }
+    match (file.form.layout, file.extra.as_slice()) {
+        (Layout::Relief, [x, y]) => panels.push(normal_panel(size, &x.shares, &y.shares)),
+        (_, extra) => {
+            for channel in extra {
+                panels.push(signed_panel(size, channel.name, &channel.shares));
+            }
+        }
+    }
+    Canvas::of(&panels)
+}
+
+/// A normal as it is stored, with the blue that its two numbers leave.
+fn normal_panel<'a>(size: [u32; 2], xs: &'a [f32], ys: &'a [f32]) -> Panel<'a> {
+    let width = size[0];
+    Panel {
+        caption: "normal".into(),
+        size,
+        color: Box::new(move |x, y| {
+            let i = (y * width + x) as usize;
+            let [nx, ny] = [xs[i], ys[i]].map(|n| 2.0 * f64::from(n) - 1.0);
+            let nz = (1.0 - nx * nx - ny * ny).max(0.0).sqrt();
+            DVec3::new(nx, ny, nz) * 0.5 + 0.5
+        }),
+        bar: None,
+    }
+}
+
+/// Depth of the relief in texture widths that shading takes for granted.
+const RELIEF: f64 = 0.25;
+
+/// A height map, as it is and lit from the top left.
+pub fn heights_panels(heights: &Heights) -> Canvas {
+    let size = heights.size();
+    let width = size[0];
+    let depth = RELIEF * f64::from(size[0].max(size[1]));
+    let light = DVec3::new(-1.0, -1.0, 1.2).normalize();
+    let lit: Vec<f64> = slopes(heights)
+        .into_iter()
+        .map(|[x, y]| {
+            let normal = DVec3::new(-x * depth, -y * depth, 1.0).normalize();
+            0.08 + 0.92 * normal.dot(light).max(0.0)
+        })
+        .collect();
+    let shaded = Panel {
+        caption: "lit from the top left".into(),
+        size,
+        color: Box::new(move |x, y| DVec3::splat(lit[(y * width + x) as usize].sqrt())),
+        bar: None,
+    };
+    Canvas::of(&[height_panel(size, heights.data()), shaded])
+}

@@ -1,0 +1,206 @@
+//! Numbers of a height map's file, as they stand: whole numbers as shares of their
+//! largest, floats as they are.
+//!
+//! **Which channel.** Of several channels the first counts: grey, or red, which is where
+//! cone step maps keep their heights. Alpha is no height and is left out. In an EXR a
+//! channel called `height` counts, else `Y`, `Z` or `R`, else the only one there is; of
+//! names with a dot the part before it counts for `height`, the one after it for the
+//! letters.
+//!
+//! **Raw files** (.raw, .f32 or .r32) hold f32, little endian, row by row and nothing
+//! else. Their size is given, or stands in the name as in `heights-512x256.raw`.
+
+use std::io::Read;
+use std::path::Path;
+
+use super::named::read_size;
+use crate::heightfield::raster::open::{Format, Opened, open};
+use crate::heightfield::raster::{exr, png, tiff};
+
+/// Numbers of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Numbers row by row; floats may be anything.
+    pub values: Vec<f32>,
+    /// What the file is, in words.
+    pub form: String,
+    /// What was left out, if anybody might wonder.
+    pub note: Option<String>,
+}
+
+/// Reads a file of any format. `size` is that of a raw file.
+///
+/// # Errors
+/// In words, without the file's name.
+pub fn read(path: &Path, size: Option<[u32; 2]>) -> Result<Grid, String> {
+    let mut opened = open(path)?;
+    if size.is_some() && opened.format != Format::Other {
+        return Err("says its own size; leave --size out, which is for raw files".into());
+    }
+    match opened.format {
+        Format::Png => read_png(opened),
+        Format::Exr => read_exr(&mut opened),
+        Format::Tiff => read_tiff(opened),
+        Format::Jpeg => {
+            Err("is a JPEG, whose losses are steps in heights; save it as PNG or TIFF".into())
+        }
+        Format::Other => read_raw(path, opened, size),
+    }
+}
+
+fn read_png(opened: Opened) -> Result<Grid, String> {
+    let pixels = png::read(opened.file, 1, "")?;
+    let most = f64::from(pixels.most);
+    let share = |n: &u16| (f64::from(*n) / most) as f32;
+    let colors = ["grey", "grey and alpha", "colour", "colour and alpha"];
+    let bits = if pixels.most > 255 { 16 } else { 8 };
+    let note = if !pixels.is_grey {
+        Some("has colours: red is taken as the height")
+    } else if !pixels.is_opaque {
+        Some("is transparent in places: alpha is left out, and what it hides counts")
+    } else {
+        None
+    };
+    Ok(Grid {
+        size: pixels.size,
+        values: pixels.numbers.iter().map(share).collect(),
+        form: format!("PNG, {}, {bits} bit", colors[(pixels.channels - 1).min(3)]),
+        note: note.map(str::to_string),
+    })
+}
+
+fn read_exr(opened: &mut Opened) -> Result<Grid, String> {
+    let head = exr::head(&mut opened.file, "")?;
+    let name = chosen(&head.channels).ok_or_else(|| {
+        format!(
+            "is an EXR with the channels {}, none of which is called height, Y, Z or R; rename the one to take",
+            head.channels.join(", ")
+        )
+    })?;
+    let values = exr::channel(&mut opened.file, name)?;
+    let others = head.channels.len() - 1;
+    Ok(Grid {
+        size: head.size,
+        values,
+        form: format!("EXR, channel {name}"),
+        note: (others > 0).then(|| format!("has {others} more channels: {name} is the height")),
+    })
+}
+
+/// The channel that holds heights.
+fn chosen(channels: &[String]) -> Option<&str> {
+    let named = |name: &str| name.to_lowercase();
+    let height = |name: &&String| {
+        let name = named(name);
+        name == "height" || name.starts_with("height.") || name.ends_with(".height")
+    };
+    let letter = |letter: &'static str| {
+        move |name: &&String| {
+            let name = named(name);
+            name.rsplit('.').next() == Some(letter)
+        }
+    };
+    let found = channels.iter().find(height);
+    let found = found.or_else(|| channels.iter().find(letter("y")));
+    let found = found.or_else(|| channels.iter().find(letter("z")));
+    let found = found.or_else(|| channels.iter().find(letter("r")));
+    let only = (channels.len() == 1).then(|| channels.first()).flatten();
+    found.or(only).map(String::as_str)
+}
+
+fn read_tiff(opened: Opened) -> Result<Grid, String> {
+    let channel = tiff::read(opened.file)?;
+    let others = channel.channels - 1;
+    Ok(Grid {
+        size: channel.size,
+        values: channel.values,
+        form: "TIFF".into(),
+        note: (others > 0).then(|| format!("has {others} more channels: the first is the height")),
+    })
+}
+
+/// Endings of raw files.
+const RAW: [&str; 3] = ["raw", "f32", "r32"];
+
+fn read_raw(path: &Path, mut opened: Opened, size: Option<[u32; 2]>) -> Result<Grid, String> {
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+    let is_raw = RAW.contains(&ending.to_lowercase().as_str());
+    if !is_raw && size.is_none() {
+        return Err(
+            "is neither PNG, EXR nor TIFF; raw 32-bit floats end in .raw, or are given a --size"
+                .into(),
+        );
+    }
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+    let size = size.or_else(|| stem.and_then(|s| size_in(&s)));
+    let Some([w, h]) = size else {
+        return Err(
+            "is raw and does not tell its size; give --size WxH, or put it into the name like heights-512x256.raw"
+                .into(),
+        );
+    };
+    let wanted = u64::from(w) * u64::from(h) * 4;
+    if opened.bytes != wanted {
+        let hint = if opened.bytes * 2 == wanted {
+            "; it may hold 16-bit numbers, which a 16-bit PNG or TIFF would carry"
+        } else {
+            "; give the right --size"
+        };
+        return Err(format!(
+            "has {} bytes, and {w} x {h} floats of 32 bits are {wanted}{hint}",
+            opened.bytes
+        ));
+    }
+    // One byte more than wanted would tell of a file that grows; it is not believed.
+    let mut bytes = Vec::with_capacity(wanted as usize);
+    let mut part = opened.file.by_ref().take(wanted);
+    let read = part.read_to_end(&mut bytes);
+    read.map_err(|e| format!("cannot be read: {e}"))?;
+    if bytes.len() as u64 != wanted {
+        return Err("became shorter while it was read; try again".into());
+    }
+    let float = |b: &[u8]| f32::from_le_bytes(b.try_into().unwrap_or_default());
+    Ok(Grid {
+        size: [w, h],
+        values: bytes.chunks_exact(4).map(float).collect(),
+        form: "raw, 32-bit floats".into(),
+        note: None,
+    })
+}
+
+/// The size at the end of a name: `heights-512x256`, `heights_512x256`, `512x256`.
+fn size_in(stem: &str) -> Option<[u32; 2]> {
+    let last = stem.rsplit(['-', '_', ' ', '.']).next()?;
+    read_size(last).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_stand_at_the_end_of_names() {
+        assert_eq!(size_in("heights-512x256"), Some([512, 256]));
+        assert_eq!(size_in("a_b_3X4"), Some([3, 4]));
+        assert_eq!(size_in("5x6"), Some([5, 6]));
+        assert_eq!(size_in("heights512x256"), None);
+        assert_eq!(size_in("heights-0x256"), None);
+        assert_eq!(size_in("512x256-heights"), None);
+    }
+
+    #[test]
+    fn the_channel_of_heights_is_chosen_by_name() {
+        let of = |names: &[&str]| {
+            let names: Vec<String> = names.iter().map(|n| n.to_string()).collect();
+            chosen(&names).map(str::to_string)
+        };
+        assert_eq!(of(&["B", "G", "R"]).as_deref(), Some("R"));
+        assert_eq!(of(&["R", "Y", "height"]).as_deref(), Some("height"));
+        assert_eq!(of(&["depth.Z", "R"]).as_deref(), Some("depth.Z"));
+        assert_eq!(of(&["height.Y", "ratio.Y"]).as_deref(), Some("height.Y"));
+        assert_eq!(of(&["displacement"]).as_deref(), Some("displacement"));
+        assert_eq!(of(&["U", "V"]), None);
+    }
+}

@@ -1,0 +1,11 @@
+//! Height maps by what the command line or a preset calls them: a file, or a field of
+//! the program's own.
+
+mod error;
+mod file;
+mod named;
+mod source;
+
+pub use error::LoadError;
+pub use named::Named;
+pub use source::{LoadOptions, Loaded, load};

@@ -1,0 +1,145 @@
+//! From an argument to heights from 0 to 1.
+//!
+//! Numbers that are no numbers are refused with their place. What lies outside 0..=1,
+//! metres of an elevation model say, is refused as well, with the way out: `normalize`
+//! brings the lowest to 0 and the highest to 1. It is not done unasked, because two
+//! maps of one landscape would not fit together any more, and a dent that uses half of
+//! the range would become twice as deep. `invert` turns depths into heights, and comes
+//! last.
+
+use std::path::Path;
+
+use super::error::LoadError;
+use super::file::{Grid, read};
+use super::named::Named;
+use crate::heightfield::field::Field;
+use crate::heightfield::heights::Heights;
+
+/// How heights are to be read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// Which axes wrap.
+    pub wrap: [bool; 2],
+    /// Turn depths into heights: 0 becomes 1 and 1 becomes 0.
+    pub invert: bool,
+    /// Bring the lowest to 0 and the highest to 1, whatever they are; an even map to 0.
+    pub normalize: bool,
+    /// Columns and rows of a raw file.
+    pub size: Option<[u32; 2]>,
+}
+
+/// Heights that were found and read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loaded {
+    /// The file's name without its ending, or the field's.
+    pub name: String,
+    /// The heights.
+    pub heights: Heights,
+    /// Where they come from, in words.
+    pub form: String,
+    /// What was left out, if anybody might wonder; with the file's name.
+    pub note: Option<String>,
+}
+
+/// Finds and reads what an argument means: a field by its name, or a file by its path.
+///
+/// # Errors
+/// The argument names nothing, or the file cannot be read or holds no heights.
+pub fn load(argument: &str, options: &LoadOptions) -> Result<Loaded, LoadError> {
+    if let Some(named) = Named::read(argument) {
+        return generated(named, argument, options);
+    }
+    let path = Path::new(argument);
+    let is_path = argument.contains(['/', '\\', '.']) || (!argument.is_empty() && path.exists());
+    if !is_path {
+        return Err(LoadError::argument(argument, strange()));
+    }
+    let fail = |why: String| LoadError::file(path, why);
+    let Grid {
+        size,
+        mut values,
+        form,
+        note,
+    } = read(path, options.size).map_err(fail)?;
+    into_range(&mut values, size[0] as usize, options.normalize).map_err(fail)?;
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+    Ok(Loaded {
+        name: stem.unwrap_or_else(|| "heights".into()),
+        heights: finished(size, values, options).map_err(fail)?,
+        form,
+        note: note.map(|note| format!("{argument} {note}")),
+    })
+}
+
+fn generated(
+    named: Result<Named, String>,
+    argument: &str,
+    options: &LoadOptions,
+) -> Result<Loaded, LoadError> {
+    let fail = |why: String| LoadError::argument(argument, why);
+    let named = named.map_err(fail)?;
+    if options.size.is_some() {
+        let name = named.field.name();
+        let why = format!(
+            "is a field, whose size stands behind a colon like {name}:512x512; --size is for raw files"
+        );
+        return Err(fail(why));
+    }
+    let values = named.field.heights(named.size, named.seed, named.power);
+    Ok(Loaded {
+        name: named.field.name().into(),
+        heights: finished(named.size, values, options).map_err(fail)?,
+        form: named.to_string(),
+        note: None,
+    })
+}
+
+/// What an argument should have been.
+fn strange() -> String {
+    format!(
+        "there is no such file or field; fields are {}, and files are PNG, EXR, TIFF or .raw",
+        Field::ALL.map(Field::name).join(", ")
+    )
+}
+
+/// Brings numbers to 0..=1, or says what keeps them from it.
+fn into_range(values: &mut [f32], width: usize, normalize: bool) -> Result<(), String> {
+    if let Some(i) = values.iter().position(|z| !z.is_finite()) {
+        let (x, y, z) = (i % width, i / width, values[i]);
+        return Err(format!(
+            "the height at column {x}, row {y} is {z}; fill such places before"
+        ));
+    }
+    let low = values.iter().copied().fold(f32::INFINITY, f32::min);
+    let high = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    if normalize {
+        let (low, range) = (f64::from(low), f64::from(high) - f64::from(low));
+        let range = if range > 0.0 { range } else { 1.0 };
+        for z in values {
+            // The cast may round a share just under 1 up to 1, never beyond.
+            *z = ((f64::from(*z) - low) / range) as f32;
+        }
+    } else if low < 0.0 || high > 1.0 {
+        return Err(format!(
+            "its heights reach from {low} to {high}, and heights are 0 to 1; --normalize brings the lowest to 0 and the highest to 1"
+        ));
+    }
+    Ok(())
+}
+
+fn finished(
+    size: [u32; 2],
+    mut values: Vec<f32>,
+    options: &LoadOptions,
+) -> Result<Heights, String> {
+    if options.invert {
+        for z in &mut values {
+            *z = 1.0 - *z;
+        }
+    }
+    // No minus zero, whose bits would make equal heights look different.
+    for z in &mut values {
+        *z += 0.0;
+    }
+    Heights::new(size, options.wrap, values).map_err(|e| e.to_string())
+}

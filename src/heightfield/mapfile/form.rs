@@ -1,0 +1,198 @@
+//! What a file holds besides its ratios, and the layouts that it may have.
+//!
+//! | layout | file | channels |
+//! |---|---|---|
+//! | `dummer` | PNG, RGBA | height, ratio, slope along x, slope along y |
+//! | `relief` | PNG, RGBA | normal x, normal y, ratio, depth (1 less the height) |
+//! | `pair` | PNG, grey and alpha | height, ratio |
+//! | `quad` | PNG, RGBA | ratios to +x, -x, +y, -y |
+//! | `full` | EXR, f32 | `height`, and `ratio` or `ratio.E`, `.W`, `.S`, `.N` |
+//!
+//! A ratio of 1 in a file is that of the papers: one texture width of horizontal
+//! distance per whole height. Papers are silent about other than square maps; here the
+//! width is the longer axis of the heights, so that the channel never holds less than
+//! it could. The label says the texels that it means.
+//!
+//! Heights are those of the samples, or for walks those of the cells' highest points.
+
+use crate::heightfield::conemap::{ConeMap, MapKind};
+use crate::heightfield::heights::{Heights, Patches};
+
+use super::label::{Label, digest};
+use super::round::Steps;
+use super::words::is_walk;
+
+/// Which channels a file has, and what they mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// Height, ratio and slopes (Dummer 2006).
+    Dummer,
+    /// Normal, ratio and depth (Policarpo and Oliveira 2007).
+    Relief,
+    /// Height and ratio.
+    Pair,
+    /// Four ratios.
+    Quad,
+    /// Everything as it is, in f32.
+    Full,
+}
+
+impl Layout {
+    /// Every layout.
+    pub const ALL: [Self; 5] = [
+        Self::Dummer,
+        Self::Relief,
+        Self::Pair,
+        Self::Quad,
+        Self::Full,
+    ];
+
+    /// The word that chooses it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dummer => "dummer",
+            Self::Relief => "relief",
+            Self::Pair => "pair",
+            Self::Quad => "quad",
+            Self::Full => "full",
+        }
+    }
+
+    /// The layout of a word.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|l| l.name() == name)
+    }
+
+    /// The PNG layout that a kind has unless told otherwise.
+    pub fn usual(kind: MapKind) -> Self {
+        match kind {
+            MapKind::Samples => Self::Dummer,
+            MapKind::Relaxed => Self::Relief,
+            MapKind::Quad => Self::Quad,
+            MapKind::Walk | MapKind::WalkRelaxed => Self::Pair,
+        }
+    }
+
+    /// Why a kind has no place in the layout, if so.
+    pub fn lacks(self, kind: MapKind) -> Option<&'static str> {
+        let quad = kind == MapKind::Quad;
+        match self {
+            Self::Full => None,
+            Self::Quad => (!quad).then_some("holds four ratios, and the map has one"),
+            _ if quad => Some("holds one ratio, and the map has four; take quad or full"),
+            Self::Dummer | Self::Relief if is_walk(kind) => Some(
+                "holds what belongs to samples, and a walk's map is of cells; take pair or full",
+            ),
+            _ => None,
+        }
+    }
+}
+
+/// Bits of a PNG channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bits {
+    /// 0 to 255.
+    Eight,
+    /// 0 to 65535.
+    Sixteen,
+}
+
+impl Bits {
+    /// The numbers of a channel.
+    pub fn steps(self) -> Steps {
+        Steps {
+            most: match self {
+                Self::Eight => u16::from(u8::MAX),
+                Self::Sixteen => u16::MAX,
+            },
+        }
+    }
+}
+
+/// How a map is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Form {
+    /// The channels.
+    pub layout: Layout,
+    /// Their bits, where they are whole numbers.
+    pub bits: Bits,
+    /// Whether the ratio's channel holds its square root, which keeps more of the small
+    /// ratios that most are.
+    pub root: bool,
+    /// Height of 1 in texture widths, for normals.
+    pub depth: f64,
+}
+
+impl Form {
+    /// A layout as the papers have it: 8 bits; a square root, but for `relief`, whose
+    /// shader takes the ratio as it is. `pair` is no paper's, and has 16 bits.
+    pub fn new(layout: Layout) -> Self {
+        Self {
+            layout,
+            bits: if layout == Layout::Pair {
+                Bits::Sixteen
+            } else {
+                Bits::Eight
+            },
+            root: !matches!(layout, Layout::Relief | Layout::Full),
+            // A relief a quarter as deep as it is wide; deeper ones are rare.
+            depth: 0.25,
+        }
+    }
+}
+
+/// A channel of a file that only shades, as shares of 0..=1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extra {
+    /// What it is.
+    pub name: &'static str,
+    /// Its numbers, row by row.
+    pub shares: Vec<f32>,
+}
+
+/// A cone map with what its file knows of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapFile {
+    /// The cones.
+    pub map: ConeMap,
+    /// A height for each place, where the file has one: of the sample, or of the cell's
+    /// highest point.
+    pub heights: Option<Vec<f32>>,
+    /// Slopes or normals that were read with it.
+    pub extra: Vec<Extra>,
+    /// How it is, was or will be written.
+    pub form: Form,
+    /// What the file says of the map.
+    pub label: Label,
+}
+
+impl MapFile {
+    /// A fresh map of some heights. `generator` is the word for what made it.
+    pub fn new(map: ConeMap, heights: &Heights, patches: Patches, generator: &str) -> Self {
+        let form = Form::new(Layout::Full);
+        let places = if is_walk(map.kind) {
+            heights.apexes(patches)
+        } else {
+            heights.data().to_vec()
+        };
+        let label = Label {
+            samples: heights.size(),
+            patches,
+            scale: scale(heights.size()),
+            digest: Some(digest(heights)),
+            generator: Some(generator.into()),
+        };
+        Self {
+            map,
+            heights: Some(places),
+            extra: Vec::new(),
+            form,
+            label,
+        }
+    }
+}
+
+/// Texels that a ratio of 1 in a file means: the longer axis.
+pub(super) fn scale(samples: [u32; 2]) -> f64 {
+    f64::from(samples[0].max(samples[1]))
+}

@@ -1,0 +1,177 @@
+//! The text in a file that says what its cones are and which heights they belong to:
+//! TOML, in a text chunk of a PNG (keyword `conemarch cone map`) or an attribute of an
+//! EXR of that name.
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::form::{Form, Layout, MapFile};
+use super::words::{is_walk, kind_named, kind_word, wrap_named, wrap_word};
+use crate::heightfield::conemap::{MapKind, WIDEST};
+use crate::heightfield::heights::{Heights, MOST_SAMPLES, Patches};
+
+/// Keyword of the text chunk and name of the attribute.
+pub(super) const KEYWORD: &str = "conemarch cone map";
+
+/// What the numbers of a map do not say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// Samples of the heights along each axis.
+    pub samples: [u32; 2],
+    /// What lies between them; only the cells of walks depend on it.
+    pub patches: Patches,
+    /// Texels that a ratio of 1 in the file means.
+    pub scale: f64,
+    /// [`digest`] of the heights; unknown where another program wrote the file.
+    pub digest: Option<String>,
+    /// What made the map; unknown where another program wrote the file.
+    pub generator: Option<String>,
+}
+
+/// A number that tells heights from all others: SHA-256 of their size and bits, in
+/// hexadecimal. Wrapping is no part of it.
+pub fn digest(heights: &Heights) -> String {
+    let mut hash = Sha256::new();
+    for n in heights.size() {
+        hash.update(n.to_le_bytes());
+    }
+    for z in heights.data() {
+        hash.update(z.to_le_bytes());
+    }
+    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// The text as it stands in a file.
+#[derive(Debug, Serialize, Deserialize)]
+struct Text {
+    /// Of the text itself.
+    version: u32,
+    kind: String,
+    layout: String,
+    /// `linear` or `sqrt`.
+    ratio: String,
+    /// Texels that a ratio of 1 means.
+    scale: f64,
+    wrap: String,
+    /// Texels of room that a walk's cones leave.
+    offset: f64,
+    samples: [u32; 2],
+    /// `bilinear` or `boxes`.
+    surface: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    heights_sha256: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    generator: Option<String>,
+}
+
+/// The only version of the text so far.
+const VERSION: u32 = 1;
+
+/// Writes the text for a map in a form.
+pub(super) fn write(file: &MapFile, form: &Form) -> Result<String, String> {
+    let map = &file.map;
+    let label = &file.label;
+    let text = Text {
+        version: VERSION,
+        kind: kind_word(map.kind).into(),
+        layout: form.layout.name().into(),
+        ratio: if form.root { "sqrt" } else { "linear" }.into(),
+        scale: label.scale,
+        wrap: wrap_word(map.wrap).into(),
+        offset: map.offset,
+        samples: label.samples,
+        surface: match label.patches {
+            Patches::Bilinear => "bilinear",
+            Patches::Boxes => "boxes",
+        }
+        .into(),
+        heights_sha256: label.digest.clone(),
+        generator: label.generator.clone(),
+    };
+    toml::to_string(&text).map_err(|e| e.to_string())
+}
+
+/// What a text says.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Read {
+    pub kind: MapKind,
+    pub layout: Layout,
+    pub root: bool,
+    pub wrap: [bool; 2],
+    pub offset: f64,
+    pub label: Label,
+}
+
+impl Read {
+    /// Places that a map of such heights has along each axis.
+    pub fn places(&self) -> [u32; 2] {
+        places(self.label.samples, self.wrap, self.kind, self.label.patches)
+    }
+}
+
+/// Places of a map along each axis: samples, or for walks cells.
+pub(super) fn places(
+    samples: [u32; 2],
+    wrap: [bool; 2],
+    kind: MapKind,
+    patches: Patches,
+) -> [u32; 2] {
+    [0, 1].map(|a| {
+        let ends = is_walk(kind) && patches == Patches::Bilinear && !wrap[a];
+        samples[a] - u32::from(ends && samples[a] > 1)
+    })
+}
+
+/// Reads a text.
+///
+/// # Errors
+/// In words: it is none, or says what cannot be.
+pub(super) fn read(text: &str) -> Result<Read, String> {
+    let broken = |why: String| {
+        format!("says of its cones what is not understood ({why}); make the map again")
+    };
+    let text: Text = toml::from_str(text).map_err(|e| broken(e.message().to_string()))?;
+    if text.version != VERSION {
+        return Err(format!(
+            "was written by a later conemarch (version {} of its label, and {VERSION} is known); make the map again",
+            text.version
+        ));
+    }
+    let wrong = |key: &str, value: &str| broken(format!("{key} = {value}"));
+    let kind = kind_named(&text.kind).ok_or_else(|| wrong("kind", &text.kind))?;
+    let layout = Layout::named(&text.layout).ok_or_else(|| wrong("layout", &text.layout))?;
+    let wrap = wrap_named(&text.wrap).ok_or_else(|| wrong("wrap", &text.wrap))?;
+    let root = match text.ratio.as_str() {
+        "sqrt" => true,
+        "linear" => false,
+        other => return Err(wrong("ratio", other)),
+    };
+    let patches = match text.surface.as_str() {
+        "bilinear" => Patches::Bilinear,
+        "boxes" => Patches::Boxes,
+        other => return Err(wrong("surface", other)),
+    };
+    if !(1e-3..=WIDEST).contains(&text.scale) {
+        return Err(wrong("scale", &text.scale.to_string()));
+    }
+    if !(0.0..=WIDEST).contains(&text.offset) {
+        return Err(wrong("offset", &text.offset.to_string()));
+    }
+    if text.samples.iter().any(|n| !(1..=MOST_SAMPLES).contains(n)) {
+        return Err(wrong("samples", &format!("{:?}", text.samples)));
+    }
+    Ok(Read {
+        kind,
+        layout,
+        root,
+        wrap,
+        offset: text.offset,
+        label: Label {
+            samples: text.samples,
+            patches,
+            scale: text.scale,
+            digest: text.heights_sha256,
+            generator: text.generator,
+        },
+    })
+}

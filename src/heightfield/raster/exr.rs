@@ -1,0 +1,123 @@
+//! OpenEXR by channel: only what is asked for is kept in memory.
+//!
+//! Parts without deep data, scan lines or tiles, of which the finest level is read;
+//! halves and whole numbers become f32. A size is checked before memory is taken for
+//! it.
+
+use std::io::{BufRead, Cursor, Read, Seek, Write};
+
+use exr::meta::MetaData;
+use exr::meta::attribute::{AttributeValue, Text};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, LayerAttributes, ReadChannels,
+    ReadLayers, ReadSpecificChannel, SmallVec, WritableImage,
+};
+
+use super::open::check_size;
+use crate::heightfield::heights::MOST_SAMPLES;
+
+/// Longest text of an attribute that is believed.
+const MOST_TEXT: usize = 1 << 16;
+
+/// What the head of a file tells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Head {
+    /// Columns and rows of the first part.
+    pub size: [u32; 2],
+    /// Names of its channels, sorted.
+    pub channels: Vec<String>,
+    /// The text of the attribute that was asked for.
+    pub text: Option<String>,
+}
+
+/// Reads the head of a file and puts the reader back to its start.
+///
+/// # Errors
+/// In words: broken, deep, or too large.
+pub fn head(from: &mut (impl Read + Seek), attribute: &str) -> Result<Head, String> {
+    let meta = MetaData::read_from_buffered(&mut *from, false).map_err(|e| broken(&e))?;
+    from.rewind().map_err(|e| format!("cannot be read: {e}"))?;
+    let mut size = None;
+    for header in &meta.headers {
+        // Memory is taken for every part, so every part must be sane.
+        let (w, h) = (header.layer_size.width(), header.layer_size.height());
+        let found = check_size(w as u64, h as u64, MOST_SAMPLES)?;
+        size.get_or_insert(found);
+    }
+    let (Some(size), Some(first)) = (size, meta.headers.first()) else {
+        return Err("is an EXR without an image".into());
+    };
+    if first.deep {
+        return Err("is an EXR of deep data, which has no single height in a place".into());
+    }
+    let channels = first.channels.list.iter();
+    let text = match first.own_attributes.other.get(&Text::from(attribute)) {
+        Some(AttributeValue::Text(text)) if text.as_slice().len() <= MOST_TEXT => {
+            Some(text.to_string())
+        }
+        _ => None,
+    };
+    Ok(Head {
+        size,
+        channels: channels.map(|c| c.name.to_string()).collect(),
+        text,
+    })
+}
+
+/// Reads one channel of the first part that has it, row by row.
+///
+/// # Errors
+/// In words: broken or cut short, or without that channel.
+pub fn channel(from: impl BufRead + Seek, name: &str) -> Result<Vec<f32>, String> {
+    // Pedantic: a part that is missing must not turn into zeros.
+    let read = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .specific_channels()
+        .required(name)
+        .collect_pixels(
+            |size, _| (size.width(), vec![f32::NAN; size.area()]),
+            |(width, values): &mut (usize, Vec<f32>), at, (value,): (f32,)| {
+                values[at.y() * *width + at.x()] = value;
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .pedantic();
+    let image: Image<_> = read.from_buffered(from).map_err(|e| broken(&e))?;
+    Ok(image.layer_data.channel_data.pixels.1)
+}
+
+fn broken(e: &exr::error::Error) -> String {
+    format!("is an EXR that cannot be read: {e}; fetch or save it again")
+}
+
+/// Writes one part of named f32 channels with a text attribute, losslessly.
+///
+/// # Errors
+/// In words: what the encoder or the writer said.
+pub fn write(
+    to: &mut impl Write,
+    size: [u32; 2],
+    channels: Vec<(String, Vec<f32>)>,
+    [attribute, text]: [&str; 2],
+) -> Result<(), String> {
+    let list: SmallVec<_> = channels
+        .into_iter()
+        .map(|(name, values)| AnyChannel::new(name.as_str(), FlatSamples::F32(values)))
+        .collect();
+    let mut attributes = LayerAttributes::default();
+    let latin = |text: &str| Text::new_or_none(text).ok_or("its text is not Latin");
+    let value = AttributeValue::Text(latin(text)?);
+    attributes.other.insert(latin(attribute)?, value);
+    let layer = exr::prelude::Layer::new(
+        (size[0] as usize, size[1] as usize),
+        attributes,
+        Encoding::SMALL_FAST_LOSSLESS,
+        AnyChannels::sort(list),
+    );
+    let mut bytes = Cursor::new(Vec::new());
+    let written = Image::from_layer(layer).write().to_buffered(&mut bytes);
+    written.map_err(|e| e.to_string())?;
+    to.write_all(&bytes.into_inner()).map_err(|e| e.to_string())
+}

@@ -1,0 +1,6 @@
+//! Numbers in image files: what height maps and cone maps are read from.
+
+pub mod exr;
+pub mod open;
+pub mod png;
+pub mod tiff;

@@ -1,0 +1,96 @@
+//! Opening a file and telling its format by its first bytes, whatever its name says.
+//!
+//! Pipes and devices are refused: formats want to seek, and a pipe without a writer
+//! would wait for ever.
+
+use std::fs::{self, File};
+use std::io::{BufReader, Read, Seek};
+use std::path::Path;
+
+/// What the first bytes of a file tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Portable Network Graphics.
+    Png,
+    /// OpenEXR.
+    Exr,
+    /// TIFF, or BigTIFF.
+    Tiff,
+    /// JPEG, which is known only to be refused with a word.
+    Jpeg,
+    /// Nothing that is known; raw numbers have no mark.
+    Other,
+}
+
+/// An open file at its start.
+#[derive(Debug)]
+pub struct Opened {
+    /// The file.
+    pub file: BufReader<File>,
+    /// Its length in bytes.
+    pub bytes: u64,
+    /// What it seems to be.
+    pub format: Format,
+}
+
+/// First bytes and the formats that they belong to.
+const MARKS: [(&[u8], Format); 7] = [
+    (b"\x89PNG\r\n\x1a\n", Format::Png),
+    (b"\x76\x2f\x31\x01", Format::Exr),
+    (b"II*\0", Format::Tiff),
+    (b"MM\0*", Format::Tiff),
+    (b"II+\0", Format::Tiff),
+    (b"MM\0+", Format::Tiff),
+    (b"\xff\xd8\xff", Format::Jpeg),
+];
+
+/// Opens a file for reading.
+///
+/// # Errors
+/// In words, without the file's name: it is not there, may not be read, is a folder, a
+/// pipe or a device, or is empty.
+pub fn open(path: &Path) -> Result<Opened, String> {
+    let unreadable =
+        |e: std::io::Error| format!("cannot be read: {e}; check its path and its rights");
+    let known = fs::metadata(path).map_err(unreadable)?;
+    if known.is_dir() {
+        return Err("is a folder; name a file in it".into());
+    }
+    if !known.is_file() {
+        return Err("is a pipe or a device; save its content to a file first".into());
+    }
+    if known.len() == 0 {
+        return Err("is empty; was it written to its end?".into());
+    }
+    let mut file = BufReader::new(File::open(path).map_err(unreadable)?);
+    let mut start = Vec::new();
+    let mut first = (&mut file).take(8);
+    first.read_to_end(&mut start).map_err(unreadable)?;
+    file.rewind().map_err(unreadable)?;
+    Ok(Opened {
+        file,
+        bytes: known.len(),
+        format: format_of(&start),
+    })
+}
+
+/// What the first bytes of a file tell.
+pub fn format_of(start: &[u8]) -> Format {
+    let found = MARKS.iter().find(|(mark, _)| start.starts_with(mark));
+    found.map_or(Format::Other, |(_, format)| *format)
+}
+
+/// A size that a height map may have.
+///
+/// # Errors
+/// In words: an axis without samples or with too many. Asked before memory is taken for
+/// what a header claims.
+pub fn check_size(width: u64, height: u64, most: u32) -> Result<[u32; 2], String> {
+    let side = |n: u64| u32::try_from(n).ok().filter(|n| (1..=most).contains(n));
+    match (side(width), side(height)) {
+        (Some(w), Some(h)) => Ok([w, h]),
+        _ => Err(format!(
+            "is {width} x {height}, and each axis may have 1 to {most}; cut or scale it"
+        )),
+    }
+}
