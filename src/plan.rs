@@ -17,6 +17,7 @@ use crate::pass::{color, fog, march, occlusion, queue, shadow, trace};
 use crate::pyramid::{Level, Pyramid};
 use crate::scene::Scene;
 use crate::scene::distance::Distance;
+use crate::scene::heightfield::Heightfield;
 use crate::scene::slab::{Slab, SlabShape};
 use crate::shader::{Module, Program};
 use crate::view::{self, Camera, View};
@@ -74,7 +75,7 @@ impl Subject {
                 ));
                 keys
             }
-            Self::Heightfield(relief) => relief.keys(),
+            Self::Heightfield(shape) => shape.keys(),
             Self::Slab(shape) => shape.keys(),
         }
     }
@@ -139,7 +140,7 @@ impl Plan {
     pub fn check(&self) -> Result<(), Fault> {
         match &self.subject {
             Subject::Distance { shape, .. } => shape.check()?,
-            Subject::Heightfield(relief) => relief.check()?,
+            Subject::Heightfield(shape) => shape.check()?,
             Subject::Slab(shape) => shape.check()?,
         }
         self.camera.check()?;
@@ -165,6 +166,10 @@ impl Plan {
             Subject::Distance { shape, iterations } => {
                 let most = iterations.unwrap_or_else(|| self.auto_iterations(shape));
                 Scene::Distance(Distance::new(shape.clone(), most, eye, stepping))
+            }
+            Subject::Heightfield(shape) => {
+                let ready = shape.ready().expect("a plan that passes its check");
+                Scene::Heightfield(Heightfield::new(ready, eye, stepping.rule))
             }
             Subject::Slab(shape) => Scene::Slab(Slab::new(shape, eye, stepping.rule)),
         }

@@ -23,17 +23,24 @@ pub enum Field {
     Sine,
     /// White noise: every sample on its own.
     Noise,
+    /// Rounded stones, closely set: cells of the nearest of scattered points (Worley
+    /// 1996), with a rough skin.
+    Stones,
+    /// Bricks in eight rows of four, with mortar between them.
+    Bricks,
 }
 
 impl Field {
     /// Every field.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::Fbm,
         Self::Ridges,
         Self::Spikes,
         Self::Checker,
         Self::Sine,
         Self::Noise,
+        Self::Stones,
+        Self::Bricks,
     ];
 
     /// The word that chooses it.
@@ -45,6 +52,8 @@ impl Field {
             Self::Checker => "checker",
             Self::Sine => "sine",
             Self::Noise => "noise",
+            Self::Stones => "stones",
+            Self::Bricks => "bricks",
         }
     }
 
@@ -54,8 +63,8 @@ impl Field {
     }
 
     /// Heights of `size` samples, row by row, each in 0..=1. `power` is the exponent by
-    /// which the power of `Fbm` and `Ridges` falls with the wave number: 2.6 for rough
-    /// terrain, more for smoother.
+    /// which the power of `Fbm` and `Ridges`, and of the skin of `Stones` and `Bricks`, falls
+    /// with the wave number: 2.6 for rough terrain, more for smoother.
     pub fn heights(self, size: [u32; 2], seed: u32, power: f64) -> Vec<f32> {
         let mut random = Random::new(seed);
         let [w, h] = size.map(|n| n as usize);
@@ -94,6 +103,18 @@ impl Field {
                 })
                 .collect(),
             Self::Noise => places.map(|_| random.unit()).collect(),
+            Self::Stones => {
+                let points = Scattered::new(STONES, &mut random);
+                let skin = spectral([w, h], power, &mut random);
+                let stone = |(x, y)| points.stone([x as f64 / w as f64, y as f64 / h as f64]);
+                rough(places.map(stone).collect(), &skin)
+            }
+            Self::Bricks => {
+                let shade: Vec<f64> = (0..BRICKS[0] * BRICKS[1]).map(|_| random.unit()).collect();
+                let skin = spectral([w, h], power, &mut random);
+                let one = |(x, y)| brick([x as f64 / w as f64, y as f64 / h as f64], &shade);
+                rough(places.map(one).collect(), &skin)
+            }
         };
         stretched(&raw)
     }
@@ -138,6 +159,80 @@ fn spectral([w, h]: [usize; 2], power: f64, random: &mut Random) -> Vec<f64> {
     // The real part of waves without symmetry is a field of its own.
     let places = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
     places.map(|(x, y)| turned[x * h + y].re).collect()
+}
+
+/// Stones along a side of the map.
+const STONES: usize = 9;
+/// Bricks in a row, and rows.
+const BRICKS: [usize; 2] = [4, 8];
+/// Height of a rough skin, of the whole.
+const SKIN: f64 = 0.05;
+
+/// Adds a skin of a mean height of nothing.
+fn rough(mut heights: Vec<f64>, skin: &[f64]) -> Vec<f64> {
+    let largest = skin.iter().fold(1e-30_f64, |m, s| m.max(s.abs()));
+    for (z, s) in heights.iter_mut().zip(skin) {
+        *z += SKIN * s / largest;
+    }
+    heights
+}
+
+/// From 0 to 1 between two values of x, smoothly.
+fn smooth(from: f64, to: f64, x: f64) -> f64 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// A brick wall at a place of the map, in 0..1. Bricks are twice as wide as high.
+fn brick([u, v]: [f64; 2], shade: &[f64]) -> f64 {
+    let row = (v * BRICKS[1] as f64).floor();
+    let along = (u * BRICKS[0] as f64 + 0.5 * (row % 2.0)).rem_euclid(BRICKS[0] as f64);
+    let [across, up] = [along.fract(), (v * BRICKS[1] as f64).fract()];
+    let edge = (2.0 * across.min(1.0 - across)).min(up.min(1.0 - up));
+    let index = row as usize * BRICKS[0] + along.floor() as usize;
+    smooth(0.03, 0.16, edge) * (0.7 + 0.3 * shade[index % shade.len()])
+}
+
+/// One point in each cell of a grid over the map, and a height for it.
+struct Scattered {
+    side: usize,
+    points: Vec<[f64; 3]>,
+}
+
+impl Scattered {
+    fn new(side: usize, random: &mut Random) -> Self {
+        let mut point = |i: usize| {
+            let [x, y] = [(i % side) as f64, (i / side) as f64];
+            let [dx, dy, z] = [random.unit(), random.unit(), random.unit()];
+            [x + 0.1 + 0.8 * dx, y + 0.1 + 0.8 * dy, z]
+        };
+        let points = (0..side * side).map(&mut point).collect();
+        Self { side, points }
+    }
+
+    /// A dome over the nearest point, down to nothing where the next is as near.
+    fn stone(&self, place: [f64; 2]) -> f64 {
+        let n = self.side as i64;
+        let [u, v] = place.map(|p| p * self.side as f64);
+        let (mut first, mut second, mut height) = (f64::INFINITY, f64::INFINITY, 0.0);
+        for j in -2..=2_i64 {
+            for i in -2..=2_i64 {
+                let (x, y) = (u.floor() as i64 + i, v.floor() as i64 + j);
+                let (cx, cy) = (x.rem_euclid(n), y.rem_euclid(n));
+                let [px, py, z] = self.points[(cy * n + cx) as usize];
+                // The point of the tile that comes round.
+                let at = [px + (x - cx) as f64, py + (y - cy) as f64];
+                let d = (at[0] - u).hypot(at[1] - v);
+                if d < first {
+                    (second, first, height) = (first, d, z);
+                } else {
+                    second = second.min(d);
+                }
+            }
+        }
+        let inside = (second - first) / (second + first);
+        (1.0 - (1.0 - inside).powi(3)).sqrt() * (0.6 + 0.4 * height)
+    }
 }
 
 /// A small generator of random numbers (PCG-XSH-RR 64/32; O'Neill 2014).

@@ -6,11 +6,15 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::field::Field;
-use super::heights::{Heights, MOST_SAMPLES, Patches};
+use super::conemap::ConeMap;
+use super::heights::Patches;
 use super::kept::Kept;
+use super::load::{LoadOptions, Loaded, Named, load};
 use super::placed::Placed;
-use crate::key::{Count, Counts, Fault, Key, Number, Switch, Text, Triple, Word};
+use super::relief::Relief;
+use super::trace::AnyTracer;
+use super::tracing::Tracing;
+use crate::key::{Counts, Fault, Key, Number, Switch, Text, Triple, Word};
 
 /// Which axes of a height map come round to their start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,21 +53,43 @@ impl Wrap {
 /// What heights are made from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// A field's name, or a file's path.
+    /// A field in one word, or a file's path.
     pub field: String,
     /// The folder that a path is relative to.
     pub folder: PathBuf,
-    /// Samples of a named field.
-    pub samples: [u32; 2],
-    /// Seed of a named field.
-    pub seed: u32,
-    /// Exponent of a named field.
-    pub power: f64,
     /// Whether the numbers are depths.
     pub invert: bool,
+    /// Whether the lowest becomes 0 and the highest 1.
+    pub normalize: bool,
     /// Which axes wrap.
     pub wrap: Wrap,
 }
+
+impl Source {
+    /// What [`load`] is asked for: the field's word, or the file's path.
+    pub fn argument(&self) -> String {
+        if Named::read(&self.field).is_some() {
+            return self.field.clone();
+        }
+        let path = self.folder.join(Path::new(&self.field));
+        path.to_string_lossy().into_owned()
+    }
+
+    fn load(&self) -> Result<Loaded, Fault> {
+        let options = LoadOptions {
+            wrap: self.wrap.axes(),
+            invert: self.invert,
+            normalize: self.normalize,
+            size: None,
+        };
+        load(&self.argument(), &options).map_err(|e| Fault::new("scene.field", e.to_string()))
+    }
+}
+
+/// What a relief is made from.
+type ReliefKey = (Source, Patches, [u32; 2]);
+/// What a cone map is made from, beside: tracer, map and offset.
+type MapKey = (ReliefKey, &'static str, String, f64);
 
 /// A heightfield: heights, their place in the world, and how they are traced.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +108,10 @@ pub struct HeightfieldShape {
     pub centre: DVec3,
     /// Degrees about x, then y, then z.
     pub turn: DVec3,
-    kept: Kept<Source, Heights>,
+    /// How rays are traced.
+    pub tracing: Tracing,
+    reliefs: Kept<ReliefKey, Relief>,
+    maps: Kept<MapKey, Option<Arc<ConeMap>>>,
 }
 
 impl Default for HeightfieldShape {
@@ -91,52 +120,55 @@ impl Default for HeightfieldShape {
             source: Source {
                 field: "fbm".into(),
                 folder: PathBuf::new(),
-                samples: [256, 256],
-                seed: 1,
-                power: 2.6,
                 invert: false,
+                normalize: false,
                 wrap: Wrap::None,
             },
             patches: Patches::Bilinear,
             tiles: [1, 1],
-            width: 8.0,
-            depth: 1.0,
+            width: 12.0,
+            depth: 2.0,
             centre: DVec3::ZERO,
             turn: DVec3::ZERO,
-            kept: Kept::default(),
+            tracing: Tracing::default(),
+            reliefs: Kept::default(),
+            maps: Kept::default(),
         }
     }
 }
 
+/// A heightfield made ready.
+#[derive(Clone, Debug)]
+pub struct Ready {
+    /// Heights and maxima.
+    pub relief: Arc<Relief>,
+    /// What traces rays, with its cones.
+    pub tracer: AnyTracer,
+    /// Where it stands.
+    pub placed: Placed,
+    /// The tracer's name.
+    pub name: &'static str,
+}
+
 impl HeightfieldShape {
-    /// The keys that a relief reads in `[scene]`.
+    /// The keys that a heightfield reads in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         let source = &mut self.source;
-        vec![
+        let mut keys = vec![
             Key::new(
                 "field",
                 Text(&mut source.field),
-                "a field's name (fbm, ridges, spikes, checker, sine, noise), or a file of heights",
-            ),
-            Key::new(
-                "samples",
-                Counts(&mut source.samples, 1, MOST_SAMPLES),
-                "samples of a named field",
-            ),
-            Key::new(
-                "seed",
-                Count(&mut source.seed, 0, u32::MAX),
-                "seed of a named field",
-            ),
-            Key::new(
-                "power",
-                Number(&mut source.power, 0.0, 6.0),
-                "how fast the waves of fbm and ridges fall: 2.6 rough, 4 smooth",
+                "a field like fbm:512x512,seed=7,power=2.6, or a file of heights",
             ),
             Key::new(
                 "invert",
                 Switch(&mut source.invert),
-                "whether the file's numbers are depths",
+                "whether the numbers are depths",
+            ),
+            Key::new(
+                "normalize",
+                Switch(&mut source.normalize),
+                "whether the lowest becomes 0 and the highest 1",
             ),
             Key::new(
                 "wrap",
@@ -176,11 +208,14 @@ impl HeightfieldShape {
                 Triple(&mut self.turn, -360.0, 360.0),
                 "degrees that the block is turned by about x, then y, then z",
             ),
-        ]
+        ];
+        keys.extend(self.tracing.keys());
+        keys
     }
 
-    /// Whether heights and repetitions fit together. A file of heights is read.
+    /// Whether all settings fit together. Files that are named are read.
     pub fn check(&self) -> Result<(), Fault> {
+        self.tracing.check()?;
         for (axis, name) in [(0, "x"), (1, "y")] {
             if self.tiles[axis] > 1 && !self.source.wrap.axes()[axis] {
                 return Err(Fault::new(
@@ -191,33 +226,53 @@ impl HeightfieldShape {
                 ));
             }
         }
-        if Field::named(&self.source.field).is_none() {
-            self.heights()?;
+        match Named::read(&self.source.field) {
+            Some(Err(why)) => return Err(Fault::new("scene.field", why)),
+            Some(Ok(_)) => {}
+            None => drop(self.relief()?),
+        }
+        if self.tracing.map != "auto" && self.tracing.generator().is_none() {
+            self.cones(&*self.relief()?)?;
         }
         Ok(())
     }
 
-    /// The heights: made once, then kept while their source stays.
-    pub fn heights(&self) -> Result<Arc<Heights>, Fault> {
-        self.kept
-            .get(self.source.clone(), |source| source.heights())
+    /// Everything that takes long to make: kept until it changes.
+    ///
+    /// # Errors
+    /// Heights that are none, cones that do not fit.
+    pub fn ready(&self) -> Result<Ready, Fault> {
+        let relief = self.relief()?;
+        let cones = self.cones(&relief)?;
+        let [w, h] = relief.domain().map(f64::from);
+        let sides = DVec2::new(w, h);
+        Ok(Ready {
+            tracer: self.tracing.tracer(&relief, (*cones).clone())?,
+            placed: Placed::new(sides, self.width, self.depth, self.centre, self.turn),
+            relief,
+            name: self.tracing.tracer,
+        })
     }
 
-    /// Where the block stands, once its heights are known.
-    pub fn placed(&self, heights: &Heights) -> Placed {
-        let cells = heights.cells(self.patches);
-        let sides = DVec2::new(
-            f64::from(cells[0] * self.tiles[0]),
-            f64::from(cells[1] * self.tiles[1]),
-        );
-        Placed::new(sides, self.width, self.depth, self.centre, self.turn)
+    fn relief_key(&self) -> ReliefKey {
+        (self.source.clone(), self.patches, self.tiles)
     }
-}
 
-impl Source {
-    /// The file that heights are read from; none for a named field.
-    pub fn file(&self) -> Option<PathBuf> {
-        let named = Field::named(&self.field).is_some();
-        (!named).then(|| self.folder.join(Path::new(&self.field)))
+    fn relief(&self) -> Result<Arc<Relief>, Fault> {
+        self.reliefs
+            .get(self.relief_key(), |(source, patches, tiles)| {
+                let heights = source.load()?.heights;
+                let made = Relief::new(heights, *patches, *tiles);
+                made.map_err(|e| Fault::new("scene.tiles", e.to_string()))
+            })
+    }
+
+    fn cones(&self, relief: &Relief) -> Result<Arc<Option<Arc<ConeMap>>>, Fault> {
+        let t = &self.tracing;
+        let key = (self.relief_key(), t.tracer, t.map.clone(), t.offset);
+        self.maps.get(key, |_| {
+            let made = t.cones(relief, &self.source.folder)?;
+            Ok(made.map(Arc::new))
+        })
     }
 }

@@ -35,7 +35,7 @@ pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain
     let mut open = 1.0_f64;
     for _ in 0..light.shadow_steps {
         match solid.walk_step(&ray, &mut walk, work) {
-            Step::Out => break,
+            Step::Out | Step::Spent => break,
             Step::Hit => return 0.0,
             Step::Moving => {}
         }

@@ -26,6 +26,7 @@ pub fn trace<S: Solid>(
             Step::Moving => continue,
             Step::Hit => State::Hit,
             Step::Out => State::Sky,
+            Step::Spent => State::Unconverged,
         };
         return (solid.walk_hit(&walk), state);
     }

@@ -130,8 +130,8 @@ impl Reader<'_> {
             });
         }
         let mut found = Subject::all().into_iter().find(|s| s.words().0 == word);
-        if let Some(Subject::Heightfield(relief)) = &mut found {
-            relief.source.folder = self.folder.to_path_buf();
+        if let Some(Subject::Heightfield(shape)) = &mut found {
+            shape.source.folder = self.folder.to_path_buf();
         }
         found.ok_or_else(|| self.value(kind, "there is no such kind of scene"))
     }

@@ -15,6 +15,8 @@ pub enum Step {
     Hit,
     /// Past the end: nothing there.
     Out,
+    /// The scene's own limit is reached: not converged.
+    Spent,
 }
 
 /// What one step of a cone came to.

@@ -15,6 +15,7 @@ use crate::cone::ConeRule;
 use crate::frame::Work;
 use crate::heightfield::placed::Placed;
 use crate::heightfield::relief::Relief;
+use crate::heightfield::shape::Ready;
 use crate::heightfield::trace::{self, AnyTracer, LocalRay, Trace, TraceHit, Tracer};
 use crate::heightfield::under::{self, under_highest};
 use crate::shader::Module;
@@ -59,6 +60,7 @@ pub struct HeightfieldUniform {
 pub struct Heightfield {
     relief: Arc<Relief>,
     tracer: AnyTracer,
+    name: &'static str,
     placed: Placed,
     eye: DVec3,
     far: f64,
@@ -66,17 +68,18 @@ pub struct Heightfield {
 }
 
 impl Heightfield {
-    /// A relief that stands in the world, seen from an eye.
-    pub fn new(
-        relief: Arc<Relief>,
-        tracer: AnyTracer,
-        placed: Placed,
-        eye: DVec3,
-        rule: ConeRule,
-    ) -> Self {
+    /// A heightfield seen from an eye.
+    pub fn new(ready: Ready, eye: DVec3, rule: ConeRule) -> Self {
+        let Ready {
+            relief,
+            tracer,
+            placed,
+            name,
+        } = ready;
         Self {
             relief,
             tracer,
+            name,
             far: placed.farthest(eye),
             placed,
             eye,
@@ -152,7 +155,7 @@ impl Twin for Heightfield {
 
     fn describe(&self) -> String {
         let [w, h] = self.relief.heights().size();
-        format!("heightfield: {w} x {h} samples, tracer {}", self.tracer.name())
+        format!("heightfield: {w} x {h} samples, traced by {}", self.name)
     }
 
     fn rounds(&self) -> u32 {

@@ -2,15 +2,18 @@
 
 mod contract;
 pub mod distance;
+pub mod heightfield;
 pub mod slab;
 
 pub use contract::{Advance, Hit, Solid, Step, Surface, Twin};
 
 /// A scene made ready for one view.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum Scene {
     /// A distance-estimated formula.
     Distance(distance::Distance),
+    /// A block with heights on top.
+    Heightfield(heightfield::Heightfield),
     /// A slab between two planes.
     Slab(slab::Slab),
 }
@@ -28,6 +31,7 @@ impl Scene {
     pub fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Distance(s) => task.run(s),
+            Self::Heightfield(s) => task.run(s),
             Self::Slab(s) => task.run(s),
         }
     }
@@ -36,6 +40,7 @@ impl Scene {
     pub fn twin(&self) -> &dyn Twin {
         match self {
             Self::Distance(s) => s,
+            Self::Heightfield(s) => s,
             Self::Slab(s) => s,
         }
     }

@@ -1,0 +1,258 @@
+//! How a preset says by which tracer a heightfield is traced, and with which cones.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::conemap::{ConeMap, MapKind};
+use super::generate::cpu::generate;
+use super::generate::generator::{GenerateError, Generator, LEAST_OFFSET, MOST_OFFSET, Options};
+use super::mapfile::{Wanted, read_map};
+use super::relief::Relief;
+use super::trace::cones::{Budget, Cones, Lookup, Manner};
+use super::trace::linear::LinearBinary;
+use super::trace::max_mip::MaxMipTracer;
+use super::trace::refine::Refine;
+use super::trace::relaxed::WalkRelaxed;
+use super::trace::walk::Walk;
+use super::trace::{AnyTracer, TraceError};
+use crate::key::{AutoCount, AutoNumber, Fault, Key, Number, Text, Word};
+
+/// Steps of `linear-binary` where none are given (Policarpo, Oliveira, Comba 2005).
+const LINEAR_STEPS: u32 = 32;
+/// Halvings after them.
+const LINEAR_ROUNDS: u32 = 6;
+/// Most steps of its own, and most rounds of refinement, that a tracer may have.
+const MOST_STEPS: u32 = 4096;
+const MOST_ROUNDS: u32 = 32;
+
+/// The tracers' names.
+pub const TRACERS: &[(&str, &str)] = &[
+    ("walk", "walk"),
+    ("walk-relaxed", "walk-relaxed"),
+    ("max-mip", "max-mip"),
+    ("linear-binary", "linear-binary"),
+    ("csm-exact", "csm-exact"),
+    ("csm-loop", "csm-loop"),
+    ("csm-fixed", "csm-fixed"),
+    ("csm-scaled", "csm-scaled"),
+    ("quad", "quad"),
+    ("rcs-binary", "rcs-binary"),
+    ("secant", "secant"),
+];
+
+/// How rays are traced.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tracing {
+    /// One of [`TRACERS`].
+    pub tracer: &'static str,
+    /// `auto`, a generator's name, or the file of a cone map.
+    pub map: String,
+    /// How ratios are read between samples.
+    pub lookup: Lookup,
+    /// Steps that the tracer has of its own, where it counts them.
+    pub steps: Option<u32>,
+    /// Rounds of its refinement.
+    pub rounds: Option<u32>,
+    /// Factor on the steps that cones give.
+    pub stretch: Option<f64>,
+    /// Distance at which `csm-loop` has half as many steps; 0 for never fewer.
+    pub lod: f64,
+    /// Room that the walks' cones leave, in texels.
+    pub offset: f64,
+}
+
+impl Default for Tracing {
+    fn default() -> Self {
+        Self {
+            tracer: "walk",
+            map: "auto".into(),
+            lookup: Lookup::Bilinear,
+            steps: None,
+            rounds: None,
+            stretch: None,
+            lod: 0.0,
+            offset: Options::default().offset,
+        }
+    }
+}
+
+impl Tracing {
+    /// The keys that a heightfield's tracer reads in `[scene]`.
+    pub fn keys(&mut self) -> Vec<Key<'_>> {
+        vec![
+            Key::new(
+                "tracer",
+                Word(&mut self.tracer, TRACERS),
+                "how rays find the surface: walk, walk-relaxed and max-mip miss nothing",
+            ),
+            Key::new(
+                "map",
+                Text(&mut self.map),
+                "auto, a generator's name, or the file of a cone map",
+            ),
+            Key::new(
+                "lookup",
+                Word(
+                    &mut self.lookup,
+                    &[("bilinear", Lookup::Bilinear), ("nearest", Lookup::Nearest)],
+                ),
+                "how ratios are read between samples",
+            ),
+            Key::new(
+                "tracer_steps",
+                AutoCount(&mut self.steps, 1, MOST_STEPS),
+                "steps of a tracer that counts its own",
+            ),
+            Key::new(
+                "tracer_rounds",
+                AutoCount(&mut self.rounds, 1, MOST_ROUNDS),
+                "rounds of its refinement",
+            ),
+            Key::new(
+                "stretch",
+                AutoNumber(&mut self.stretch, 0.01, 100.0),
+                "factor on the steps that cones give",
+            ),
+            Key::new(
+                "lod",
+                Number(&mut self.lod, 0.0, 1e6),
+                "distance at which csm-loop has half its steps; 0 for never fewer",
+            ),
+            Key::new(
+                "offset",
+                Number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
+                "room that the walks' cones leave, in texels",
+            ),
+        ]
+    }
+
+    /// The manner of a tracer that steps by cones over samples, with the preset's numbers.
+    fn manner(&self) -> Option<Manner> {
+        let mut manner = Manner::ALL.into_iter().find(|m| m.name == self.tracer)?;
+        manner.lookup = self.lookup;
+        manner.scale = self.stretch.unwrap_or(manner.scale);
+        manner.budget = match (manner.budget, self.steps) {
+            (Budget::View { steps, .. }, own) => Budget::View {
+                steps: own.unwrap_or(steps),
+                lod: self.lod,
+            },
+            (_, Some(steps)) => Budget::Fixed(steps),
+            (budget, None) => budget,
+        };
+        manner.refine = match (manner.refine, self.rounds) {
+            (Refine::Binary(_), Some(n)) => Refine::Binary(n),
+            (Refine::Secant(_), Some(n)) => Refine::Secant(n),
+            (refine, _) => refine,
+        };
+        Some(manner)
+    }
+
+    /// Kinds of cones that the tracer can use, the one it makes itself first; none for a
+    /// tracer without cones.
+    fn kinds(&self) -> &'static [MapKind] {
+        match self.tracer {
+            "walk" => &[MapKind::Walk],
+            "walk-relaxed" => &[MapKind::WalkRelaxed],
+            _ => self.manner().map_or(&[], |m| m.kinds()),
+        }
+    }
+
+    /// The generator whose cones are used; none where a file has them, or nobody.
+    pub fn generator(&self) -> Option<Generator> {
+        if self.map != "auto" {
+            return Generator::named(&self.map);
+        }
+        let made = [
+            Generator::Walk,
+            Generator::WalkRelaxed,
+            Generator::Exact,
+            Generator::Quad,
+            Generator::RelaxedExact,
+        ];
+        let first = self.kinds().first()?;
+        made.into_iter().find(|g| g.kind() == *first)
+    }
+
+    /// Whether tracer and cones fit together, as far as names tell.
+    pub fn check(&self) -> Result<(), Fault> {
+        let kinds = self.kinds();
+        let Some(generator) = self.generator().filter(|_| self.map != "auto") else {
+            return Ok(());
+        };
+        if kinds.contains(&generator.kind()) {
+            return Ok(());
+        }
+        let fit = Generator::ALL.iter().filter(|g| kinds.contains(&g.kind()));
+        let names: Vec<&str> = fit.map(|g| g.name()).collect();
+        let why = if names.is_empty() {
+            format!(
+                "the tracer {} needs no cones; \"auto\" would do",
+                self.tracer
+            )
+        } else {
+            format!(
+                "the tracer {} cannot use such cones; it can those of {}",
+                self.tracer,
+                names.join(", ")
+            )
+        };
+        Err(Fault::new("scene.map", why))
+    }
+
+    /// The cones, made or read; none for a tracer that needs none.
+    pub fn cones(&self, relief: &Relief, folder: &Path) -> Result<Option<ConeMap>, Fault> {
+        if self.kinds().is_empty() {
+            return Ok(None);
+        }
+        let (heights, patches) = (relief.heights(), relief.patches());
+        if let Some(generator) = self.generator() {
+            let options = Options {
+                offset: self.offset,
+                ..Options::default()
+            };
+            let made = generate(generator, heights, patches, &options, &mut |_| true);
+            return made
+                .map(Some)
+                .map_err(|e: GenerateError| fault(e.to_string()));
+        }
+        let path = folder.join(&self.map);
+        let file = read_map(&path).map_err(|e| fault(e.to_string()))?;
+        let wanted = Wanted {
+            who: &format!("the tracer {}", self.tracer),
+            kinds: self.kinds(),
+            heights,
+            patches,
+        };
+        file.fit(&path, &wanted).map_err(|e| fault(e.to_string()))?;
+        Ok(Some(file.map))
+    }
+
+    /// The tracer itself.
+    pub fn tracer(
+        &self,
+        relief: &Arc<Relief>,
+        cones: Option<Arc<ConeMap>>,
+    ) -> Result<AnyTracer, Fault> {
+        let relief = relief.clone();
+        let Some(map) = cones else {
+            return Ok(match self.tracer {
+                "linear-binary" => AnyTracer::LinearBinary(LinearBinary::new(
+                    relief,
+                    self.steps.unwrap_or(LINEAR_STEPS),
+                    self.rounds.unwrap_or(LINEAR_ROUNDS),
+                )),
+                _ => AnyTracer::MaxMip(MaxMipTracer::new(relief)),
+            });
+        };
+        let made = match self.manner() {
+            Some(manner) => Cones::new(relief, map, manner).map(AnyTracer::Cones),
+            None if self.tracer == "walk" => Walk::new(relief, map).map(AnyTracer::Walk),
+            None => WalkRelaxed::new(relief, map).map(AnyTracer::WalkRelaxed),
+        };
+        made.map_err(|e: TraceError| fault(e.to_string()))
+    }
+}
+
+fn fault(why: String) -> Fault {
+    Fault::new("scene.map", why)
+}
