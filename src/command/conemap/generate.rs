@@ -10,6 +10,7 @@ use crate::command::interrupt;
 use crate::gpu::device::{Adapters, Choice, Device, DeviceError};
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::generate::generator::{GenerateError, Generator, Options};
+use crate::heightfield::generate::{cpu, device};
 use crate::heightfield::heights::{Heights, Patches};
 use crate::render::RenderError;
 
@@ -83,8 +84,12 @@ pub fn generate(
         bar.set_position((done * 1000.0) as u64);
         !interrupt::asked()
     };
-    let made =
-        crate::heightfield::generate::make(maker, generator, heights, patches, options, watch);
+    let made = match maker {
+        Maker::Gpu(device) => {
+            device::Maker::new(device).generate(generator, heights, patches, options, watch)
+        }
+        Maker::Cpu => cpu::generate(generator, heights, patches, options, watch),
+    };
     bar.finish_and_clear();
     made.map_err(|e| match e {
         GenerateError::Cancelled => RenderError::Cancelled.into(),
