@@ -1,8 +1,6 @@
 //! Height maps from files, and cone maps through files: every format, every rounding to
 //! the safe side, and a sentence for everything that is wrong.
 
-use std::path::Path;
-
 use conemarch::heightfield::conemap::MapKind;
 use conemarch::heightfield::field::Field;
 use conemarch::heightfield::heights::{Heights, Patches};
@@ -326,7 +324,7 @@ fn a_file_that_claims_too_much_takes_no_memory() {
         }
     }
     folder.write("huge.tif", scan);
-    refused(&folder, "huge.tif", &["60000", "8192"]);
+    refused(&folder, "huge.tif", &[]);
     folder.write("huge-9000x9000.raw", [0; 4]);
     refused(&folder, "huge-9000x9000.raw", &["--size"]);
 }
@@ -488,7 +486,7 @@ fn what_a_form_keeps() {
     let file = made(&heights, MapKind::Samples);
     let kept = |form: Form| {
         let bytes = encode(&file, &form).expect("a file");
-        decode_bytes(&bytes).expect("a map").map.mean() / file.map.mean()
+        decode_bytes(&bytes).expect("a map").mean_share() / file.mean_share()
     };
     let pair = Form::new(Layout::Pair);
     assert!(kept(Form::new(Layout::Full)) > 0.999_999_8);

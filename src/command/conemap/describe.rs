@@ -6,7 +6,7 @@ use crate::heightfield::conemap::{MapKind, WIDEST};
 use crate::heightfield::generate::slopes::slopes;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::load::Loaded;
-use crate::heightfield::mapfile::{Bits, Layout, MapFile, kind_word, promise wrap_word};
+use crate::heightfield::mapfile::{Bits, Layout, MapFile, kind_word, promise, wrap_word};
 
 /// Longest bar of a histogram.
 const BAR: f64 = 40.0;
@@ -119,9 +119,9 @@ pub fn describe_map(name: &str, file: &MapFile) -> String {
         &mut text,
         "ratios",
         &format!(
-            "mean {} texels per height ({} of the width), median {}",
-            figure(ratios.mean()),
-            figure(ratios.mean() / scale),
+            "mean {} of the width ({} texels), none counting for more; median {} texels",
+            figure(file.mean_share()),
+            figure(file.mean_share() * scale),
             figure(ratios.at(0.5))
         ),
     );

@@ -16,7 +16,7 @@ use crate::render::RenderError;
 
 /// Who makes cones.
 pub enum Maker {
-    /// A device, in f32, rounded down.
+    /// A device: the same map, bit for bit.
     Gpu(Box<Device>),
     /// All cores, in f64.
     Cpu,
@@ -24,8 +24,8 @@ pub enum Maker {
 
 impl Maker {
     /// Opens what a choice means, and says in a line who it is and why. Unlike a render,
-    /// `auto` passes over software adapters: they are the same cores, and f64 on them is
-    /// both sharper and faster.
+    /// `auto` passes over software adapters: they are the same cores, which are faster
+    /// without them.
     ///
     /// # Errors
     /// The choice matches nothing, or the adapter does not open.
