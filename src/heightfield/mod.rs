@@ -2,6 +2,7 @@
 
 pub mod conemap;
 pub mod field;
+pub mod generate;
 pub mod heights;
 pub mod kept;
 pub mod load;

@@ -9,7 +9,7 @@ use super::common::{Output, Sink, Strange, Writing, of_map, shown, wraps};
 use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
-use crate::heightfield::mapfile::{decode_bytes, encode, kind_word};
+use crate::heightfield::mapfile::{MapFile, decode_bytes, encode, kind_word};
 
 /// What `convert` takes.
 #[derive(Args, Debug)]
@@ -48,7 +48,7 @@ pub fn run(args: &Convert) -> Result<()> {
     let sink = Sink::prepare(output)?;
     let bytes = encode(&file, &form).map_err(of_map)?;
     let again = decode_bytes(&bytes).map_err(anyhow::Error::msg);
-    let mean = again.context("the map could not be read back")?.map.mean();
+    let again = again.context("the map could not be read back")?;
     sink.finish(&bytes)?;
     let [w, h] = file.map.size;
     say(&format!(
@@ -56,15 +56,17 @@ pub fn run(args: &Convert) -> Result<()> {
         shown(output),
         kind_word(file.map.kind),
         form.layout.name(),
-        kept(file.map.mean(), mean)
+        kept(&file, &again)
     ));
     Ok(())
 }
 
 /// How much of the ratios a file has kept.
-pub fn kept(before: f64, after: f64) -> String {
-    let share = if before > 0.0 { after / before } else { 1.0 };
-    // Never rounded up to all of it.
+pub fn kept(before: &MapFile, after: &MapFile) -> String {
+    let [was, is] = [before, after].map(MapFile::mean_share);
+    let share = if was > 0.0 { is / was } else { 1.0 };
+    // Never rounded up to all of it, and never so little less that nobody can tell.
+    let share = if share > 0.999_999 { 1.0 } else { share };
     let share = (share * 1e4).floor() / 1e2;
-    format!("mean ratio {after:.2} texels, {share} % of what it was")
+    format!("mean ratio {is:.4} of the width, {share} % of what it was")
 }

@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 
 use crate::heightfield::conemap::{MapKind, WIDEST};
+use crate::heightfield::generate::slopes::slopes;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::load::Loaded;
-use crate::heightfield::mapfile::{Bits, Layout, MapFile, kind_word, promise, slopes, wrap_word};
+use crate::heightfield::mapfile::{Bits, Layout, MapFile, kind_word, promise, wrap_word};
 
 /// Longest bar of a histogram.
 const BAR: f64 = 40.0;
@@ -40,16 +41,17 @@ impl Sorted {
     }
 }
 
-/// Four figures, and no more than anyone reads.
+/// Three figures or so, and no more than anyone reads.
 fn figure(x: f64) -> String {
-    match x.abs() {
-        0.0 => "0".into(),
-        a if a >= 1000.0 => format!("{x:.0}"),
+    let text = match x.abs() {
+        0.0 => return "0".into(),
+        a if a >= 1000.0 => return format!("{x:.0}"),
         a if a >= 100.0 => format!("{x:.1}"),
         a if a >= 1.0 => format!("{x:.2}"),
         a if a >= 1e-3 => format!("{x:.4}"),
-        _ => format!("{x:.1e}"),
-    }
+        _ => return format!("{x:.1e}"),
+    };
+    text.trim_end_matches('0').trim_end_matches('.').into()
 }
 
 fn percent(count: usize, all: usize) -> String {
@@ -117,9 +119,9 @@ pub fn describe_map(name: &str, file: &MapFile) -> String {
         &mut text,
         "ratios",
         &format!(
-            "mean {} texels per height ({} of the width), median {}",
-            figure(ratios.mean()),
-            figure(ratios.mean() / scale),
+            "mean {} of the width ({} texels), none counting for more; median {} texels",
+            figure(file.mean_share()),
+            figure(file.mean_share() * scale),
             figure(ratios.at(0.5))
         ),
     );

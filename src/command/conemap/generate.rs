@@ -10,12 +10,13 @@ use crate::command::interrupt;
 use crate::gpu::device::{Adapters, Choice, Device, DeviceError};
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::generate::generator::{GenerateError, Generator, Options};
+use crate::heightfield::generate::{cpu, device};
 use crate::heightfield::heights::{Heights, Patches};
 use crate::render::RenderError;
 
 /// Who makes cones.
 pub enum Maker {
-    /// A device, in f32, rounded down.
+    /// A device: the same map, bit for bit.
     Gpu(Box<Device>),
     /// All cores, in f64.
     Cpu,
@@ -23,8 +24,8 @@ pub enum Maker {
 
 impl Maker {
     /// Opens what a choice means, and says in a line who it is and why. Unlike a render,
-    /// `auto` passes over software adapters: they are the same cores, and f64 on them is
-    /// both sharper and faster.
+    /// `auto` passes over software adapters: they are the same cores, which are faster
+    /// without them.
     ///
     /// # Errors
     /// The choice matches nothing, or the adapter does not open.
@@ -83,8 +84,12 @@ pub fn generate(
         bar.set_position((done * 1000.0) as u64);
         !interrupt::asked()
     };
-    let made =
-        crate::heightfield::generate::make(maker, generator, heights, patches, options, watch);
+    let made = match maker {
+        Maker::Gpu(device) => {
+            device::Maker::new(device).generate(generator, heights, patches, options, watch)
+        }
+        Maker::Cpu => cpu::generate(generator, heights, patches, options, watch),
+    };
     bar.finish_and_clear();
     made.map_err(|e| match e {
         GenerateError::Cancelled => RenderError::Cancelled.into(),

@@ -115,7 +115,7 @@ pub fn run(args: &Make) -> Result<()> {
     let file = MapFile::new(map, heights, patches, &made_by(generator, &options));
     let bytes = encode(&file, &form).map_err(of_map)?;
     let again = decode_bytes(&bytes).map_err(anyhow::Error::msg);
-    let mean = again.context("the map could not be read back")?.map.mean();
+    let again = again.context("the map could not be read back")?;
     if interrupt::asked() {
         return Err(crate::render::RenderError::Cancelled.into());
     }
@@ -127,7 +127,7 @@ pub fn run(args: &Make) -> Result<()> {
         kind_word(file.map.kind),
         generator.name(),
         form.layout.name(),
-        kept(file.map.mean(), mean)
+        kept(&file, &again)
     ));
     Ok(())
 }

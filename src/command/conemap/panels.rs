@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::canvas::{Bar, Canvas, Panel};
+use crate::heightfield::generate::slopes::slopes;
 use crate::heightfield::heights::Heights;
-use crate::heightfield::mapfile::{Layout, MapFile, slopes};
+use crate::heightfield::mapfile::{Layout, MapFile};
 use crate::output::heat;
 
 /// Ends of a scale of two signs: blue under, orange over (of one lightness).
@@ -127,26 +128,27 @@ fn normal_panel<'a>(size: [u32; 2], xs: &'a [f32], ys: &'a [f32]) -> Panel<'a> {
     }
 }
 
-/// Depth of the relief in texture widths that shading takes for granted.
-const RELIEF: f64 = 0.25;
+/// Slope that the mean slope is shaded as: plastic, and not so steep that half of the
+/// picture is black.
+const SHADED: f64 = 0.5;
 
 /// A height map, as it is and lit from the top left.
 pub fn heights_panels(heights: &Heights) -> Canvas {
     let size = heights.size();
     let width = size[0];
-    let depth = RELIEF * f64::from(size[0].max(size[1]));
-    let light = DVec3::new(-1.0, -1.0, 1.2).normalize();
-    let lit: Vec<f64> = slopes(heights)
-        .into_iter()
-        .map(|[x, y]| {
-            let normal = DVec3::new(-x * depth, -y * depth, 1.0).normalize();
-            0.08 + 0.92 * normal.dot(light).max(0.0)
-        })
-        .collect();
+    let slopes = slopes(heights);
+    let steepness = slopes.iter().map(|[x, y]| x.hypot(*y)).sum::<f64>();
+    let depth = SHADED * slopes.len() as f64 / steepness.max(1e-9);
+    let light = DVec3::new(-1.0, -1.0, 1.5).normalize();
+    let lit = |[x, y]: [f64; 2]| {
+        let normal = DVec3::new(-x * depth, -y * depth, 1.0).normalize();
+        0.06 + 0.94 * normal.dot(light).max(0.0)
+    };
+    let lit: Vec<f64> = slopes.into_iter().map(lit).collect();
     let shaded = Panel {
         caption: "lit from the top left".into(),
         size,
-        color: Box::new(move |x, y| DVec3::splat(lit[(y * width + x) as usize].sqrt())),
+        color: Box::new(move |x, y| DVec3::splat(lit[(y * width + x) as usize])),
         bar: None,
     };
     Canvas::of(&[height_panel(size, heights.data()), shaded])

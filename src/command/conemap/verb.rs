@@ -3,13 +3,13 @@
 use anyhow::Result;
 use clap::Subcommand;
 
-use super::{convert, inspect};
+use super::{convert, inspect, make};
 
 /// What `conemap` can do.
 #[derive(Debug, Subcommand)]
 pub enum ConeMapVerb {
-    // M1
-    // M2
+    /// Make a cone map of heights
+    Make(Box<make::Make>),
     /// Tell what is in a cone map or in a height map
     Inspect(Box<inspect::Inspect>),
     /// Write a cone map in another layout or format
@@ -22,7 +22,7 @@ pub enum ConeMapVerb {
 /// What the sub-verb says.
 pub fn run(verb: &ConeMapVerb) -> Result<()> {
     match verb {
-        // M3
+        ConeMapVerb::Make(args) => make::run(args),
         ConeMapVerb::Inspect(args) => inspect::run(args),
         ConeMapVerb::Convert(args) => convert::run(args),
     }

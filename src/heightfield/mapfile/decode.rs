@@ -222,20 +222,17 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
             ratios.extend([e[i], w[i], s[i], n[i]].map(ratio));
         }
     }
-    let heights = channel("height")?;
-    if heights.iter().any(|z| *z > 1.0) {
+    // Four ratios may have come from a PNG, which has no room for heights beside them.
+    let heights = match read.kind {
+        MapKind::Quad if !head.channels.iter().any(|c| c == "height") => None,
+        _ => Some(channel("height")?),
+    };
+    if heights.iter().flatten().any(|z| *z > 1.0) {
         return Err("holds a height above 1; make the map again".into());
     }
     let size = head.size;
     let bits = Bits::Sixteen;
-    Ok(finished(
-        read,
-        bits,
-        size,
-        ratios,
-        Some(heights),
-        Vec::new(),
-    ))
+    Ok(finished(read, bits, size, ratios, heights, Vec::new()))
 }
 
 /// A label and an image that belong together.

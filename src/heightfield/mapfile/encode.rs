@@ -4,8 +4,9 @@ use super::error::MapError;
 use super::form::{Form, Layout, MapFile};
 use super::label::{self, KEYWORD};
 use super::round::{Ratios, Steps, narrowed, share_down};
-use super::slopes::{normal_shares, slope_share, slopes};
+use super::slopes::{normal_shares, slope_share};
 use super::words::is_walk;
+use crate::heightfield::generate::slopes::slopes;
 use crate::heightfield::heights::Heights;
 use crate::heightfield::raster::{exr, png};
 

@@ -190,6 +190,17 @@ impl MapFile {
             label,
         }
     }
+
+    /// Mean ratio in units of the scale, none counting for more than 1: cones wider than
+    /// the whole texture serve nobody, and would drown all others.
+    pub fn mean_share(&self) -> f64 {
+        let shares = self
+            .map
+            .ratios
+            .iter()
+            .map(|r| (r / self.label.scale).min(1.0));
+        shares.sum::<f64>() / self.map.ratios.len().max(1) as f64
+    }
 }
 
 /// Texels that a ratio of 1 in a file means: the longer axis.
