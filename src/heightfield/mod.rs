@@ -14,4 +14,5 @@ pub mod raster;
 pub mod relief;
 pub mod shape;
 pub mod trace;
+pub mod tracing;
 pub mod under;
