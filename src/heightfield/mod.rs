@@ -2,6 +2,7 @@
 
 pub mod conemap;
 pub mod field;
+pub mod generate;
 pub mod heights;
 pub mod maxmip;
 pub mod patch;

@@ -1,0 +1,110 @@
+//! Cone maps in f64 on the CPU, places over threads.
+
+use rayon::prelude::*;
+
+use super::generator::{GenerateError, Generator, Options, Watch, Work};
+use super::prepared::{Found, Prepared};
+use crate::heightfield::conemap::ConeMap;
+use crate::heightfield::heights::{Heights, Patches};
+
+/// Places between two looks at the watch: a blink for a search, and for the slowest
+/// generators on large maps still seconds at most.
+const BAND: usize = 4096;
+/// Places that a thread takes at least: fewer cost more in handing out than they save.
+const TAKEN: usize = 64;
+
+/// Makes a cone map. Patches matter to the walks: they say which cells there are.
+///
+/// # Errors
+/// Options that are out of range; [`GenerateError::Cancelled`] when `watch` returns
+/// `false`.
+pub fn generate(
+    generator: Generator,
+    heights: &Heights,
+    patches: Patches,
+    options: &Options,
+    watch: Watch<'_>,
+) -> Result<ConeMap, GenerateError> {
+    generate_counted(generator, heights, patches, options, watch).map(|(map, _)| map)
+}
+
+/// Makes a cone map, and tells how much work it was.
+///
+/// # Errors
+/// As [`generate`].
+pub fn generate_counted(
+    generator: Generator,
+    heights: &Heights,
+    patches: Patches,
+    options: &Options,
+    watch: Watch<'_>,
+) -> Result<(ConeMap, Work), GenerateError> {
+    let prepared = Prepared::new(generator, heights, patches, options)?;
+    let places = prepared.values.len();
+    let channels = generator.channels();
+    let mut ratios = Vec::with_capacity(places * channels);
+    let mut work = Work::default();
+    let mut band: Vec<Found> = Vec::new();
+    for start in (0..places).step_by(BAND) {
+        let places_of = (start..places.min(start + BAND)).into_par_iter();
+        let found = places_of
+            .with_min_len(TAKEN)
+            .map(|index| prepared.find(index));
+        found.collect_into_vec(&mut band);
+        for found in &band {
+            ratios.extend_from_slice(&found.ratios[..channels]);
+            work.nodes += u64::from(found.nodes);
+            work.most = work.most.max(found.nodes);
+        }
+        if !watch((start + band.len()) as f64 / places as f64) {
+            return Err(GenerateError::Cancelled);
+        }
+    }
+    let map = map_of(&prepared, ratios);
+    Ok((map, work))
+}
+
+/// The map of a generator's ratios, with what is to be done to it afterwards.
+pub fn map_of(prepared: &Prepared<'_>, ratios: Vec<f64>) -> ConeMap {
+    let walk = prepared.generator.over_cells();
+    let map = ConeMap {
+        kind: prepared.generator.kind(),
+        size: prepared.size,
+        wrap: prepared.heights.wrap(),
+        offset: if walk { prepared.options.offset } else { 0.0 },
+        ratios,
+    };
+    if prepared.options.least_of_nine {
+        least_of_nine(&map)
+    } else {
+        map
+    }
+}
+
+/// A map whose cones are as narrow as the narrowest among each place and its eight
+/// neighbours, channel by channel (the 3 x 3 minimum of Robust Cone Step Mapping, 2024).
+pub fn least_of_nine(map: &ConeMap) -> ConeMap {
+    let [width, height] = map.size.map(i64::from);
+    let channels = map.ratios.len() / (width * height) as usize;
+    let beside = |axis: usize, i: i64| {
+        let n = i64::from(map.size[axis]);
+        if map.wrap[axis] {
+            i.rem_euclid(n)
+        } else {
+            i.clamp(0, n - 1)
+        }
+    };
+    let least = |i: usize| {
+        let (place, channel) = ((i / channels) as i64, i % channels);
+        let (x, y) = (place % width, place / width);
+        let nine = (0..9).map(|k| {
+            let (x, y) = (beside(0, x + k % 3 - 1), beside(1, y + k / 3 - 1));
+            map.ratios[(y * width + x) as usize * channels + channel]
+        });
+        nine.fold(f64::INFINITY, f64::min)
+    };
+    ConeMap {
+        ratios: (0..map.ratios.len()).into_par_iter().map(least).collect(),
+        ..map.clone()
+    }
+}

@@ -1,0 +1,95 @@
+//! The program of each generator: which modules are joined, with which constants.
+
+use super::generator::{Generator, Options};
+use super::prepared::Prepared;
+use super::quick::Rule;
+use super::reach::Aim;
+use super::relaxed::START;
+use crate::heightfield::heights::{Heights, HeightsError, Patches};
+use crate::shader::{Module, Program};
+use crate::wgsl;
+
+/// Costs that are closer than this, relative to them, may compare wrongly in f32. WGSL
+/// allows 4.5 units in the last place for a root and 2.5 for a division; with one half
+/// for each of the other operations two costs are apart by 2^-19 at the worst.
+const MARGIN: f64 = 1.0 / 262_144.0;
+
+/// The least rise that is looked at: a place of the least distance that counts, a
+/// thousandth of a texel, with this rise costs far more than the widest cone. Its
+/// square, 2^-80, is no denormal, which devices may take for 0.
+const LEAST_RISE: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// What the kernels' cost is: the module and its constants.
+fn cost(prepared: &Prepared<'_>, units: f64) -> Module {
+    let walk = f64::from(u8::from(prepared.generator.over_cells()));
+    wgsl!(
+        "heightfield/generate/cost.wgsl",
+        "COST_WALK" = walk,
+        "COST_UNITS" = units,
+        "COST_WIDEST" = prepared.cost().widest(),
+        "COST_MARGIN" = MARGIN,
+        "COST_LEAST_RISE" = LEAST_RISE,
+    )
+}
+
+/// The program of a generator made ready.
+pub fn program(prepared: &Prepared<'_>) -> Program {
+    let mut modules = vec![wgsl!("heightfield/generate/shared.wgsl")];
+    let offer = wgsl!("heightfield/generate/offer.wgsl");
+    match prepared.generator {
+        Generator::Brute => {
+            let scan = wgsl!("heightfield/generate/scan.wgsl");
+            let brute = wgsl!("heightfield/generate/brute.wgsl");
+            modules.extend([cost(prepared, 1.0), offer, scan, brute]);
+        }
+        Generator::RelaxedSearch => {
+            let scan = wgsl!("heightfield/generate/scan.wgsl");
+            let relaxed = wgsl!("heightfield/generate/relaxed.wgsl", "RELAXED_START" = START);
+            modules.extend([cost(prepared, 1.0), scan, relaxed]);
+        }
+        Generator::Naive | Generator::Improved | Generator::Center => {
+            let rule = match prepared.rule() {
+                Rule::Naive => 0.0,
+                Rule::Improved => 1.0,
+                Rule::Center => 2.0,
+            };
+            let quick = wgsl!("heightfield/generate/quick.wgsl", "QUICK_RULE" = rule);
+            // Centres lie half-way between places.
+            modules.extend([cost(prepared, 2.0), offer, quick]);
+        }
+        _ => {
+            let aim = match prepared.aims().first() {
+                Some((_, Aim::Quadrant(_))) => 1.0,
+                Some((_, Aim::Side { .. })) => 2.0,
+                _ => 0.0,
+            };
+            let cells = f64::from(u8::from(prepared.generator.over_cells()));
+            let reach = wgsl!(
+                "heightfield/generate/reach.wgsl",
+                "REACH_AIM" = aim,
+                "REACH_CELLS" = cells,
+            );
+            let search = wgsl!("heightfield/generate/search.wgsl");
+            modules.extend([cost(prepared, 1.0), offer, reach, search]);
+        }
+    }
+    Program::new("generate", modules)
+}
+
+/// Every program that a generator can be made of.
+///
+/// # Errors
+/// None: a map of one sample can always be made.
+pub fn every_program() -> Result<Vec<Program>, HeightsError> {
+    let heights = Heights::new([1, 1], [false, false], vec![0.0])?;
+    let mut all = vec![
+        super::pyramid::tiles_program(),
+        super::pyramid::mips_program(),
+    ];
+    for generator in Generator::ALL {
+        let options = Options::default();
+        let prepared = Prepared::new(generator, &heights, Patches::default(), &options);
+        all.extend(prepared.ok().map(|p| program(&p)));
+    }
+    Ok(all)
+}

@@ -1,0 +1,100 @@
+//! Height maps that generators are tried on.
+
+use conemarch::heightfield::conemap::ConeMap;
+use conemarch::heightfield::field::Field;
+use conemarch::heightfield::generate::cpu;
+use conemarch::heightfield::generate::generator::{Generator, Options};
+use conemarch::heightfield::heights::{Heights, Patches};
+use proptest::prelude::*;
+
+/// Power of the wave number: rough terrain.
+pub const POWER: f64 = 2.6;
+
+/// Which axes wrap, in every combination.
+pub const WRAPS: [[bool; 2]; 4] = [[false, false], [true, false], [false, true], [true, true]];
+
+/// A field as a height map.
+pub fn field(field: Field, size: [u32; 2], wrap: [bool; 2]) -> Heights {
+    Heights::new(size, wrap, field.heights(size, 7, POWER)).unwrap()
+}
+
+/// Small sizes of every kind: single samples and rows, odd ones, long ones, and such as
+/// halve to odd ones.
+pub const SMALL: [[u32; 2]; 10] = [
+    [1, 1],
+    [1, 9],
+    [7, 1],
+    [2, 2],
+    [3, 2],
+    [5, 5],
+    [16, 16],
+    [13, 22],
+    [33, 6],
+    [4, 41],
+];
+
+/// Every field at every small size, with every wrap.
+pub fn small() -> Vec<(String, Heights)> {
+    let mut all = Vec::new();
+    for size in SMALL {
+        for wrap in WRAPS {
+            for f in Field::ALL {
+                all.push((format!("{f:?} {size:?} {wrap:?}"), field(f, size, wrap)));
+            }
+            let flat = vec![0.25; (size[0] * size[1]) as usize];
+            let flat = Heights::new(size, wrap, flat).unwrap();
+            all.push((format!("flat {size:?} {wrap:?}"), flat));
+        }
+    }
+    all
+}
+
+/// Every field, at sizes up to 128 and with every wrap.
+pub fn large() -> Vec<(String, Heights)> {
+    let mut all = Vec::new();
+    for (size, wrap) in [
+        ([32, 32], WRAPS[3]),
+        ([64, 64], WRAPS[0]),
+        ([61, 90], WRAPS[1]),
+        ([100, 37], WRAPS[2]),
+        ([128, 128], WRAPS[0]),
+        ([128, 128], WRAPS[3]),
+    ] {
+        for f in Field::ALL {
+            all.push((format!("{f:?} {size:?} {wrap:?}"), field(f, size, wrap)));
+        }
+    }
+    all
+}
+
+/// Any small height map: heights of few different values, so that many are equal, or of
+/// many.
+pub fn any_heights() -> impl Strategy<Value = Heights> {
+    (1_u32..12, 1_u32..12, any::<[bool; 2]>(), 1_u32..300).prop_flat_map(|(w, h, wrap, steps)| {
+        let height = (0..=steps).prop_map(move |i| i as f32 / steps as f32);
+        let count = (w * h) as usize;
+        prop::collection::vec(height, count)
+            .prop_map(move |data| Heights::new([w, h], wrap, data).unwrap())
+    })
+}
+
+/// A map from the CPU.
+pub fn make(generator: Generator, heights: &Heights, patches: Patches, options: &Options) -> ConeMap {
+    let map = cpu::generate(generator, heights, patches, options, &mut |_| true);
+    map.unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A map from the CPU with nothing special asked.
+pub fn plain(generator: Generator, heights: &Heights) -> ConeMap {
+    make(generator, heights, Patches::default(), &Options::default())
+}
+
+/// The first place at which two lists differ, in words.
+pub fn difference(a: &[f64], b: &[f64]) -> Option<String> {
+    if a.len() != b.len() {
+        return Some(format!("{} against {} numbers", a.len(), b.len()));
+    }
+    let mut pairs = a.iter().zip(b).enumerate();
+    let (i, (a, b)) = pairs.find(|(_, (a, b))| a.to_bits() != b.to_bits())?;
+    Some(format!("at {i}: {a} against {b}"))
+}

@@ -1,0 +1,112 @@
+// Which places bound a cone, and how far away they are, in whole numbers: equal to the
+// twin's.
+
+/// 0: all around; 1: one quadrant; 2: one side.
+override REACH_AIM: u32;
+/// Whether places are cells, which touch their neighbours.
+override REACH_CELLS: bool;
+
+/// No place of a node counts.
+const UNREACHED = 0xffffffffu;
+
+/// Steps from a place to the nearest of `low..=high` along an axis, either way.
+fn reach_gap(axis: u32, place: u32, low: u32, high: u32) -> u32 {
+    // Unsigned numbers: each difference is taken only where it is one.
+    let ahead = max(low, place) - place;
+    let back = place - min(high, place);
+    let direct = max(ahead, back);
+    if params.wrap[axis] == 0u || direct == 0u {
+        return direct;
+    }
+    let count = params.size[axis];
+    return min(direct, min(low + count - place, place + count - high));
+}
+
+/// The same in one direction; UNREACHED if there is none.
+fn reach_ahead(axis: u32, up: bool, place: u32, low: u32, high: u32) -> u32 {
+    let last = params.size[axis] - 1u;
+    let f = select(last - place, place, up);
+    let l = select(last - high, low, up);
+    let h = select(last - low, high, up);
+    if f <= h {
+        return max(l, f) - f;
+    }
+    if params.wrap[axis] == 0u {
+        return UNREACHED;
+    }
+    return l + params.size[axis] - f;
+}
+
+/// Steps along and across a side's direction.
+fn reach_beside(place: vec2<u32>, low: vec2<u32>, high: vec2<u32>) -> vec2<u32> {
+    let axis = params.aim >> 1u;
+    let other = 1u - axis;
+    let up = (params.aim & 1u) == 0u;
+    let along = reach_ahead(axis, up, place[axis], low[axis], high[axis]);
+    let across = reach_gap(other, place[other], low[other], high[other]);
+    if along == UNREACHED || along >= across {
+        return vec2<u32>(along, across);
+    }
+    let wraps = params.wrap[axis] != 0u;
+    if all(low == high) {
+        // The first image, turn by turn, that is within the quarter.
+        let count = params.size[axis];
+        let turns = (across - along + count - 1u) / count;
+        return vec2<u32>(select(UNREACHED, along + turns * count, wraps), across);
+    }
+    let above = max(high[axis], place[axis]) - place[axis];
+    let below = place[axis] - min(low[axis], place[axis]);
+    let farthest = select(below, above, up);
+    return vec2<u32>(select(UNREACHED, across, wraps || farthest >= across), across);
+}
+
+/// The squared distance from a place to the nearest of some places that count.
+fn reach_squared(place: vec2<u32>, low: vec2<u32>, high: vec2<u32>) -> u32 {
+    var d = vec2<u32>(0u);
+    switch REACH_AIM {
+        case 0u: {
+            d.x = reach_gap(0u, place.x, low.x, high.x);
+            d.y = reach_gap(1u, place.y, low.y, high.y);
+        }
+        case 1u: {
+            // Quadrants are numbered by their lower directions: 1 for x, 2 for y.
+            d.x = reach_ahead(0u, (params.aim & 1u) == 0u, place.x, low.x, high.x);
+            d.y = reach_ahead(1u, (params.aim & 2u) == 0u, place.y, low.y, high.y);
+        }
+        default: {
+            d = reach_beside(place, low, high);
+        }
+    }
+    if any(d == vec2<u32>(UNREACHED)) {
+        return UNREACHED;
+    }
+    if REACH_CELLS {
+        d = max(d, vec2<u32>(1u)) - vec2<u32>(1u);
+    }
+    return d.x * d.x + d.y * d.y;
+}
+
+/// Steps from a place to the nearest outside the block of a level that contains it;
+/// UNREACHED if there is none.
+fn reach_outside(place: vec2<u32>, level: u32) -> u32 {
+    var least = UNREACHED;
+    for (var a = 0u; a < 2u; a++) {
+        let last = params.size[a] - 1u;
+        let low = (place[a] >> level) << level;
+        let high = min(low + (1u << level) - 1u, last);
+        if low == 0u && high == last {
+            continue;
+        }
+        let wraps = params.wrap[a] != 0u;
+        if wraps || low > 0u {
+            least = min(least, place[a] - low + 1u);
+        }
+        if wraps || high < last {
+            least = min(least, high - place[a] + 1u);
+        }
+    }
+    if REACH_CELLS && least != UNREACHED {
+        least -= 1u;
+    }
+    return least;
+}
