@@ -158,6 +158,36 @@ pub fn course_land(relief: &Relief, ray: &LocalRay, trace: &mut Trace, s: f64) {
     trace.enter = enter;
 }
 
+/// Moves to s, where the ray leaves a rectangle of cells through a line of an axis. Of lines
+/// that are crossed at one s those of x come first, as from cell to cell: a corner of the
+/// rectangle leads into its neighbour, and only then across.
+pub fn course_pass(
+    relief: &Relief,
+    ray: &LocalRay,
+    trace: &mut Trace,
+    s: f64,
+    axis: usize,
+    line: i32,
+) {
+    let found = course_cell(relief, ray, s);
+    let other = 1 - axis;
+    let forward = [0, 1].map(|a| ray.axis[a] > 0.0);
+    let mut place = found[other];
+    let near = crossing(ray, other, place + i32::from(!forward[other]));
+    if axis == 0 && near >= s && near < FAR {
+        place -= if forward[other] { 1 } else { -1 };
+    }
+    let was = trace.cell[other];
+    trace.cell[other] = if forward[other] {
+        place.max(was)
+    } else {
+        place.min(was)
+    };
+    trace.cell[axis] = line - i32::from(!forward[axis]);
+    trace.s = s;
+    trace.enter = s;
+}
+
 /// The place in the cell at s, 0..=1. Where the ray comes into the cell at s, the
 /// coordinate of the line that it crosses is exact.
 pub fn course_uv(ray: &LocalRay, cell: [i32; 2], s: f64) -> [f64; 2] {

@@ -11,9 +11,7 @@ use std::sync::Arc;
 
 use super::super::relief::{Numbers, Relief};
 use super::contract::{LocalRay, Step, Trace, TraceHit, Tracer};
-use super::course::{
-    course_begin, course_cross, course_end, course_exit, course_land, course_solve, trace_hit,
-};
+use super::course::{course_begin, course_end, course_exit, course_pass, course_solve, trace_hit};
 use crate::frame::Work;
 use crate::shader::Module;
 use crate::wgsl;
@@ -85,13 +83,8 @@ impl Tracer for MaxMipTracer {
         if exit >= trace.end {
             return course_end(relief, ray, trace);
         }
-        // The cell at the node's edge, then across it.
-        if level > 0 {
-            course_land(relief, ray, trace, exit);
-        } else {
-            course_cross(ray, trace, exit, axis);
-        }
         let line = if ray.axis[axis] > 0.0 { high } else { low }[axis];
+        course_pass(relief, ray, trace, exit, axis, line);
         let top = relief.maxima().levels.len() as u32 - 1;
         if level < top && parts(relief, axis, line, level) {
             trace.level += 1;

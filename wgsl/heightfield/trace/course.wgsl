@@ -151,6 +151,24 @@ fn course_land(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, s: f32) 
     (*trace).enter = max(last.x, last.y);
 }
 
+/// Moves to where the ray leaves a rectangle of cells, by one of two lines. Of lines that are
+/// crossed at one s those of x come first, as from cell to cell.
+fn course_pass(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, exit: vec2<f32>, lines: vec2<i32>) {
+    let was = (*trace).cell;
+    let forward = d.xy > vec2<f32>(0.0);
+    let step = course_lines(d, vec2<i32>(-1), vec2<i32>(1));
+    let by_x = exit.y == 0.0;
+    let found = course_cell(o, d, exit.x);
+    let near = course_crossing(o, d, course_lines(d, found + 1, found)).y;
+    let early = by_x && near >= exit.x && near < COURSE_FAR;
+    let place = found - select(vec2<i32>(0), vec2<i32>(0, step.y), early);
+    let on = select(min(place, was), max(place, was), forward);
+    let over = select(lines - 1, lines, forward);
+    (*trace).cell = select(vec2<i32>(on.x, over.y), vec2<i32>(over.x, on.y), by_x);
+    (*trace).s = exit.x;
+    (*trace).enter = exit.x;
+}
+
 /// The place in the cell at s, 0..1. Where the ray comes into the cell at s, the
 /// coordinate of the line that it crosses is exact.
 fn course_uv(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {

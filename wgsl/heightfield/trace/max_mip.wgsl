@@ -37,13 +37,9 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if exit.x >= (*trace).end {
         return course_end(o, d, trace);
     }
-    if level > 0u {
-        course_land(o, d, trace, exit.x);
-    } else {
-        course_cross(d, trace, exit);
-    }
-    // Up where the line ends a node of the next level too, or the tile.
     let lines = course_lines(d, low, high);
+    course_pass(o, d, trace, exit, lines);
+    // Up where the line ends a node of the next level too, or the tile.
     let line = select(lines.y, lines.x, exit.y == 0.0);
     let width = select(relief.cells.y, relief.cells.x, exit.y == 0.0);
     let parts = ((line % width) & ((2i << level) - 1)) == 0;

@@ -1,0 +1,476 @@
+//! Tracers of heightfields find the first hit: the oracle against closed forms, all exact
+//! tracers against the oracle, the shaders against both; and what the others cost and miss.
+#![allow(
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "a test may panic, and is read by its name"
+)]
+
+mod common {
+    pub mod random;
+    pub mod reference_maps;
+    pub mod relief_rays;
+}
+
+use std::sync::Arc;
+
+use common::random::Random;
+use common::reference_maps;
+use common::relief_rays::{Case, cases, rays, run};
+use conemarch::heightfield::conemap::{ConeMap, MapKind};
+use conemarch::heightfield::heights::{Heights, Patches};
+use conemarch::heightfield::relief::{Relief, ReliefError};
+use conemarch::heightfield::trace::cones::{Cones, Lookup, Manner};
+use conemarch::heightfield::trace::linear::LinearBinary;
+use conemarch::heightfield::trace::max_mip::MaxMipTracer;
+use conemarch::heightfield::trace::oracle::Oracle;
+use conemarch::heightfield::trace::relaxed::WalkRelaxed;
+use conemarch::heightfield::trace::walk::Walk;
+use conemarch::heightfield::trace::{
+    AnyTracer, BASE, LocalRay, SURFACE, Step, TraceError, TraceHit, Tracer, WALL_X_HIGH,
+    WALL_X_LOW, WALL_Y_LOW,
+};
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+/// No ray here is longer.
+const END: f64 = 1e9;
+
+fn block(
+    size: [u32; 2],
+    wrap: [bool; 2],
+    tiles: [u32; 2],
+    patches: Patches,
+    z: Vec<f32>,
+) -> Arc<Relief> {
+    let heights = Heights::new(size, wrap, z).unwrap();
+    Arc::new(Relief::new(heights, patches, tiles).unwrap())
+}
+
+fn hit_of(tracer: &impl Tracer, ray: &LocalRay) -> Option<TraceHit> {
+    let (step, hit, _) = run(tracer, ray, END).expect("the ray ends");
+    assert_ne!(step, Step::Spent);
+    (step == Step::Hit).then_some(hit)
+}
+
+#[test]
+fn planes_are_hit_where_their_equation_says() {
+    let mut random = Random::new(1);
+    let mut met = 0;
+    for size in [[9, 7], [2, 2], [33, 5]] {
+        let slope = DVec2::new(0.6 / f64::from(size[0]), -0.3 / f64::from(size[1]));
+        let plane = |p: DVec2| 0.35 + p.dot(slope);
+        let samples = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+        let z = samples.map(|(x, y)| plane(DVec2::new(f64::from(x), f64::from(y))) as f32);
+        let relief = block(size, [false; 2], [1, 1], Patches::Bilinear, z.collect());
+        let oracle = Oracle::new(relief.clone());
+        for ray in rays(&relief, 6000, 2) {
+            let Some(hit) = hit_of(&oracle, &ray) else {
+                continue;
+            };
+            if hit.face() != SURFACE || hit.s == 0.0 {
+                continue;
+            }
+            met += 1;
+            // Where z - plane is 0, or in the floor's last rounding.
+            let pace = ray.axis.z - slope.dot(ray.axis.truncate());
+            let above = ray.origin.z - plane(ray.origin.truncate());
+            let s = -above / pace;
+            let way = (hit.s - s).abs() * pace.abs();
+            assert!(way < 1e-7, "{ray:?}: {} and {s}", hit.s);
+        }
+        // Every point of it is hit from straight above: no row, no column is lost.
+        for _ in 0..2000 {
+            let [w, h] = relief.domain().map(f64::from);
+            let p = DVec3::new(random.unit() * w, random.unit() * h, 2.0);
+            let hit = hit_of(
+                &oracle,
+                &LocalRay {
+                    origin: p,
+                    axis: -DVec3::Z,
+                },
+            )
+            .unwrap();
+            assert!((2.0 - hit.s - plane(p.truncate())).abs() < 1e-7);
+            let cell = [
+                hit.cell() % relief.cells()[0],
+                hit.cell() / relief.cells()[0],
+            ];
+            let at = [0, 1].map(|a| f64::from(cell[a]) + hit.uv[a]);
+            assert!(
+                (DVec2::from_array(at) - p.truncate()).length() < 1e-9,
+                "{p} {hit:?}"
+            );
+        }
+    }
+    assert!(met > 4000, "only {met} rays");
+}
+
+#[test]
+fn boxes_are_hit_where_each_alone_would_be() {
+    let mut random = Random::new(3);
+    let mut met = 0;
+    for _ in 0..200 {
+        let size = [4, 3];
+        let z: Vec<f32> = (0..12).map(|_| random.unit() as f32).collect();
+        let relief = block(size, [false; 2], [1, 1], Patches::Boxes, z.clone());
+        let oracle = Oracle::new(relief.clone());
+        for ray in rays(&relief, 120, (random.unit() * 1e6) as u64) {
+            // The first of all boxes, each by its three pairs of planes.
+            let mut first = f64::INFINITY;
+            for (i, top) in z.iter().enumerate() {
+                let low = DVec3::new((i % 4) as f64, (i / 4) as f64, 0.0);
+                let high = low + DVec3::new(1.0, 1.0, f64::from(*top));
+                let (mut near, mut far) = (0.0_f64, f64::INFINITY);
+                for a in 0..3 {
+                    let (p, d) = (ray.origin[a], ray.axis[a]);
+                    if d == 0.0 {
+                        // A ray between two boxes runs in the higher one of both indices.
+                        if p < low[a] || p >= high[a] {
+                            near = f64::INFINITY;
+                        }
+                        continue;
+                    }
+                    let [s, t] = [(low[a] - p) / d, (high[a] - p) / d];
+                    near = near.max(s.min(t));
+                    far = far.min(s.max(t));
+                }
+                // A point touched on an edge may be met or not.
+                if far - near > 1e-9 {
+                    first = first.min(near);
+                }
+            }
+            match hit_of(&oracle, &ray) {
+                Some(hit) => {
+                    met += 1;
+                    let touch = ray.at(hit.s);
+                    let z = relief.heights().height(Patches::Boxes, touch.truncate());
+                    let early = hit.s < first - 1e-9 && touch.z > z + 1e-9;
+                    let edge = touch.x.fract() * touch.y.fract() == 0.0;
+                    assert!(hit.s < first + 1e-9, "{ray:?}: {} for {first}", hit.s);
+                    assert!(!early || edge, "{ray:?}: {} for {first}", hit.s);
+                }
+                None => assert!(first.is_infinite(), "{ray:?}: none for {first}"),
+            }
+        }
+    }
+    assert!(met > 8000, "only {met} rays");
+}
+
+#[test]
+fn the_oracle_never_passes_a_point_under_the_surface() {
+    let settings = [
+        ([17, 12], [false, false], [1, 1]),
+        ([11, 16], [true, false], [2, 1]),
+        ([9, 7], [true, true], [2, 3]),
+    ];
+    let mut random = Random::new(4);
+    let mut met = 0;
+    for (size, wrap, tiles) in settings {
+        for patches in [Patches::Bilinear, Patches::Boxes] {
+            let z = (0..size[0] * size[1])
+                .map(|_| random.unit() as f32)
+                .collect();
+            let relief = block(size, wrap, tiles, patches, z);
+            let oracle = Oracle::new(relief.clone());
+            let [w, h] = relief.domain().map(f64::from);
+            for ray in rays(&relief, 600, 5) {
+                let hit = hit_of(&oracle, &ray);
+                met += u32::from(hit.is_some());
+                // From the start or the hit of the block's box, 2000 points on.
+                let speed = ray.axis.truncate().length().max(0.02);
+                let until = hit.map_or(6.0 * (w + h) / speed, |hit| hit.s);
+                for i in 0..2000 {
+                    let s = until * f64::from(i) / 2000.0;
+                    let p = ray.at(s);
+                    let inside = p.x > 0.0 && p.x < w && p.y > 0.0 && p.y < h && p.z > 0.0;
+                    let z = relief.heights().height(patches, p.truncate());
+                    assert!(!inside || p.z > z - 1e-9, "{ray:?} at {s}: {} in {z}", p.z);
+                }
+                let Some(hit) = hit.filter(|h| h.face() == SURFACE && h.s > 0.0) else {
+                    continue;
+                };
+                let p = ray.at(hit.s);
+                let z = relief.heights().height(patches, p.truncate());
+                let side = hit.uv.iter().any(|u| *u == 0.0 || *u == 1.0);
+                let on = if patches == Patches::Boxes && side {
+                    p.z < 1.0
+                } else {
+                    (p.z - z).abs() < 1e-9
+                };
+                assert!(on, "{ray:?}: {hit:?} at {} over {z}", p.z);
+            }
+        }
+    }
+    assert!(met > 1500, "only {met} rays");
+}
+
+/// The exact tracers of a relief.
+fn exact(relief: &Arc<Relief>) -> Vec<(&'static str, AnyTracer)> {
+    let walk = |offset| {
+        let map = Arc::new(reference_maps::walk(relief, offset));
+        AnyTracer::Walk(Walk::new(relief.clone(), map).unwrap())
+    };
+    let map = Arc::new(reference_maps::walk_relaxed(relief, 1.5));
+    let relaxed = WalkRelaxed::new(relief.clone(), map).unwrap();
+    vec![
+        ("walk 1.5", walk(1.5)),
+        ("walk 3", walk(3.0)),
+        ("walk-relaxed", AnyTracer::WalkRelaxed(relaxed)),
+        (
+            "max-mip",
+            AnyTracer::MaxMip(MaxMipTracer::new(relief.clone())),
+        ),
+    ]
+}
+
+/// What is wrong with an answer, in texels of way or as a word.
+fn wrong(
+    ray: &LocalRay,
+    truth: &(Step, TraceHit, u32),
+    own: Option<(Step, TraceHit, u32)>,
+) -> Option<String> {
+    let Some(own) = own else {
+        return Some("does not end".into());
+    };
+    if own.0 != truth.0 {
+        return Some(format!("{:?} for {:?}", own.0, truth.0));
+    }
+    let way = (own.1.s - truth.1.s).abs() * ray.axis.length();
+    let other = own.1.face() != truth.1.face();
+    (truth.0 == Step::Hit && (way > 1e-7 || other))
+        .then(|| format!("{:?} for {:?}", own.1, truth.1))
+}
+
+#[test]
+fn exact_tracers_find_the_first_hit() {
+    const RAYS: u64 = 6000;
+    let check = |case: &Case| {
+        let oracle = Oracle::new(case.relief.clone());
+        let rays = rays(&case.relief, RAYS, 11);
+        let truths: Vec<_> = rays.iter().map(|r| run(&oracle, r, END).unwrap()).collect();
+        let mut told = Vec::new();
+        let mut traced = 0;
+        for (name, tracer) in exact(&case.relief) {
+            let mut bad = 0;
+            let mut first = String::new();
+            for (ray, truth) in rays.iter().zip(&truths) {
+                traced += 1;
+                if let Some(fault) = wrong(ray, truth, run(&tracer, ray, END)) {
+                    bad += 1;
+                    if first.is_empty() {
+                        first = format!("{ray:?}: {fault}");
+                    }
+                }
+            }
+            if bad > 0 {
+                told.push(format!("{}, {name}: {bad} wrong, {first}", case.name));
+            }
+        }
+        let hits = truths.iter().filter(|t| t.0 == Step::Hit).count();
+        (traced, hits, told)
+    };
+    let all: Vec<_> = cases().par_iter().map(check).collect();
+    let told: Vec<_> = all.iter().flat_map(|a| a.2.clone()).collect();
+    assert!(told.is_empty(), "{}", told.join("\n"));
+    let traced: u64 = all.iter().map(|a| a.0).sum();
+    assert!(traced >= 1_000_000, "only {traced} rays");
+    // Most rays meet something: else there would be nothing to find.
+    let hits: usize = all.iter().map(|a| a.1).sum();
+    assert!(hits as u64 * 8 > traced, "{hits} hits in {traced}");
+}
+
+#[test]
+fn the_block_has_walls_and_a_floor() {
+    let relief = block([3, 3], [false; 2], [1, 1], Patches::Bilinear, vec![0.5; 9]);
+    for (origin, axis, face, s, uv) in [
+        (
+            [-1.0, 0.75, 0.25],
+            [1.0, 0.0, 0.0],
+            WALL_X_LOW,
+            1.0,
+            [0.75, 0.25],
+        ),
+        (
+            [4.0, 1.25, 0.375],
+            [-2.0, 0.0, 0.0],
+            WALL_X_HIGH,
+            1.0,
+            [0.25, 0.375],
+        ),
+        (
+            [0.25, -3.0, 0.5],
+            [0.0, 1.0, 0.0],
+            WALL_Y_LOW,
+            3.0,
+            [0.25, 0.5],
+        ),
+        ([1.5, 0.5, -2.0], [0.0, 0.0, 4.0], BASE, 0.5, [0.5, 0.5]),
+        (
+            [0.0, 0.5, 0.25],
+            [1.0, 0.0, 0.0],
+            WALL_X_LOW,
+            0.0,
+            [0.5, 0.25],
+        ),
+        ([0.5, 0.5, 0.25], [1.0, 0.0, 0.0], SURFACE, 0.0, [0.5, 0.5]),
+        (
+            [-1.0, 0.5, 1.0],
+            [1.0, 0.0, -0.25],
+            SURFACE,
+            2.0,
+            [1.0, 0.5],
+        ),
+    ] {
+        let ray = LocalRay {
+            origin: DVec3::from_array(origin),
+            axis: DVec3::from_array(axis),
+        };
+        for (name, tracer) in exact(&relief) {
+            let hit = hit_of(&tracer, &ray).unwrap();
+            assert_eq!((hit.face(), hit.s, hit.uv), (face, s, uv), "{name} {ray:?}");
+        }
+    }
+    // Above the surface but within the sides, and past the end.
+    let over = LocalRay {
+        origin: DVec3::new(-1.0, 0.5, 0.75),
+        axis: DVec3::X,
+    };
+    let down = LocalRay {
+        origin: DVec3::new(0.5, 0.5, 2.0),
+        axis: -DVec3::Z,
+    };
+    for (name, tracer) in exact(&relief) {
+        assert_eq!(hit_of(&tracer, &over), None, "{name}");
+        assert_eq!(run(&tracer, &down, 1.25).unwrap().0, Step::Out, "{name}");
+        assert_eq!(run(&tracer, &down, 1.75).unwrap().0, Step::Hit, "{name}");
+    }
+}
+
+#[test]
+fn rays_of_no_numbers_end() {
+    let case = &cases()[3];
+    let odd = [
+        f64::NAN,
+        f64::INFINITY,
+        -f64::INFINITY,
+        1e300,
+        0.0,
+        1e-300,
+        5.0,
+        -0.0,
+    ];
+    let mut random = Random::new(6);
+    let mut any = || odd[(random.unit() * 8.0) as usize];
+    for _ in 0..3000 {
+        let ray = LocalRay {
+            origin: DVec3::new(any(), any(), any()),
+            axis: DVec3::new(any(), any(), any()),
+        };
+        for (_, tracer) in exact(&case.relief) {
+            // A caller counts: a number of steps is enough, and none panics.
+            let mut work = conemarch::frame::Work::default();
+            let mut walk = tracer.begin(&ray, any(), any(), &mut work);
+            for _ in 0..200 {
+                tracer.step(&ray, &mut walk, &mut work);
+            }
+        }
+    }
+}
+
+/// Every tracer that is not exact.
+fn inexact(relief: &Arc<Relief>) -> Vec<(&'static str, AnyTracer)> {
+    let linear = LinearBinary::new(relief.clone(), 32, 6);
+    let mut all = vec![("linear-binary", AnyTracer::LinearBinary(linear))];
+    let maps: Vec<Arc<ConeMap>> = [MapKind::Samples, MapKind::Quad, MapKind::Relaxed]
+        .map(|kind| Arc::new(reference_maps::samples(relief, kind)))
+        .into();
+    for manner in Manner::ALL {
+        for lookup in [Lookup::Nearest, Lookup::Bilinear] {
+            let map = maps
+                .iter()
+                .find(|m| manner.kinds().contains(&m.kind))
+                .unwrap();
+            let own = Manner { lookup, ..manner };
+            let tracer = Cones::new(relief.clone(), map.clone(), own).unwrap();
+            all.push((manner.name, AnyTracer::Cones(tracer)));
+        }
+    }
+    all
+}
+
+#[test]
+fn inexact_tracers_end_on_the_surface_or_say_that_they_do_not() {
+    let own: Vec<Case> = cases().into_iter().step_by(5).collect();
+    let mut spent = [0, 0];
+    for case in &own {
+        let oracle = Oracle::new(case.relief.clone());
+        let rays = rays(&case.relief, 600, 12);
+        for (name, tracer) in inexact(&case.relief) {
+            for ray in &rays {
+                let truth = run(&oracle, ray, END).unwrap();
+                let (step, hit, _) = run(&tracer, ray, END).expect("ends");
+                let limited = ["csm-loop", "csm-fixed", "rcs-binary"].contains(&name);
+                spent[usize::from(limited)] += u32::from(step == Step::Spent);
+                // Never in front of the truth by more than a bracket leaves, and never a hit
+                // where there is none.
+                if step == Step::Hit {
+                    assert_eq!(truth.0, Step::Hit, "{}, {name}: {ray:?}", case.name);
+                    let early = (truth.1.s - hit.s) * ray.axis.length();
+                    let bracket = if name == "linear-binary" { 20.0 } else { 6.0 };
+                    assert!(early < bracket, "{}, {name}: {ray:?}: {early}", case.name);
+                }
+            }
+        }
+    }
+    assert_eq!(spent[0], 0);
+    assert!(spent[1] > 100, "{spent:?}");
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let heights = Heights::new([4, 3], [true, false], vec![0.5; 12]).unwrap();
+    let tiled = |tiles| Relief::new(heights.clone(), Patches::Bilinear, tiles);
+    assert!(tiled([7, 1]).is_ok());
+    assert_eq!(tiled([1, 2]).unwrap_err(), ReliefError::Unwrapped(1));
+    assert!(matches!(
+        tiled([0, 1]),
+        Err(ReliefError::Tiles { axis: 0, .. })
+    ));
+    assert!(matches!(
+        tiled([1 << 20, 1]),
+        Err(ReliefError::Tiles { .. })
+    ));
+    let relief = Arc::new(tiled([2, 1]).unwrap());
+    let good = reference_maps::walk(&relief, 1.5);
+    let refused = |change: &dyn Fn(&mut ConeMap)| {
+        let mut map = good.clone();
+        change(&mut map);
+        Walk::new(relief.clone(), Arc::new(map)).unwrap_err()
+    };
+    assert!(matches!(
+        refused(&|m| m.kind = MapKind::Samples),
+        TraceError::Kind { .. }
+    ));
+    assert!(matches!(
+        refused(&|m| m.size = [4, 3]),
+        TraceError::Size { .. }
+    ));
+    assert!(matches!(
+        refused(&|m| m.wrap = [true, true]),
+        TraceError::Wrap { .. }
+    ));
+    assert!(matches!(
+        refused(&|m| m.ratios.truncate(3)),
+        TraceError::Count { .. }
+    ));
+    assert!(matches!(
+        refused(&|m| m.ratios[2] = f64::NAN),
+        TraceError::Number(_)
+    ));
+    assert!(matches!(
+        refused(&|m| m.offset = -1.0),
+        TraceError::Number(_)
+    ));
+    assert!(Walk::new(relief.clone(), Arc::new(good.clone())).is_ok());
+}
