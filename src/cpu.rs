@@ -8,11 +8,12 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::frame::{Frame, State, Work};
+use crate::heightfield::generate::cpu::generate;
 use crate::pass::march::{Ended, march};
 use crate::pass::{color, trace};
 use crate::plan::{Extras, Pass, Plan};
 use crate::pyramid::Level;
-use crate::render::{Progress, RenderError, Watch, blank};
+use crate::render::{Progress, RenderError, Watch, blank, preparing};
 use crate::scene::{Hit, Solid, Task};
 use crate::view::View;
 
@@ -35,8 +36,13 @@ struct Proofs {
 /// Renders a plan that passes [`Plan::check`].
 ///
 /// # Errors
-/// Only [`RenderError::Cancelled`], when `watch` returns `false`.
+/// [`RenderError::Cancelled`], when `watch` returns `false`; heights or cones that cannot
+/// be had any more.
 pub fn render(plan: &Plan, extras: Extras, watch: Watch<'_>) -> Result<Frame, RenderError> {
+    plan.prepare(&mut |generator, heights, patches, options| {
+        let mut told = |share: f64| watch(&preparing(share));
+        generate(generator, heights, patches, options, &mut told)
+    })?;
     plan.scene().run(Render {
         plan,
         extras,

@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use crate::formula::Shape;
 use crate::heightfield::shape::HeightfieldShape;
+use crate::heightfield::tracing::{Make, PrepareError};
 use crate::key::{AutoCount, Fault, Key, Size};
 use crate::mode::Marching;
 use crate::pass::look::{self, Light, Look};
@@ -146,6 +147,17 @@ impl Plan {
         self.camera.check()?;
         self.march.check()?;
         self.look.check()
+    }
+
+    /// Makes what the scene needs and takes long, by `make`; it is kept with the plan.
+    ///
+    /// # Errors
+    /// Files that the plan names have changed since its check; what `make` fails with.
+    pub fn prepare(&self, make: Make<'_>) -> Result<(), PrepareError> {
+        match &self.subject {
+            Subject::Heightfield(shape) => shape.prepare(make),
+            _ => Ok(()),
+        }
     }
 
     /// The camera fitted to the image.

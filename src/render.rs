@@ -15,6 +15,7 @@ use crate::frame::Frame;
 use crate::gpu::buffer::{Buffer, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::kernel::{Kernel, KernelError};
+use crate::heightfield::generate::device::Maker;
 use crate::pass::queue::{COUNT_AT, Turn};
 use crate::plan::{Extras, Pass, Plan};
 use crate::pyramid::Block;
@@ -62,6 +63,14 @@ pub struct Progress {
     pub pass: String,
     /// Share of passes over blocks that are done.
     pub done: f64,
+}
+
+/// Before the first pass, when so much of what the scene needs is made.
+pub(crate) fn preparing(share: f64) -> Progress {
+    Progress {
+        pass: format!("cones {:.0} %", 100.0 * share),
+        done: 0.0,
+    }
 }
 
 /// Told after every pass over a block (on the CPU, a band of rows); `false` cancels the
@@ -138,6 +147,11 @@ impl Renderer {
         extras: Extras,
         watch: Watch<'_>,
     ) -> Result<Frame, RenderError> {
+        let mut maker = Maker::new(&self.device);
+        plan.prepare(&mut |generator, heights, patches, options| {
+            let mut told = |share: f64| watch(&preparing(share));
+            maker.generate(generator, heights, patches, options, &mut told)
+        })?;
         let scene = plan.scene();
         let passes: Vec<Pass> = plan
             .passes()

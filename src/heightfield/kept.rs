@@ -6,9 +6,12 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// A key and the value made from it.
+type Made<K, V> = Option<(K, Arc<V>)>;
+
 /// The last value made, and what it was made from.
 pub struct Kept<K, V> {
-    last: Arc<Mutex<Option<(K, Arc<V>)>>>,
+    last: Arc<Mutex<Made<K, V>>>,
 }
 
 impl<K: PartialEq, V> Kept<K, V> {

@@ -13,7 +13,7 @@ use super::load::{LoadOptions, Loaded, Named, load};
 use super::placed::Placed;
 use super::relief::Relief;
 use super::trace::AnyTracer;
-use super::tracing::Tracing;
+use super::tracing::{Make, PrepareError, Tracing, on_cpu};
 use crate::key::{Counts, Fault, Key, Number, Switch, Text, Triple, Word};
 
 /// Which axes of a height map come round to their start.
@@ -232,18 +232,30 @@ impl HeightfieldShape {
             None => drop(self.relief()?),
         }
         if self.tracing.map != "auto" && self.tracing.generator().is_none() {
-            self.cones(&*self.relief()?)?;
+            let made = self.cones(&*self.relief()?, &mut on_cpu);
+            if let Err(PrepareError::Fault(fault)) = made {
+                return Err(fault);
+            }
         }
         Ok(())
     }
 
-    /// Everything that takes long to make: kept until it changes.
+    /// Makes what takes long, which is kept until it changes.
+    ///
+    /// # Errors
+    /// Heights that are none, cones that do not fit, and what `make` fails with.
+    pub fn prepare(&self, make: Make<'_>) -> Result<(), PrepareError> {
+        let relief = self.relief()?;
+        self.cones(&relief, make).map(|_| ())
+    }
+
+    /// Everything that a scene needs; on the CPU where it was not prepared.
     ///
     /// # Errors
     /// Heights that are none, cones that do not fit.
-    pub fn ready(&self) -> Result<Ready, Fault> {
+    pub fn ready(&self) -> Result<Ready, PrepareError> {
         let relief = self.relief()?;
-        let cones = self.cones(&relief)?;
+        let cones = self.cones(&relief, &mut on_cpu)?;
         let [w, h] = relief.domain().map(f64::from);
         let sides = DVec2::new(w, h);
         Ok(Ready {
@@ -267,11 +279,15 @@ impl HeightfieldShape {
             })
     }
 
-    fn cones(&self, relief: &Relief) -> Result<Arc<Option<Arc<ConeMap>>>, Fault> {
+    fn cones(
+        &self,
+        relief: &Relief,
+        make: Make<'_>,
+    ) -> Result<Arc<Option<Arc<ConeMap>>>, PrepareError> {
         let t = &self.tracing;
         let key = (self.relief_key(), t.tracer, t.map.clone(), t.offset);
         self.maps.get(key, |_| {
-            let made = t.cones(relief, &self.source.folder)?;
+            let made = t.cones(relief, &self.source.folder, make)?;
             Ok(made.map(Arc::new))
         })
     }

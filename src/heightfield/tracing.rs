@@ -3,9 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use thiserror::Error;
+
 use super::conemap::{ConeMap, MapKind};
 use super::generate::cpu::generate;
 use super::generate::generator::{GenerateError, Generator, LEAST_OFFSET, MOST_OFFSET, Options};
+use super::heights::{Heights, Patches};
 use super::mapfile::{Wanted, read_map};
 use super::relief::Relief;
 use super::trace::cones::{Budget, Cones, Lookup, Manner};
@@ -24,6 +27,37 @@ const LINEAR_ROUNDS: u32 = 6;
 /// Most steps of its own, and most rounds of refinement, that a tracer may have.
 const MOST_STEPS: u32 = 4096;
 const MOST_ROUNDS: u32 = 32;
+
+/// Makes cones, on the CPU or on a device.
+pub type Make<'a> =
+    &'a mut dyn FnMut(Generator, &Heights, Patches, &Options) -> Result<ConeMap, GenerateError>;
+
+/// Makes cones on the CPU, to the end.
+pub fn on_cpu(
+    generator: Generator,
+    heights: &Heights,
+    patches: Patches,
+    options: &Options,
+) -> Result<ConeMap, GenerateError> {
+    generate(generator, heights, patches, options, &mut |_| true)
+}
+
+/// Why a heightfield cannot be made ready.
+#[derive(Debug, Error)]
+pub enum PrepareError {
+    /// Settings, or files that they name.
+    #[error("{}: {}", .0.key, .0.why)]
+    Fault(Fault),
+    /// Its cones could not be made.
+    #[error(transparent)]
+    Generate(#[from] GenerateError),
+}
+
+impl From<Fault> for PrepareError {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
 
 /// The tracers' names.
 pub const TRACERS: &[(&str, &str)] = &[
@@ -200,7 +234,15 @@ impl Tracing {
     }
 
     /// The cones, made or read; none for a tracer that needs none.
-    pub fn cones(&self, relief: &Relief, folder: &Path) -> Result<Option<ConeMap>, Fault> {
+    ///
+    /// # Errors
+    /// A file that holds no cones for this relief and tracer; what `make` fails with.
+    pub fn cones(
+        &self,
+        relief: &Relief,
+        folder: &Path,
+        make: Make<'_>,
+    ) -> Result<Option<ConeMap>, PrepareError> {
         if self.kinds().is_empty() {
             return Ok(None);
         }
@@ -210,10 +252,7 @@ impl Tracing {
                 offset: self.offset,
                 ..Options::default()
             };
-            let made = generate(generator, heights, patches, &options, &mut |_| true);
-            return made
-                .map(Some)
-                .map_err(|e: GenerateError| fault(e.to_string()));
+            return Ok(Some(make(generator, heights, patches, &options)?));
         }
         let path = folder.join(&self.map);
         let file = read_map(&path).map_err(|e| fault(e.to_string()))?;

@@ -4,6 +4,8 @@ use thiserror::Error;
 
 use crate::gpu::device::DeviceError;
 use crate::gpu::kernel::KernelError;
+use crate::heightfield::generate::generator::GenerateError;
+use crate::heightfield::tracing::PrepareError;
 
 /// Why there is no frame.
 #[derive(Debug, Error)]
@@ -14,6 +16,9 @@ pub enum RenderError {
     /// A program failed.
     #[error(transparent)]
     Kernel(#[from] KernelError),
+    /// What the scene needs could not be made.
+    #[error(transparent)]
+    Prepare(PrepareError),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
@@ -29,4 +34,15 @@ pub enum RenderError {
         /// How many.
         cells: usize,
     },
+}
+
+impl From<PrepareError> for RenderError {
+    fn from(error: PrepareError) -> Self {
+        match error {
+            PrepareError::Generate(GenerateError::Cancelled) => Self::Cancelled,
+            PrepareError::Generate(GenerateError::Device(e)) => Self::Device(e),
+            PrepareError::Generate(GenerateError::Kernel(e)) => Self::Kernel(e),
+            other => Self::Prepare(other),
+        }
+    }
 }

@@ -62,17 +62,17 @@ fn course_within(o: vec3<f32>, d: vec3<f32>) -> array<vec3<f32>, 2> {
 
 /// Starts a ray: the part of it inside the block, its first cell, and the hit where it
 /// comes in through the solid.
-fn course_begin(o: vec3<f32>, d: vec3<f32>, from: f32, to: f32) -> Trace {
+fn course_begin(o: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> Trace {
     let inside = course_within(o, d);
     let near = inside[0];
     let far = inside[1];
     let face = max(near.x, max(near.y, near.z));
-    let start = max(from, face);
+    let start = max(first, face);
     let side = min(min(far.x, far.y), to);
     var trace = Trace(start, min(side, far.z), start, COURSE_FAR, vec2<i32>(0), 0u, 0u,
         0u, STATE_MOVING, 0u, 0.0, 0.0, 0u);
     if !(start <= trace.end && trace.end < COURSE_FAR) {
-        trace.s = from;
+        trace.s = first;
         trace.state = STATE_SKY;
         return trace;
     }
@@ -83,7 +83,7 @@ fn course_begin(o: vec3<f32>, d: vec3<f32>, from: f32, to: f32) -> Trace {
     let z = o.z + start * d.z;
     // The face that it comes in by is the last that it passes. A start on it counts as
     // outside: a caller's bounds may lie there.
-    if from > face + COURSE_ON_FACE * abs(face) {
+    if first > face + COURSE_ON_FACE * abs(face) {
         return trace;
     }
     let under = z <= relief_height(trace.cell, at);

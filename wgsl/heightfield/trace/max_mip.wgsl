@@ -3,8 +3,8 @@
 // and to a node twice as wide where the parent ends there too; else it looks at the child
 // below, or in a cell solves the patch.
 
-fn trace_begin(o: vec3<f32>, d: vec3<f32>, from: f32, to: f32) -> Trace {
-    var trace = course_begin(o, d, from, to);
+fn trace_begin(o: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> Trace {
+    var trace = course_begin(o, d, first, to);
     trace.level = relief.levels - 1u;
     return trace;
 }
