@@ -119,7 +119,8 @@ fn course_cell(o: vec3<f32>, d: vec3<f32>, s: f32) -> vec2<i32> {
     let enter = course_crossing(o, d, course_lines(d, i + 1, i));
     let leave = course_crossing(o, d, course_lines(d, i, i + 1));
     let flat = abs(d.xy) < vec2<f32>(COURSE_FLAT);
-    let on = select(vec2<i32>(0), step, s >= leave) - select(vec2<i32>(0), step, s < enter);
+    let at = vec2<f32>(s);
+    let on = select(vec2<i32>(0), step, at >= leave) - select(vec2<i32>(0), step, at < enter);
     return clamp(i + select(on, vec2<i32>(0), flat), vec2<i32>(0), last);
 }
 
