@@ -95,7 +95,7 @@ proptest! {
                     prop_assert!(after >= before && after - before <= step * 1.0001);
                 }
                 // What was read once is held as it is.
-                let again = encode(&read, &form).and_then(|b| Ok(decode_bytes(&b)));
+                let again = encode(&read, &form).map(|b| decode_bytes(&b));
                 let again = again.expect("a file").expect("a map");
                 prop_assert_eq!(&again.map, &read.map, "{:?}", form);
                 prop_assert_eq!(&again.heights, &read.heights);
