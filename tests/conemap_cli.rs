@@ -244,7 +244,7 @@ fn inspect_tells_what_there_is() {
         "4 x 2 samples, wrap none, SHA-256 ",
         "made by   exact",
         "EXR, 32-bit floats, 1 means 4 texels",
-        "from 1 to 65536; 0.0 % are 0, 25.0 % are 4 or wider",
+        "from 1 to 65536; 0 % are 0, 25.0 % are 4 or wider",
         "       1 to 2   25.0 %  ████████",
         "       2 to 4   50.0 %  ████████",
     ] {

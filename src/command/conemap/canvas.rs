@@ -204,7 +204,7 @@ mod tests {
             let canvas = Canvas::of(&[panel("one"), panel("two")]);
             let [w, h] = canvas.size();
             assert!(w <= 2 * PANEL[1] + 3 * GAP && h < PANEL[1] + 200, "{w} {h}");
-            assert!(canvas.pixels.iter().any(|p| *p == DVec3::ONE));
+            assert!(canvas.pixels.contains(&DVec3::ONE));
         }
     }
 }

@@ -54,8 +54,14 @@ fn figure(x: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').into()
 }
 
+/// A share with one decimal, that is 0 only where there is nothing.
 fn percent(count: usize, all: usize) -> String {
-    format!("{:.1} %", 100.0 * count as f64 / all.max(1) as f64)
+    let share = 100.0 * count as f64 / all.max(1) as f64;
+    match count {
+        0 => "0 %".into(),
+        _ if share < 0.05 => "<0.1 %".into(),
+        _ => format!("{share:.1} %"),
+    }
 }
 
 fn row(text: &mut String, name: &str, what: &str) {

@@ -18,7 +18,7 @@ fn signed(x: f64) -> DVec3 {
     EVEN.lerp(end, x.abs().min(1.0))
 }
 
-/// A number on a bar: at most four characters that matter.
+/// A number on a bar: about three figures.
 fn mark(x: f64) -> String {
     match x.abs() {
         a if a >= 99.95 || x.fract() == 0.0 => format!("{x:.0}"),
@@ -41,13 +41,22 @@ fn height_panel(size: [u32; 2], heights: &[f32]) -> Panel<'_> {
     }
 }
 
+/// Share of the ratios that the colours of a panel tell apart. The rest are as bright as
+/// colours get: a few cones over peaks would else leave no colours for all others.
+const TOLD_APART: f64 = 0.99;
+
 /// Ratios in a heat map of their square root, since most are small. `step` of them
 /// belong to each place, and one counts.
 fn ratio_panel<'a>(file: &'a MapFile, caption: &str, which: usize, step: usize) -> Panel<'a> {
     let map = &file.map;
     let width = map.size[0];
-    let most = map.ratios.iter().copied().fold(0.0, f64::max);
-    // Up to what the papers' channels hold, and no farther than there is something.
+    let mut sorted = map.ratios.clone();
+    let at = (TOLD_APART * sorted.len().saturating_sub(1) as f64) as usize;
+    let most = match sorted.is_empty() {
+        true => 0.0,
+        false => *sorted.select_nth_unstable_by(at, f64::total_cmp).1,
+    };
+    // No farther than the papers' channels hold.
     let high = most.min(file.label.scale).max(1e-9);
     Panel {
         caption: caption.into(),

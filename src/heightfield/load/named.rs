@@ -118,7 +118,8 @@ mod tests {
         assert_eq!(read("fbm"), Named::new(Field::Fbm));
         let all = read("ridges:12x7,seed=3,power=1.5");
         assert_eq!((all.size, all.seed, all.power), ([12, 7], 3, 1.5));
-        assert_eq!(read(&all.to_string()), all);
+        let written = all.to_string();
+        assert_eq!(read(&written), all);
         assert_eq!(read("sine:seed=4").size, [256, 256]);
         assert!(Named::read("fmb:1x1").is_none());
         for bad in [
