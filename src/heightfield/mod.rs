@@ -7,4 +7,5 @@ pub mod heights;
 pub mod maxmip;
 pub mod patch;
 pub mod relief;
+pub mod survey;
 pub mod trace;
