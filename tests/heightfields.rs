@@ -6,6 +6,7 @@
     reason = "a test may panic, and is read by its name"
 )]
 
+#[allow(dead_code, reason = "other files use the rest")]
 mod common {
     pub mod random;
     pub mod reference_maps;
@@ -16,15 +17,17 @@ use std::sync::Arc;
 
 use common::random::Random;
 use common::reference_maps;
-use common::relief_rays::{Case, cases, rays, run};
+use common::relief_rays::{Case, KINDS, case, cases, exact, made, rays, run};
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
+use conemarch::heightfield::field::Field;
+use conemarch::heightfield::generate::generator::Generator;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::relief::{Relief, ReliefError};
-use conemarch::heightfield::trace::cones::{Cones, Lookup, Manner};
+use conemarch::heightfield::survey::{first_hits, survey, view_rays};
+use conemarch::heightfield::trace::cones::{Budget, Cones, Lookup, Manner};
 use conemarch::heightfield::trace::linear::LinearBinary;
 use conemarch::heightfield::trace::max_mip::MaxMipTracer;
 use conemarch::heightfield::trace::oracle::Oracle;
-use conemarch::heightfield::trace::relaxed::WalkRelaxed;
 use conemarch::heightfield::trace::walk::Walk;
 use conemarch::heightfield::trace::{
     AnyTracer, BASE, LocalRay, SURFACE, Step, TraceError, TraceHit, Tracer, WALL_X_HIGH,
@@ -126,7 +129,7 @@ fn boxes_are_hit_where_each_alone_would_be() {
                     let (p, d) = (ray.origin[a], ray.axis[a]);
                     if d == 0.0 {
                         // A ray between two boxes runs in the higher one of both indices.
-                        if p < low[a] || p >= high[a] {
+                        if p < low[a] || p > high[a] || (a < 2 && p == high[a]) {
                             near = f64::INFINITY;
                         }
                         continue;
@@ -177,11 +180,14 @@ fn the_oracle_never_passes_a_point_under_the_surface() {
             for ray in rays(&relief, 600, 5) {
                 let hit = hit_of(&oracle, &ray);
                 met += u32::from(hit.is_some());
-                // From the start or the hit of the block's box, 2000 points on.
+                // A start in the solid is a hit at once.
+                if hit.is_some_and(|hit| hit.s == 0.0) {
+                    continue;
+                }
                 let speed = ray.axis.truncate().length().max(0.02);
                 let until = hit.map_or(6.0 * (w + h) / speed, |hit| hit.s);
                 for i in 0..2000 {
-                    let s = until * f64::from(i) / 2000.0;
+                    let s = until * (f64::from(i) + 0.5) / 2000.0;
                     let p = ray.at(s);
                     let inside = p.x > 0.0 && p.x < w && p.y > 0.0 && p.y < h && p.z > 0.0;
                     let z = relief.heights().height(patches, p.truncate());
@@ -205,58 +211,60 @@ fn the_oracle_never_passes_a_point_under_the_surface() {
     assert!(met > 1500, "only {met} rays");
 }
 
-/// The exact tracers of a relief.
-fn exact(relief: &Arc<Relief>) -> Vec<(&'static str, AnyTracer)> {
-    let walk = |offset| {
-        let map = Arc::new(reference_maps::walk(relief, offset));
-        AnyTracer::Walk(Walk::new(relief.clone(), map).unwrap())
-    };
-    let map = Arc::new(reference_maps::walk_relaxed(relief, 1.5));
-    let relaxed = WalkRelaxed::new(relief.clone(), map).unwrap();
-    vec![
-        ("walk 1.5", walk(1.5)),
-        ("walk 3", walk(3.0)),
-        ("walk-relaxed", AnyTracer::WalkRelaxed(relaxed)),
-        (
-            "max-mip",
-            AnyTracer::MaxMip(MaxMipTracer::new(relief.clone())),
-        ),
-    ]
-}
+/// What one ray came to.
+type End = (Step, TraceHit, u32);
 
-/// What is wrong with an answer, in texels of way or as a word.
-fn wrong(
-    ray: &LocalRay,
-    truth: &(Step, TraceHit, u32),
-    own: Option<(Step, TraceHit, u32)>,
-) -> Option<String> {
+/// What is wrong with an answer.
+fn wrong(ray: &LocalRay, truth: &End, own: Option<End>) -> Option<String> {
     let Some(own) = own else {
         return Some("does not end".into());
     };
-    if own.0 != truth.0 {
-        return Some(format!("{:?} for {:?}", own.0, truth.0));
-    }
     let way = (own.1.s - truth.1.s).abs() * ray.axis.length();
     let other = own.1.face() != truth.1.face();
-    (truth.0 == Step::Hit && (way > 1e-7 || other))
-        .then(|| format!("{:?} for {:?}", own.1, truth.1))
+    let hit = truth.0 == Step::Hit;
+    let fault = own.0 != truth.0 || (hit && (way > 1e-7 || other));
+    fault.then(|| {
+        format!(
+            "{:?} at {:?} for {:?} at {:?}",
+            own.0, own.1, truth.0, truth.1
+        )
+    })
+}
+
+/// Whether a hit earlier than the truth's is one all the same: a point of the surface, or of
+/// the side of a box, that the ray touches, and rounding hid from the oracle.
+fn touches(relief: &Relief, ray: &LocalRay, own: Option<End>) -> bool {
+    let Some((Step::Hit, hit, _)) = own else {
+        return false;
+    };
+    let cells = relief.cells()[0];
+    let cell = [hit.cell() % cells, hit.cell() / cells].map(|i| i as i32);
+    let under = relief.height(cell, hit.uv[0], hit.uv[1]) - ray.height(hit.s);
+    let side = hit.uv.iter().any(|u| *u == 0.0 || *u == 1.0);
+    under.abs() < 1e-12 || (relief.patches() == Patches::Boxes && side && under > 0.0)
 }
 
 #[test]
 fn exact_tracers_find_the_first_hit() {
-    const RAYS: u64 = 6000;
+    const RAYS: u64 = 4200;
     let check = |case: &Case| {
         let oracle = Oracle::new(case.relief.clone());
         let rays = rays(&case.relief, RAYS, 11);
         let truths: Vec<_> = rays.iter().map(|r| run(&oracle, r, END).unwrap()).collect();
         let mut told = Vec::new();
-        let mut traced = 0;
+        let (mut traced, mut touched) = (0, 0);
         for (name, tracer) in exact(&case.relief) {
             let mut bad = 0;
             let mut first = String::new();
             for (ray, truth) in rays.iter().zip(&truths) {
                 traced += 1;
-                if let Some(fault) = wrong(ray, truth, run(&tracer, ray, END)) {
+                let own = run(&tracer, ray, END);
+                if let Some(fault) = wrong(ray, truth, own) {
+                    // Only who samples heights between the cells can see such a point.
+                    if name.starts_with("walk-relaxed") && touches(&case.relief, ray, own) {
+                        touched += 1;
+                        continue;
+                    }
                     bad += 1;
                     if first.is_empty() {
                         first = format!("{ray:?}: {fault}");
@@ -268,13 +276,16 @@ fn exact_tracers_find_the_first_hit() {
             }
         }
         let hits = truths.iter().filter(|t| t.0 == Step::Hit).count();
-        (traced, hits, told)
+        (traced, hits, told, touched)
     };
     let all: Vec<_> = cases().par_iter().map(check).collect();
     let told: Vec<_> = all.iter().flat_map(|a| a.2.clone()).collect();
     assert!(told.is_empty(), "{}", told.join("\n"));
     let traced: u64 = all.iter().map(|a| a.0).sum();
     assert!(traced >= 1_000_000, "only {traced} rays");
+    let touched: u64 = all.iter().map(|a| a.3).sum();
+    println!("{traced} rays, {touched} of them touch");
+    assert!(touched * 2000 < traced, "{touched} touches");
     // Most rays meet something: else there would be nothing to find.
     let hits: usize = all.iter().map(|a| a.1).sum();
     assert!(hits as u64 * 8 > traced, "{hits} hits in {traced}");
@@ -349,7 +360,7 @@ fn the_block_has_walls_and_a_floor() {
 
 #[test]
 fn rays_of_no_numbers_end() {
-    let case = &cases()[3];
+    let tracers = exact(&cases()[3].relief);
     let odd = [
         f64::NAN,
         f64::INFINITY,
@@ -367,7 +378,7 @@ fn rays_of_no_numbers_end() {
             origin: DVec3::new(any(), any(), any()),
             axis: DVec3::new(any(), any(), any()),
         };
-        for (_, tracer) in exact(&case.relief) {
+        for (_, tracer) in &tracers {
             // A caller counts: a number of steps is enough, and none panics.
             let mut work = conemarch::frame::Work::default();
             let mut walk = tracer.begin(&ray, any(), any(), &mut work);
@@ -405,9 +416,13 @@ fn inexact_tracers_end_on_the_surface_or_say_that_they_do_not() {
     let mut spent = [0, 0];
     for case in &own {
         let oracle = Oracle::new(case.relief.clone());
-        let rays = rays(&case.relief, 600, 12);
+        let rays = rays(&case.relief, 600, 12).into_iter().enumerate();
+        // Rays that only touch are another question.
+        let rays: Vec<_> = rays
+            .filter(|(i, _)| ![7, 9].contains(&(*i as u64 % KINDS)))
+            .collect();
         for (name, tracer) in inexact(&case.relief) {
-            for ray in &rays {
+            for (_, ray) in &rays {
                 let truth = run(&oracle, ray, END).unwrap();
                 let (step, hit, _) = run(&tracer, ray, END).expect("ends");
                 let limited = ["csm-loop", "csm-fixed", "rcs-binary"].contains(&name);
@@ -473,4 +488,117 @@ fn what_does_not_fit_is_refused() {
         TraceError::Number(_)
     ));
     assert!(Walk::new(relief.clone(), Arc::new(good.clone())).is_ok());
+}
+
+/// Mean steps of the walk over those of the pyramid, in views of 30, 60 and 80 degrees.
+fn walk_over_pyramid(field: Field) -> [f64; 3] {
+    let case = case(field, [256, 256], [false; 2], [1, 1], Patches::Bilinear);
+    let relief = &case.relief;
+    let oracle = Oracle::new(relief.clone());
+    let map = made(Generator::Walk, relief, 2.0);
+    let walk = Walk::new(relief.clone(), map).unwrap();
+    let pyramid = MaxMipTracer::new(relief.clone());
+    [30.0, 60.0, 80.0].map(|degrees| {
+        let rays = view_rays(relief, degrees, 20_000);
+        let truths = first_hits(&oracle, &rays);
+        let both = [
+            survey(&walk, &rays, &truths),
+            survey(&pyramid, &rays, &truths),
+        ];
+        for own in both {
+            assert_eq!((own.skipped, own.unconverged), (0.0, 0.0), "{}", case.name);
+            assert!(own.error_texels < 1e-9, "{}: {own:?}", case.name);
+        }
+        let [walk, pyramid] = both.map(|own| own.steps_mean);
+        println!(
+            "{} {degrees}: walk {walk:.2} pyramid {pyramid:.2}",
+            case.name
+        );
+        walk / pyramid
+    })
+}
+
+#[test]
+fn the_walk_takes_fewer_steps_than_the_pyramid_on_terrain() {
+    for field in [Field::Fbm, Field::Ridges] {
+        let ratios = walk_over_pyramid(field);
+        assert!(
+            ratios[0] <= 1.0 && ratios[1] <= 1.0,
+            "{field:?}: {ratios:?}"
+        );
+        if field == Field::Fbm {
+            for (own, wanted) in ratios.iter().zip([0.65, 0.85, 1.05]) {
+                assert!((own / wanted - 1.0).abs() < 0.15, "{ratios:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_survey_counts_what_is_missed() {
+    // A wall one cell thick in a plain, and rays that meet it or the ground behind.
+    let z = (0..64 * 64).map(|i| if i % 64 == 32 { 1.0 } else { 0.0 });
+    let relief = block([64, 64], [false; 2], [1, 1], Patches::Bilinear, z.collect());
+    let rays = view_rays(&relief, 60.0, 4000);
+    let truths = first_hits(&Oracle::new(relief.clone()), &rays);
+    let coarse = LinearBinary::new(relief.clone(), 4, 0);
+    let own = survey(&coarse, &rays, &truths);
+    assert!(own.skipped > 0.05 && own.error_texels > 0.5, "{own:?}");
+    assert!(
+        (1.0..=4.0).contains(&own.steps_mean) && own.steps_p99 == 4,
+        "{own:?}"
+    );
+    let fine = LinearBinary::new(relief.clone(), 512, 20);
+    let fine = survey(&fine, &rays, &truths);
+    assert!(fine.skipped < 0.005 && fine.error_texels < 0.01, "{fine:?}");
+    let map = Arc::new(reference_maps::samples(&relief, MapKind::Samples));
+    let few = Manner {
+        budget: Budget::Fixed(2),
+        ..Manner::CSM_FIXED
+    };
+    let few = Cones::new(relief.clone(), map, few).unwrap();
+    let few = survey(&few, &rays, &truths);
+    assert!(few.unconverged > 0.2 && few.steps_p99 == 2, "{few:?}");
+}
+
+#[test]
+fn budgets_follow_the_view_and_the_distance() {
+    let relief = block(
+        [17, 17],
+        [false; 2],
+        [1, 1],
+        Patches::Bilinear,
+        vec![0.0; 289],
+    );
+    let map = Arc::new(ConeMap {
+        ratios: vec![0.0; 289],
+        ..reference_maps::samples(&relief, MapKind::Samples)
+    });
+    // Steps until it is spent: cones of no width let every ray go cell by cell.
+    let spent = |steps, lod, ray: &LocalRay| {
+        let manner = Manner {
+            budget: Budget::View { steps, lod },
+            ..Manner::CSM_LOOP
+        };
+        let tracer = Cones::new(relief.clone(), map.clone(), manner).unwrap();
+        let (step, _, steps) = run(&tracer, ray, END).unwrap();
+        assert_eq!(step, Step::Spent);
+        steps
+    };
+    let level = LocalRay {
+        origin: DVec3::new(0.25, 0.25, 0.25),
+        axis: DVec3::X,
+    };
+    assert_eq!(spent(8, 0.0, &level), 12);
+    let steep = LocalRay {
+        axis: DVec3::new(16.0, 0.0, 1.0),
+        ..level
+    };
+    assert_eq!(spent(8, 0.0, &steep), 10);
+    // From two and a half away, with half of the steps there.
+    let far = LocalRay {
+        origin: DVec3::new(-2.5, 0.25, 0.25),
+        ..level
+    };
+    assert_eq!(spent(8, 2.5, &far), 6);
 }

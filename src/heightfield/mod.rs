@@ -13,6 +13,7 @@ pub mod placed;
 pub mod raster;
 pub mod relief;
 pub mod shape;
+pub mod survey;
 pub mod trace;
 pub mod tracing;
 pub mod under;

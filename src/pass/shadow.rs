@@ -41,7 +41,7 @@ pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain
         }
         let t = solid.walk_hit(&walk).t;
         if t > 4.0 * grain {
-            open = open.min(solid.walk_radius(&walk) / (light.softness * t));
+            open = open.min(solid.walk_radius(&ray, &walk) / (light.softness * t));
         }
     }
     smoothstep(0.0, 1.0, open)

@@ -66,11 +66,18 @@ pub trait Solid: Sync {
     /// Where a walk stands: its hit, once it has one.
     fn walk_hit(&self, walk: &Self::Walk) -> Hit;
 
-    /// Radius of the last ball that the walk found empty, about where it stands.
-    fn walk_radius(&self, walk: &Self::Walk) -> f64;
+    /// How much room there is about where the walk stands, as penumbrae want it: the
+    /// radius of the ball that it found empty, or a guess near it.
+    fn walk_radius(&self, ray: &Beam, walk: &Self::Walk) -> f64;
 
     /// Radius of a surely empty ball about a point.
     fn clearance(&self, q: DVec3) -> f64;
+
+    /// How much room there seems to be about a point, as occlusion wants it: the clearance,
+    /// or a guess that is nearer to the truth than that and may lie beyond it.
+    fn room(&self, q: DVec3) -> f64 {
+        self.clearance(q)
+    }
 
     /// Normal and pigment of a hit.
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface;

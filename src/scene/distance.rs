@@ -344,7 +344,7 @@ impl Solid for Distance {
         }
     }
 
-    fn walk_radius(&self, walk: &Walk) -> f64 {
+    fn walk_radius(&self, _ray: &Beam, walk: &Walk) -> f64 {
         walk.radius
     }
 

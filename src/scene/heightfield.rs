@@ -25,6 +25,8 @@ use crate::wgsl;
 /// Halvings of the longest sweep, and doublings of the least ball: enough to come from
 /// a map of 8192 texels down to a quarter of one.
 const HEIGHTFIELD_HALVINGS: u32 = 15;
+/// Share of the height above the surface in a guess of the room there is.
+const HEIGHTFIELD_GUESS: f64 = 0.5;
 /// Rounds of all loops in one step: of `advance` that many sweeps, each a walk over the
 /// levels of the pyramid in up to four runs.
 const HEIGHTFIELD_ROUNDS: u32 = HEIGHTFIELD_HALVINGS * 4 * 16;
@@ -108,6 +110,21 @@ impl Heightfield {
         high.z < 0.0 || low.z > 1.0 || low.z > top()
     }
 
+    /// Height of a local position above the surface under it, in the world's length; far
+    /// from everything outside the block.
+    fn surface_gap(&self, p: DVec3) -> f64 {
+        let xy = p.truncate();
+        if xy.cmplt(DVec2::ZERO).any() || xy.cmpge(self.placed.sides).any() {
+            return self.far;
+        }
+        let cell = xy.floor();
+        let at = xy - cell;
+        let height = self
+            .relief
+            .height([cell.x as i32, cell.y as i32], at.x, at.y);
+        (p.z - height) * self.placed.depth
+    }
+
     /// What f32 may be off by in local coordinates: some roundings of numbers of the size
     /// of the eye's distance and of the block.
     fn slack(&self) -> DVec3 {
@@ -125,6 +142,7 @@ impl Twin for Heightfield {
             wgsl!(
                 "scene/heightfield.wgsl",
                 "HEIGHTFIELD_HALVINGS" = f64::from(HEIGHTFIELD_HALVINGS),
+                "HEIGHTFIELD_GUESS" = HEIGHTFIELD_GUESS,
                 "HIT_CARRIES_MARK" = 1.0
             ),
         ];
@@ -223,8 +241,9 @@ impl Solid for Heightfield {
         }
     }
 
-    fn walk_radius(&self, walk: &Trace) -> f64 {
-        self.tracer.gap(walk) * self.placed.depth
+    fn walk_radius(&self, ray: &Beam, walk: &Trace) -> f64 {
+        let t = self.tracer.hit(walk).s;
+        self.surface_gap(self.local(ray).at(t))
     }
 
     fn clearance(&self, q: DVec3) -> f64 {
@@ -242,6 +261,16 @@ impl Solid for Heightfield {
             radius *= 2.0;
         }
         free.max(0.0)
+    }
+
+    /// Proven balls are far too small over steep ground, heights above it know nothing of
+    /// what stands beside it: halfway between them is a good guess.
+    fn room(&self, q: DVec3) -> f64 {
+        let gap = self
+            .surface_gap(self.placed.position(self.eye + q))
+            .max(0.0);
+        let proven = self.clearance(q);
+        proven + HEIGHTFIELD_GUESS * (gap - proven)
     }
 
     fn surface(&self, _ray: &Beam, hit: &Hit) -> Surface {

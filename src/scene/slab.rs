@@ -246,7 +246,7 @@ impl Solid for Slab {
         walk.hit.map_or(at, |hit| Hit { t: walk.t, ..hit })
     }
 
-    fn walk_radius(&self, _walk: &Walk) -> f64 {
+    fn walk_radius(&self, _ray: &Beam, _walk: &Walk) -> f64 {
         0.0
     }
 

@@ -4,13 +4,20 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use conemarch::frame::Work;
+use conemarch::heightfield::conemap::ConeMap;
 use conemarch::heightfield::field::Field;
+use conemarch::heightfield::generate::cpu;
+use conemarch::heightfield::generate::generator::{Generator, Options};
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::relief::Relief;
-use conemarch::heightfield::trace::{LocalRay, Step, TraceHit, Tracer};
+use conemarch::heightfield::trace::max_mip::MaxMipTracer;
+use conemarch::heightfield::trace::relaxed::WalkRelaxed;
+use conemarch::heightfield::trace::walk::Walk;
+use conemarch::heightfield::trace::{AnyTracer, LocalRay, Step, TraceHit, Tracer};
 use glam::DVec3;
 
 use super::random::Random;
+use super::reference_maps;
 
 /// A relief and what to call it.
 pub struct Case {
@@ -151,6 +158,41 @@ pub fn rays(relief: &Relief, count: u64, seed: u64) -> Vec<LocalRay> {
     (0..count)
         .map(|i| ray(relief, i % KINDS, &mut random))
         .collect()
+}
+
+/// A map by a generator, with an offset for the walks.
+pub fn made(generator: Generator, relief: &Relief, offset: f64) -> Arc<ConeMap> {
+    let options = Options {
+        offset,
+        ..Options::default()
+    };
+    let (heights, patches) = (relief.heights(), relief.patches());
+    let map = cpu::generate(generator, heights, patches, &options, &mut |_| true);
+    Arc::new(map.expect("options in range"))
+}
+
+/// The exact tracers of a block, with cones of the plain makers and of the generators.
+pub fn exact(relief: &Arc<Relief>) -> Vec<(&'static str, AnyTracer)> {
+    let walk = |map| AnyTracer::Walk(Walk::new(relief.clone(), map).expect("its map"));
+    let relaxed = |map| {
+        let own = WalkRelaxed::new(relief.clone(), map);
+        AnyTracer::WalkRelaxed(own.expect("its map"))
+    };
+    let plain = reference_maps::walk(relief, 1.5);
+    let plain_relaxed = reference_maps::walk_relaxed(relief, 1.5);
+    vec![
+        ("walk", walk(Arc::new(plain))),
+        ("walk, generated", walk(made(Generator::Walk, relief, 3.0))),
+        ("walk-relaxed", relaxed(Arc::new(plain_relaxed))),
+        (
+            "walk-relaxed, generated",
+            relaxed(made(Generator::WalkRelaxed, relief, 2.0)),
+        ),
+        (
+            "max-mip",
+            AnyTracer::MaxMip(MaxMipTracer::new(relief.clone())),
+        ),
+    ]
 }
 
 /// What a ray comes to, with its hit and the steps that it took: `None` for a ray that

@@ -55,7 +55,7 @@ fn beam_errors_of<S: Solid>(solid: &S, asked: &[Numbers], told: &[Numbers]) -> B
             Step::Out => 0.0,
         };
         let hit = solid.walk_hit(&walk);
-        walks.extend([(a[1][0], hit.t), (a[1][3], solid.walk_radius(&walk))]);
+        walks.extend([(a[1][0], hit.t), (a[1][3], solid.walk_radius(&ray, &walk))]);
         ends.push((a[1][1], state));
         marks.extend([
             (a[1][2], f64::from(hit.id)),

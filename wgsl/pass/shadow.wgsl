@@ -15,7 +15,7 @@ fn shadow(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> f32 {
             return 0.0;
         }
         if walk.t > 4.0 * grain {
-            open = min(open, walk.radius / (look.softness * walk.t));
+            open = min(open, walk_radius(ray, walk) / (look.softness * walk.t));
         }
     }
     return smoothstep(0.0, 1.0, open);

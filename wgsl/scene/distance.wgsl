@@ -195,9 +195,19 @@ fn walk_hit(walk: Walk) -> Hit {
     return Hit(walk.t, 0u, vec2<f32>(0.0));
 }
 
+/// Room about where a walk stands.
+fn walk_radius(ray: Beam, walk: Walk) -> f32 {
+    return walk.radius;
+}
+
 /// Radius of a surely empty ball about a point.
 fn clearance(q: vec3<f32>) -> f32 {
     return max(0.0, field(q, 0.0).y);
+}
+
+/// Room about a point, for occlusion.
+fn room(q: vec3<f32>) -> f32 {
+    return clearance(q);
 }
 
 /// Normal by the estimate's gradient over the corners of a tetrahedron half a pixel

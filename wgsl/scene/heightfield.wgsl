@@ -23,6 +23,8 @@ struct HeightfieldUniform {
 
 /// Regions that a cone is tested over are halved at most so often.
 override HEIGHTFIELD_HALVINGS: u32;
+/// Share of the height above the surface in a guess of the room there is.
+override HEIGHTFIELD_GUESS: f32;
 override HIT_CARRIES_MARK: bool;
 
 @group(0) @binding(0) var<storage, read> heightfield_parameters: HeightfieldUniform;
@@ -30,7 +32,6 @@ var<private> heightfield: HeightfieldUniform;
 
 struct Walk {
     t: f32,
-    radius: f32,
     trace: Trace,
 }
 
@@ -103,7 +104,7 @@ fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
     let origin = heightfield.eye + to_local(ray.origin);
     let end = min(heightfield.far, t_max);
     let trace = trace_begin(origin, to_local(ray.axis), front, end);
-    return Walk(front, 0.0, trace);
+    return Walk(front, trace);
 }
 
 fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
@@ -112,12 +113,27 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     let s = trace_step(origin, to_local(ray.axis), &trace);
     (*walk).trace = trace;
     (*walk).t = trace_hit(trace).t;
-    (*walk).radius = trace_gap(trace) * heightfield.depth;
     return s;
 }
 
 fn walk_hit(walk: Walk) -> Hit {
     return trace_hit(walk.trace);
+}
+
+/// Room about where a walk stands: its height above the surface there.
+fn walk_radius(ray: Beam, walk: Walk) -> f32 {
+    return surface_gap(heightfield.eye + to_local(ray.origin + walk.t * ray.axis));
+}
+
+/// Height of a local position above the surface under it, in the world's length; far from
+/// everything outside the block.
+fn surface_gap(p: vec3<f32>) -> f32 {
+    let sides = vec2<f32>(relief.domain);
+    if any(p.xy < vec2<f32>(0.0)) || any(p.xy >= sides) {
+        return heightfield.far;
+    }
+    let cell = vec2<i32>(floor(p.xy));
+    return (p.z - relief_height(cell, p.xy - vec2<f32>(cell))) * heightfield.depth;
 }
 
 /// Radius of a surely empty ball: for boxes of doubling size about the point, what lies
@@ -138,6 +154,13 @@ fn clearance(q: vec3<f32>) -> f32 {
         radius *= 2.0;
     }
     return max(0.0, free);
+}
+
+/// Room about a point. Proven balls are far too small over steep ground, heights above it
+/// know nothing of what stands beside it: halfway between them is a good guess.
+fn room(q: vec3<f32>) -> f32 {
+    let p = heightfield.eye + to_local(q);
+    return mix(clearance(q), max(0.0, surface_gap(p)), HEIGHTFIELD_GUESS);
 }
 
 /// The world's direction of a local one of unit lengths.

@@ -110,9 +110,19 @@ fn walk_hit(walk: Walk) -> Hit {
     return Hit(walk.t, walk.face, vec2<f32>(walk.u, walk.v));
 }
 
+/// Room about where a walk stands.
+fn walk_radius(ray: Beam, walk: Walk) -> f32 {
+    return walk.radius;
+}
+
 fn clearance(q: vec3<f32>) -> f32 {
     count_evaluation();
     return max(0.0, slab_distance(q));
+}
+
+/// Room about a point, for occlusion.
+fn room(q: vec3<f32>) -> f32 {
+    return clearance(q);
 }
 
 fn surface(ray: Beam, hit: Hit) -> Surface {

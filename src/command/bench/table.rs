@@ -1,5 +1,6 @@
 //! Rows as tables that are Markdown and read well on a terminal.
 
+use super::cones::{GeneratorRow, TracerRow};
 use super::row::Row;
 use super::steps::StepsRow;
 
@@ -175,6 +176,58 @@ pub fn levels(rows: &[StepsRow]) -> String {
             row.waste_8x4,
             row.waste_8x8,
             row.gpu_ms.unwrap_or(row.wall_ms),
+        );
+    }
+    text
+}
+
+/// The cone maps of one field.
+pub fn generators(rows: &[GeneratorRow]) -> String {
+    let Some(first) = rows.first() else {
+        return String::new();
+    };
+    let [w, h] = first.size;
+    let mut text = format!("\n### Maps of {}, {w} x {h}\n\n", first.field);
+    text += "| generator      |       ms | mean ratio | of exact | wider than exact % |\n";
+    text += "|:---------------|----:|----:|----:|----:|\n";
+    for row in rows {
+        let number = |value: Option<f64>| value.map_or("n/a".into(), |v| format!("{v:.4}"));
+        let ms = match (row.ms, row.estimate_ms) {
+            (Some(ms), _) => format!("{ms:.2}"),
+            (None, Some(ms)) => format!("n/a, about {ms:.0}"),
+            (None, None) => "n/a".into(),
+        };
+        text += &format!(
+            "| {:<14} | {ms:>8} | {:>10} | {:>8} | {:>8} |\n",
+            row.generator,
+            number(row.mean_ratio),
+            number(row.of_exact),
+            number(row.wider_than_exact.map(|share| 100.0 * share)),
+        );
+    }
+    text
+}
+
+/// The tracers of one field.
+pub fn tracers(rows: &[TracerRow]) -> String {
+    let Some(first) = rows.first() else {
+        return String::new();
+    };
+    let [w, h] = first.size;
+    let mut text = format!("\n### Tracers over {}, {w} x {h}\n\n", first.field);
+    text += "| view | tracer        | map            | steps, mean | p99 | skipped % | unconverged % | error, texels |\n";
+    text += "|----:|:--------------|:---------------|----:|----:|----:|----:|----:|\n";
+    for row in rows {
+        text += &format!(
+            "| {:4} | {:<13} | {:<14} | {:7.2} | {:4} | {:7.3} | {:7.3} | {:.2e} |\n",
+            row.view_deg,
+            row.tracer,
+            row.map,
+            row.steps_mean,
+            row.steps_p99,
+            100.0 * row.skipped,
+            100.0 * row.unconverged,
+            row.error_texels,
         );
     }
     text

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::Subcommand;
 
-use super::{calibrate, error, steps};
+use super::{calibrate, cones, error, steps};
 
 /// What to measure.
 #[derive(Debug, Subcommand)]
@@ -12,6 +12,8 @@ pub enum Bench {
     Error(error::ErrorBench),
     /// Evaluations, iterations and lane waste of every pass
     Steps(steps::StepsBench),
+    /// Cone maps and tracers of heightfields: time, width, steps, what is missed
+    Cones(cones::ConesBench),
     /// Propose lipschitz, shell and fudge for a hole budget
     Calibrate(calibrate::CalibrateBench),
 }
@@ -19,11 +21,12 @@ pub enum Bench {
 /// Runs a measurement.
 ///
 /// # Errors
-/// An unknown preset, a device that fails, an unwritable file, an interrupt.
+/// An unknown preset or field, a device that fails, an unwritable file, an interrupt.
 pub fn run(bench: &Bench) -> Result<()> {
     match bench {
         Bench::Error(args) => error::run(args),
         Bench::Steps(args) => steps::run(args),
+        Bench::Cones(args) => cones::run(args),
         Bench::Calibrate(args) => calibrate::run(args),
     }
 }

@@ -4,14 +4,17 @@
 //!
 //! A step looks at one node of the pyramid. A ray that stays above the node's maximum
 //! while it is over it passes on to the next node, and to one that is twice as wide where
-//! its parent ends there too. Else it looks at the child below, or in a cell solves the
-//! patch. The pyramid has levels of any size, and each tile begins one of its own.
+//! its parent ends there too. Else it goes on to where it comes down to the maximum and looks
+//! at the child there, or in a cell solves the patch. The pyramid has levels of any size, and each tile begins one of its own.
 
 use std::sync::Arc;
 
 use super::super::relief::{Numbers, Relief};
 use super::contract::{LocalRay, Step, Trace, TraceHit, Tracer};
-use super::course::{course_begin, course_end, course_exit, course_pass, course_solve, trace_hit};
+use super::course::{
+    course_begin, course_end, course_exit, course_land, course_pass, course_solve, trace_hit,
+};
+use super::walk::WALK_TRUST;
 use crate::frame::Work;
 use crate::shader::Module;
 use crate::wgsl;
@@ -74,6 +77,14 @@ impl Tracer for MaxMipTracer {
         if trace.gap <= 0.0 {
             if level > 0 {
                 trace.level -= 1;
+                // Down to the maximum nothing can be met.
+                let over = ray.height(trace.s) - maximum;
+                if over > 0.0 && ray.axis.z < 0.0 {
+                    let next = trace.s + over / -ray.axis.z * WALK_TRUST;
+                    if next < to {
+                        course_land(relief, ray, trace, next);
+                    }
+                }
                 return Step::Moving;
             }
             if course_solve(relief, ray, trace, to) {

@@ -120,6 +120,7 @@ fn settle(relief: &Relief, ray: &LocalRay, trace: &mut Trace, bracket: [f64; 2],
         }
         course_cross(ray, trace, exit, axis);
     }
-    // Under the surface by less than a rounding.
+    // Under the surface by less than a rounding, or at the edge of a box.
+    trace.cell = course_cell(relief, ray, high);
     course_hit(relief, ray, trace, high);
 }

@@ -1,7 +1,10 @@
 // First hits by the pyramid of maxima (Tevs, Ihrke, Seidel 2008): exact, needs no cone
 // map. A step looks at one node. A ray above its maximum all the way over it passes on,
-// and to a node twice as wide where the parent ends there too; else it looks at the child
-// below, or in a cell solves the patch.
+// and to a node twice as wide where the parent ends there too; else it goes on to where it
+// comes down to the maximum and looks at the child there, or in a cell solves the patch.
+
+/// Share of a way that f32 may use: heights are rounded by about 1e-7.
+const MAX_MIP_TRUST = 1.0 - 1e-5;
 
 fn trace_begin(o: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> Trace {
     var trace = course_begin(o, d, first, to);
@@ -23,11 +26,20 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     let high = tile + min(vec2<i32>((node + 1u) << vec2<u32>(level)), relief.cells);
     let exit = course_exit(o, d, low, high);
     let to = min(exit.x, (*trace).end);
-    let lowest = min(o.z + (*trace).s * d.z, o.z + to * d.z);
-    (*trace).gap = lowest - maxima_at(level, node);
+    let z = o.z + (*trace).s * d.z;
+    let maximum = maxima_at(level, node);
+    (*trace).gap = min(z, o.z + to * d.z) - maximum;
     if (*trace).gap <= 0.0 {
         if level > 0u {
             (*trace).level = level - 1u;
+            // Down to the maximum nothing can be met.
+            let over = z - maximum;
+            if over > 0.0 && d.z < -COURSE_FLAT {
+                let next = (*trace).s + over / -d.z * MAX_MIP_TRUST;
+                if next < to {
+                    course_land(o, d, trace, next);
+                }
+            }
             return STATE_MOVING;
         }
         if course_solve(o, d, trace, to) {

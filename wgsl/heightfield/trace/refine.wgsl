@@ -87,6 +87,6 @@ fn refine_settle(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
         }
         course_cross(d, trace, exit);
     }
-    // Under the surface by less than a rounding.
-    course_hit(o, d, trace, high);
+    // Under the surface by less than a rounding, or at the edge of a box.
+    refine_mark(o, d, trace, high);
 }

@@ -1,0 +1,17 @@
+// A ray over a relief: origin and start, direction and end, and the steps that it may
+// take in; where it ended, its state and what it met out.
+
+fn answer(q: Numbers) -> Numbers {
+    relief_load();
+    var trace = trace_begin(q.a.xyz, q.b.xyz, q.a.w, q.b.w);
+    var s = STATE_MOVING;
+    for (var i = 0u; i < u32(q.c.x) && s == STATE_MOVING; i++) {
+        s = trace_step(q.a.xyz, q.b.xyz, &trace);
+    }
+    let hit = trace_hit(trace);
+    return Numbers(
+        vec4<f32>(hit.t, f32(s), f32(hit.id & 0xffffu), f32(hit.id >> 16u)),
+        vec4<f32>(hit.uv, trace_gap(trace), 0.0),
+        vec4<f32>(0.0),
+    );
+}
