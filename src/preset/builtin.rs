@@ -16,6 +16,7 @@ presets![
     "bench-inside",
     "bench-outside",
     "bench-thin",
+    "bricks",
     "mandelbox",
     "mandelbox-gate",
     "mandelbox-hall",
@@ -23,6 +24,11 @@ presets![
     "mandelbox-lattice",
     "mandelbox-shell",
     "mandelbox-vortex",
+    "spikes",
+    "stones",
+    "terrain",
+    "tiles-deep",
+    "tiles-shallow",
 ];
 
 /// The text of a built-in preset.

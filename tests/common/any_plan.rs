@@ -1,9 +1,11 @@
-//! Random plans that pass every check: any formula and slab, camera, mode and setting, in
+//! Random plans that pass every check: any formula, heightfield and slab, camera, mode and setting, in
 //! small pictures.
 
 use conemarch::formula::Shape;
 use conemarch::formula::balls::Balls;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
+use conemarch::heightfield::heights::Patches;
+use conemarch::heightfield::shape::{HeightfieldShape, Wrap};
 use conemarch::mode::{MODES, Marching};
 use conemarch::pass::look::Look;
 use conemarch::plan::{Plan, Subject};
@@ -68,7 +70,40 @@ fn subject() -> impl Strategy<Value = Subject> {
             ..SlabShape::default()
         })
     });
-    prop_oneof![6 => boxes, 1 => balls, 1 => slab]
+    prop_oneof![6 => boxes, 1 => balls, 1 => slab, 2 => heightfield()]
+}
+
+/// Small heightfields of every field, surface and exact tracer.
+fn heightfield() -> impl Strategy<Value = Subject> {
+    let field = prop::sample::select(&["fbm", "spikes", "checker", "noise"][..]);
+    let tracer = prop::sample::select(&["walk", "walk-relaxed", "max-mip"][..]);
+    let wrap = prop::sample::select(&[Wrap::None, Wrap::X, Wrap::Y, Wrap::Both][..]);
+    let numbers = (
+        1_u32..=24,
+        1_u32..=24,
+        0_u32..100,
+        size(1e-3, 1e2),
+        size(1e-3, 1e2),
+    );
+    (field, tracer, wrap, any::<bool>(), numbers, cube(180.0)).prop_map(
+        |(field, tracer, wrap, boxes, (w, h, seed, width, depth), turn)| {
+            let mut shape = HeightfieldShape {
+                width,
+                // Needles a thousand times as high as wide are no picture of anything.
+                depth: depth.clamp(0.01 * width, 2.0 * width),
+                turn,
+                ..HeightfieldShape::default()
+            };
+            shape.source.field = format!("{field}:{w}x{h},seed={seed}");
+            shape.source.wrap = wrap;
+            shape.tiles = wrap.axes().map(|wraps| if wraps { 2 } else { 1 });
+            shape.tracing.tracer = tracer;
+            if boxes {
+                shape.patches = Patches::Boxes;
+            }
+            Subject::Heightfield(shape)
+        },
+    )
 }
 
 /// An eye within, at or far from a subject of a size, looking near its middle.
@@ -143,6 +178,7 @@ fn extent(subject: &Subject) -> f64 {
             let bounds = shape.bounds();
             bounds.half.max_element().min(bounds.radius)
         }
+        Subject::Heightfield(shape) => 0.5 * shape.width,
         Subject::Slab(slab) => slab.radius,
     }
 }

@@ -1,14 +1,14 @@
-//! Every plan whose shaders can differ: presets, formulas with each key moved, the
-//! slab, all modes, and looks with and without their features.
+//! Every plan whose shaders can differ: presets, subjects with each key moved, all modes,
+//! and looks with and without their features.
 
 use std::collections::BTreeMap;
 
 use conemarch::formula::Shape;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
+use conemarch::heightfield::generate;
 use conemarch::mode::MODES;
 use conemarch::plan::{Extras, Plan, Subject};
 use conemarch::preset::{BUILTIN, builtin, read};
-use conemarch::scene::slab::SlabShape;
 use conemarch::shader::Program;
 use glam::DVec3;
 use toml::Value;
@@ -84,7 +84,13 @@ fn mandelboxes() -> Vec<Mandelbox> {
 /// Everything that can be in a picture, with its features.
 fn subjects() -> Vec<Subject> {
     let mut all: Vec<Subject> = Shape::all().into_iter().map(distance).collect();
-    all.push(Subject::Slab(SlabShape::default()));
+    all.extend(Subject::all().into_iter().skip(1));
+    for subject in &mut all {
+        // Small: what is joined does not depend on how many samples there are.
+        if let Subject::Heightfield(shape) = subject {
+            shape.source.field = "fbm:16x16".into();
+        }
+    }
     let mut moved: Vec<Subject> = all.iter().flat_map(with_each_key_moved).collect();
     let boxes = mandelboxes().into_iter();
     moved.extend(boxes.map(|m| distance(Shape::Mandelbox(m))));
@@ -142,7 +148,8 @@ pub fn programs_of(plan: &Plan) -> Vec<Program> {
     all
 }
 
-/// All different programs, each under its entry and listing.
+/// All different programs, each under its entry and listing: those of plans, and those of
+/// the generators of cone maps.
 pub fn every_program() -> BTreeMap<String, Program> {
     let mut all = BTreeMap::new();
     for plan in plans() {
@@ -150,6 +157,10 @@ pub fn every_program() -> BTreeMap<String, Program> {
             let listing = format!("{}\n{}", program.entry, program.describe());
             all.entry(listing).or_insert(program);
         }
+    }
+    for program in generate::program::every_program().expect("one sample") {
+        let listing = format!("{}\n{}", program.entry, program.describe());
+        all.entry(listing).or_insert(program);
     }
     all
 }

@@ -63,6 +63,7 @@ pub fn meet(subject: &Subject, eye: DVec3, axis: DVec3) -> f64 {
             Shape::Balls(b) => exact::balls(b.rod_radius, b.box_size, b.ball_radius),
             _ => panic!("only balls and slabs are solved here"),
         },
+        Subject::Heightfield(_) => panic!("only balls and slabs are solved here"),
     };
     exact::first_hit(&solids, eye, axis)
 }
