@@ -70,7 +70,7 @@ fn ratio_panel<'a>(file: &'a MapFile, caption: &str, which: usize, step: usize) 
             marks: [
                 "0".into(),
                 mark(high / 4.0),
-                format!("{} texels", mark(high)),
+                format!("{} texels +", mark(high)),
             ],
         }),
     }
