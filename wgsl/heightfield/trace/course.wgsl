@@ -145,10 +145,11 @@ fn course_land(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, s: f32) 
     let cell = select(min(found, was), max(found, was), d.xy > vec2<f32>(0.0));
     let enter = course_crossing(o, d, course_lines(d, cell + 1, cell));
     let flat = abs(d.xy) < vec2<f32>(COURSE_FLAT);
-    let last = select(enter, vec2<f32>(-COURSE_FAR), flat);
+    // A ray that crosses no line stays where it came in.
+    let last = select(enter, vec2<f32>((*trace).enter), flat);
     (*trace).cell = cell;
     (*trace).s = s;
-    (*trace).enter = max(last.x, last.y);
+    (*trace).enter = max(max(last.x, last.y), (*trace).enter);
 }
 
 /// Moves to where the ray leaves a rectangle of cells, by one of two lines. Of lines that are
