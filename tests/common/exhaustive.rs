@@ -142,7 +142,9 @@ fn between(step: [i64; 2]) -> f64 {
 /// The walk's cones.
 pub fn walk(heights: &Heights, patches: Patches, offset: f64) -> Vec<f64> {
     let grid = Grid::cells(heights, patches);
-    grid.least(1, WIDEST, |step, _, rise| Some((between(step) + offset) / rise))
+    grid.least(1, WIDEST, |step, _, rise| {
+        Some((between(step) + offset) / rise)
+    })
 }
 
 /// The walk's cones, limited by cells out of which a ray can come.

@@ -79,7 +79,12 @@ pub fn any_heights() -> impl Strategy<Value = Heights> {
 }
 
 /// A map from the CPU.
-pub fn make(generator: Generator, heights: &Heights, patches: Patches, options: &Options) -> ConeMap {
+pub fn make(
+    generator: Generator,
+    heights: &Heights,
+    patches: Patches,
+    options: &Options,
+) -> ConeMap {
     let map = cpu::generate(generator, heights, patches, options, &mut |_| true);
     map.unwrap_or_else(|e| panic!("{e}"))
 }

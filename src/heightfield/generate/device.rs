@@ -10,6 +10,7 @@
 //! place. How it is cut never changes a map.
 
 use std::rc::Rc;
+use std::time::Instant;
 
 use bytemuck::{Pod, bytes_of};
 use rayon::prelude::*;
@@ -58,6 +59,11 @@ pub struct Maker<'a> {
     device: &'a Device,
     /// How work is cut.
     pub cutting: Cutting,
+    /// Places of the last map that were settled on the CPU.
+    pub settled: usize,
+    /// Milliseconds that the dispatches of the last map took, each with the reading of
+    /// what it found.
+    pub device_ms: f64,
     kernels: Vec<(Program, Rc<Kernel>)>,
 }
 
@@ -70,6 +76,8 @@ impl<'a> Maker<'a> {
         Self {
             device,
             cutting: Cutting::default(),
+            settled: 0,
+            device_ms: 0.0,
             kernels: Vec::new(),
         }
     }
@@ -181,6 +189,7 @@ impl<'a> Maker<'a> {
         watch: Watch<'_>,
     ) -> Result<ConeMap, GenerateError> {
         let prepared = Prepared::new(generator, heights, patches, options)?;
+        (self.settled, self.device_ms) = (0, 0.0);
         let kernel = self.kernel(&program(&prepared))?;
         let size = prepared.size;
         let layout = Tiles::new(size);
@@ -218,7 +227,7 @@ impl<'a> Maker<'a> {
 
     /// Searches from all places of some rows.
     fn band(
-        &self,
+        &mut self,
         band: &Band<'_>,
         first: u32,
         rows: u32,
@@ -234,7 +243,9 @@ impl<'a> Maker<'a> {
             let mut told = band.told(first, rows, mip, aim);
             told.rounds = self.cutting.rounds.max(1);
             told.keeps = u32::from(turn > 0 && !apart);
+            let start = Instant::now();
             let read = self.until_done(band, mip, told, watch)?;
+            self.device_ms += start.elapsed().as_secs_f64() * 1e3;
             if apart || turn + 1 == aims.len().max(1) {
                 found.push(read);
             }
@@ -245,6 +256,8 @@ impl<'a> Maker<'a> {
             settled(prepared, start + i, &all)
         };
         let channels = found.len();
+        let open = |i: &usize| unsettled(prepared, found.iter().map(|f| &f[*i]));
+        self.settled += (0..found[0].len()).filter(open).count();
         let all: Vec<[f64; 4]> = (0..found[0].len()).into_par_iter().map(settle).collect();
         for four in &all {
             ratios.extend_from_slice(&four[..channels]);
@@ -398,12 +411,17 @@ impl Band<'_> {
     }
 }
 
+/// Whether f32 leaves open what bounds the cones of a place.
+fn unsettled<'a>(prepared: &Prepared<'_>, mut found: impl Iterator<Item = &'a Search>) -> bool {
+    // The note of a search along rays is something else.
+    prepared.generator != Generator::RelaxedSearch && found.any(|s| s.note != 0)
+}
+
 /// The ratios of a place in f64, from what the device has found for each channel.
 fn settled(prepared: &Prepared<'_>, index: usize, found: &[Search; 4]) -> [f64; 4] {
     let height = f64::from(prepared.values[index]);
     let cost = prepared.cost();
-    let searched = prepared.generator == Generator::RelaxedSearch;
-    if !searched && found.iter().any(|s| s.note != 0) {
+    if unsettled(prepared, found.iter()) {
         return prepared.find(index).ratios;
     }
     found.map(|s| {

@@ -1,0 +1,190 @@
+//! Measures the generators of cone maps: `cargo run --release --example generators`.
+//!
+//! Prints, as tables, how many nodes a place takes by field and size, how long each
+//! generator takes on the CPU and on the device that `auto` chooses, and how the maps
+//! compare with the exact one. `generators nodes`, `generators device 1024` and
+//! `generators quality` print one of them. A generator that is not done within a minute
+//! is given as an estimate, with a tilde.
+
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use conemarch::gpu::device::{Adapters, Choice, Device};
+use conemarch::heightfield::conemap::ConeMap;
+use conemarch::heightfield::field::Field;
+use conemarch::heightfield::generate::cpu;
+use conemarch::heightfield::generate::device::Maker;
+use conemarch::heightfield::generate::generator::{GenerateError, Generator, Options};
+use conemarch::heightfield::heights::{Heights, Patches};
+
+/// Rough terrain.
+const POWER: f64 = 2.6;
+/// Longest that a generator may take, in seconds.
+const PATIENCE: f64 = 60.0;
+
+fn main() -> Result<()> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    match args[..] {
+        [] => {
+            nodes()?;
+            quality()?;
+            device(1024)
+        }
+        ["nodes"] => nodes(),
+        ["quality"] => quality(),
+        ["device", size] => device(size.parse().context("a size")?),
+        _ => anyhow::bail!("usage: generators [nodes | quality | device SIZE]"),
+    }
+}
+
+fn field(field: Field, size: u32) -> Result<Heights> {
+    let size = [size, size];
+    let data = field.heights(size, 7, POWER);
+    Ok(Heights::new(size, [false, false], data)?)
+}
+
+/// Nodes per place, mean and worst, of the searches.
+fn nodes() -> Result<()> {
+    let searches = [
+        Generator::Exact,
+        Generator::RelaxedExact,
+        Generator::Walk,
+        Generator::WalkRelaxed,
+    ];
+    for generator in searches {
+        println!(
+            "\nNodes per place of `{}`, mean (worst)\n",
+            generator.name()
+        );
+        println!("| field | 64 | 128 | 256 | 512 |\n|---|---:|---:|---:|---:|");
+        for f in Field::ALL {
+            let mut row = format!("| {} |", f.name());
+            for size in [64, 128, 256, 512] {
+                let heights = field(f, size)?;
+                let (patches, options) = (Patches::default(), Options::default());
+                let made =
+                    cpu::generate_counted(generator, &heights, patches, &options, &mut |_| true);
+                let (map, work) = made?;
+                let mean = work.nodes as f64 / map.ratios.len() as f64;
+                row += &format!(" {mean:.1} ({}) |", work.most);
+            }
+            println!("{row}");
+        }
+    }
+    Ok(())
+}
+
+/// Mean ratios of the maps over that of the exact one, and the share of places that are
+/// wider than it.
+fn quality() -> Result<()> {
+    println!("\nMean ratio over that of `exact` (share of wider places), 128 x 128\n");
+    let others = [
+        Generator::Naive,
+        Generator::Improved,
+        Generator::Center,
+        Generator::RelaxedExact,
+        Generator::RelaxedSearch,
+    ];
+    let names: Vec<&str> = others.iter().map(|g| g.name()).collect();
+    println!(
+        "| field | {} |\n|---|{}",
+        names.join(" | "),
+        "---:|".repeat(5)
+    );
+    for f in Field::ALL {
+        let heights = field(f, 128)?;
+        let options = Options {
+            search_steps: 64,
+            ..Options::default()
+        };
+        let make = |g| cpu::generate(g, &heights, Patches::default(), &options, &mut |_| true);
+        let exact: ConeMap = make(Generator::Exact)?;
+        let mut row = format!("| {} |", f.name());
+        for generator in others {
+            let map = make(generator)?;
+            let pairs = map.ratios.iter().zip(&exact.ratios);
+            let wider = pairs.filter(|(r, e)| **r > **e * (1.0 + 1e-6)).count();
+            let share = 100.0 * wider as f64 / exact.ratios.len() as f64;
+            row += &format!(" {:.3} ({share:.2} %) |", map.mean() / exact.mean());
+        }
+        println!("{row}");
+    }
+    Ok(())
+}
+
+/// Times of one map of `fbm`, whole and of the dispatches alone, warm.
+fn device(size: u32) -> Result<()> {
+    let adapters = Adapters::find();
+    let found = adapters.choose(&Choice::Auto)?;
+    let (adapter, _) = found.context("there is no adapter")?;
+    let device = Device::open(adapter)?;
+    let mut maker = Maker::new(&device);
+    let heights = field(Field::Fbm, size)?;
+    println!(
+        "\n`fbm` {size} x {size} on {}, milliseconds\n",
+        device.info.name
+    );
+    println!("| generator | device, all | dispatches | settled on the CPU | CPU in f64 |");
+    println!("|---|---:|---:|---:|---:|");
+    let start = Instant::now();
+    maker.max_mip(heights.size(), heights.data())?;
+    let there = ms(start);
+    let start = Instant::now();
+    let here = conemarch::heightfield::maxmip::MaxMip::new(heights.size(), heights.data().to_vec());
+    println!("| max-mip | {there:.0} | | | {:.0} |", ms(start));
+    drop(here);
+    for generator in Generator::ALL {
+        let options = Options::default();
+        // The first run compiles; an estimate needs no second.
+        let mut row = format!("| {} |", generator.name());
+        let mut best = [f64::INFINITY; 2];
+        let mut estimate = false;
+        for _ in 0..3 {
+            let start = Instant::now();
+            let part = watched(start, |watch| {
+                maker.generate(generator, &heights, Patches::default(), &options, watch)
+            })?;
+            estimate = part < 1.0;
+            let now = [ms(start) / part, maker.device_ms / part];
+            best = [best[0].min(now[0]), best[1].min(now[1])];
+            if estimate || ms(start) > 10e3 {
+                break;
+            }
+        }
+        let tilde = if estimate { "~" } else { "" };
+        let settled = 100.0 * maker.settled as f64 / f64::from(size * size);
+        row += &format!(
+            " {tilde}{:.0} | {tilde}{:.0} | {settled:.3} % |",
+            best[0], best[1]
+        );
+        let start = Instant::now();
+        let part = watched(start, |watch| {
+            cpu::generate(generator, &heights, Patches::default(), &options, watch)
+        })?;
+        let tilde = if part < 1.0 { "~" } else { "" };
+        println!("{row} {tilde}{:.0} |", ms(start) / part);
+    }
+    Ok(())
+}
+
+fn ms(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+/// The share of a map that was made before the patience ended.
+fn watched(
+    start: Instant,
+    make: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<ConeMap, GenerateError>,
+) -> Result<f64> {
+    let mut share = 0.0;
+    let made = make(&mut |done| {
+        share = done;
+        ms(start) < 1e3 * PATIENCE
+    });
+    match made {
+        Ok(_) => Ok(1.0),
+        Err(GenerateError::Cancelled) => Ok(share),
+        Err(e) => Err(e.into()),
+    }
+}
