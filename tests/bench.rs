@@ -265,6 +265,94 @@ fn calibration_proposes_a_preset_that_keeps_its_budget() {
 }
 
 #[test]
+fn cones_are_measured_map_by_map_and_view_by_view() {
+    let folder = Folder::new();
+    let args = [
+        "bench", "cones", "checker", "noise", "--size", "24x16", "--json", "a.json", "--csv",
+        "a.csv",
+    ];
+    let (table, _) = bench(&folder, &args);
+    for word in [
+        "### Maps of checker, 24 x 16",
+        "### Tracers over noise, 24 x 16",
+    ] {
+        assert!(table.contains(word), "`{word}` not in {table}");
+    }
+    let all = rows(&folder, "a.json");
+    let (maps, traces): (Vec<_>, Vec<_>) = all.iter().partition(|r| !r["generator"].is_null());
+    assert_eq!((maps.len(), traces.len()), (2 * 11, 2 * 3 * 16));
+    let wanted = [
+        "field",
+        "size",
+        "generator",
+        "device",
+        "ms",
+        "mean_ratio",
+        "of_exact",
+        "wider_than_exact",
+        "estimate_ms",
+    ];
+    assert_eq!(names(maps[0]), wanted);
+    let wanted = [
+        "field",
+        "size",
+        "view_deg",
+        "tracer",
+        "map",
+        "steps_mean",
+        "steps_p99",
+        "skipped",
+        "unconverged",
+        "error_texels",
+    ];
+    assert_eq!(names(traces[0]), wanted);
+    for row in maps {
+        assert!(row["ms"].as_f64().unwrap() > 0.0);
+        // Branch and bound is brute force; the quick maps are narrower, and never wider.
+        match row["generator"].as_str().unwrap() {
+            "brute" | "exact" => {
+                assert_eq!(
+                    (&row["of_exact"], &row["wider_than_exact"]),
+                    (&1.0.into(), &0.0.into())
+                );
+            }
+            "naive" | "improved" => {
+                assert!(row["of_exact"].as_f64().unwrap() <= 1.0);
+                assert_eq!(row["wider_than_exact"], 0.0);
+            }
+            "max-mip" => assert!(row["mean_ratio"].is_null()),
+            _ => {}
+        }
+    }
+    let exact = ["walk", "walk-relaxed", "max-mip"];
+    let mut missed = 0.0;
+    for row in traces {
+        let skipped = row["skipped"].as_f64().unwrap();
+        if exact.contains(&row["tracer"].as_str().unwrap()) {
+            assert_eq!((skipped, &row["unconverged"]), (0.0, &0.0.into()), "{row}");
+        }
+        missed += skipped;
+    }
+    assert!(missed > 0.0);
+    let csv = String::from_utf8(folder.bytes("a.csv")).unwrap();
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(lines.len(), 1 + all.len());
+    assert!(lines[0].starts_with("field,size,generator") && lines[0].ends_with("error_texels"));
+    let commas = |line: &str| line.matches(',').count();
+    assert!(lines.iter().all(|l| commas(l) == commas(lines[0])), "{csv}");
+    for (more, words) in [
+        (&["fbn"][..], &["fbn", "fbm, ridges"][..]),
+        (&["fbm", "--size", "9999x9"], &["9999"]),
+    ] {
+        let args: Vec<&str> = ["bench", "cones"]
+            .into_iter()
+            .chain(more.to_vec())
+            .collect();
+        folder.fails(&args, 2, words);
+    }
+}
+
+#[test]
 fn bad_input_is_one_sentence() {
     let folder = Folder::new();
     let cases: &[(&str, &[&str], i32, &[&str])] = &[

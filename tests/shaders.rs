@@ -14,10 +14,21 @@ mod common {
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use common::plans::{distance, every_program, preset, programs_of};
 use conemarch::formula::Shape;
 use conemarch::formula::mandelbox::Mandelbox;
+use conemarch::heightfield::conemap::{ConeMap, MapKind};
+use conemarch::heightfield::generate::program as generate;
+use conemarch::heightfield::heights::{Heights, Patches};
+use conemarch::heightfield::relief::Relief;
+use conemarch::heightfield::trace::cones::{Cones, Manner};
+use conemarch::heightfield::trace::linear::LinearBinary;
+use conemarch::heightfield::trace::max_mip::MaxMipTracer;
+use conemarch::heightfield::trace::relaxed::WalkRelaxed;
+use conemarch::heightfield::trace::walk::Walk;
+use conemarch::heightfield::trace::{AnyTracer, Tracer};
 use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::shader::{Module, Program, ShaderError};
 use glam::DVec3;
@@ -181,6 +192,42 @@ fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
+/// Files of heightfields: those that make cone maps, and those of every tracer.
+fn heightfield_paths() -> BTreeSet<&'static str> {
+    let mut all = BTreeSet::new();
+    for program in generate::every_program().unwrap() {
+        all.extend(paths(&program));
+    }
+    let heights = Heights::new([2, 2], [false; 2], vec![0.5; 4]).unwrap();
+    let relief = Arc::new(Relief::new(heights, Patches::Bilinear, [1, 1]).unwrap());
+    let map = |kind, size: [u32; 2]| {
+        let cones = if kind == MapKind::Quad { 4 } else { 1 };
+        Arc::new(ConeMap {
+            kind,
+            size,
+            wrap: [false; 2],
+            offset: 1.0,
+            ratios: vec![1.0; (size[0] * size[1] * cones) as usize],
+        })
+    };
+    let walk = Walk::new(relief.clone(), map(MapKind::Walk, [1, 1])).unwrap();
+    let relaxed = WalkRelaxed::new(relief.clone(), map(MapKind::WalkRelaxed, [1, 1])).unwrap();
+    let mut tracers = vec![
+        AnyTracer::Walk(walk),
+        AnyTracer::WalkRelaxed(relaxed),
+        AnyTracer::MaxMip(MaxMipTracer::new(relief.clone())),
+        AnyTracer::LinearBinary(LinearBinary::new(relief.clone(), 1, 1)),
+    ];
+    for manner in Manner::ALL {
+        let cones = Cones::new(relief.clone(), map(manner.kinds()[0], [2, 2]), manner);
+        tracers.push(AnyTracer::Cones(cones.unwrap()));
+    }
+    for tracer in tracers {
+        all.extend(tracer.modules().iter().map(|m| m.path));
+    }
+    all
+}
+
 #[test]
 fn every_file_of_shaders_is_joined_by_some_program() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -192,6 +239,7 @@ fn every_file_of_shaders_is_joined_by_some_program() {
         joined.extend(paths(program));
         joined.extend(paths(&program.in_f64()));
     }
+    joined.extend(heightfield_paths());
     for file in &found {
         let path = file.strip_prefix(root).unwrap().to_str().unwrap();
         let path = path.replace('\\', "/");

@@ -7,21 +7,21 @@ const PATCH_NONE = 1e30;
 /// A divisor below this share of what it divides would leave the range of f32.
 const PATCH_SLIGHT = 1e-29;
 
-/// The smallest s in first..to at which the ray is on the patch or under it. `p` is (u, v, z)
+/// The smallest s in front..to at which the ray is on the patch or under it. `p` is (u, v, z)
 /// at s = 0, `d` its change per unit of s.
-fn patch_hit(corners: vec4<f32>, p: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> f32 {
+fn patch_hit(corners: vec4<f32>, p: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> f32 {
     let b = corners.y - corners.x;
     let c = corners.z - corners.x;
     let e = (corners.w - corners.z) - b;
-    // Above the patch by q0 + q1 s + q2 s^2, about s = first.
-    let q = p + first * d;
+    // Above the patch by q0 + q1 s + q2 s^2, about s = front.
+    let q = p + front * d;
     let q0 = q.z - (corners.x + b * q.x + c * q.y + e * q.x * q.y);
     if q0 <= 0.0 {
-        return first;
+        return front;
     }
     let q1 = d.z - (b * d.x + c * d.y + e * (q.x * d.y + q.y * d.x));
     let q2 = -e * d.x * d.y;
-    let length = to - first;
+    let length = to - front;
     let disc = q1 * q1 - 4.0 * q0 * q2;
     var s = PATCH_NONE;
     if disc >= 0.0 {
@@ -36,7 +36,7 @@ fn patch_hit(corners: vec4<f32>, p: vec3<f32>, d: vec3<f32>, first: f32, to: f32
         }
     }
     if s <= length {
-        return first + s;
+        return front + s;
     }
     return select(PATCH_NONE, to, q0 + length * (q1 + length * q2) <= 0.0);
 }

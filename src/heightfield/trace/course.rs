@@ -139,7 +139,8 @@ pub fn course_cross(ray: &LocalRay, trace: &mut Trace, s: f64, axis: usize) {
 /// Moves to an s beyond the cell's exit, over cells that are not looked at.
 pub fn course_land(relief: &Relief, ray: &LocalRay, trace: &mut Trace, s: f64) {
     let found = course_cell(relief, ray, s);
-    let mut enter = -FAR;
+    // A ray that crosses no line stays where it came in.
+    let mut enter = trace.enter;
     for (axis, place) in found.into_iter().enumerate() {
         // Never back: rounding may not undo a crossing.
         let forward = ray.axis[axis] > 0.0;

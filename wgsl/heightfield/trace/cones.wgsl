@@ -72,8 +72,8 @@ fn cones_budget(d: vec3<f32>, s: f32) -> u32 {
     return u32(max(ceil(f32(relief.steps) * (0.5 + length(flat) / whole) / far), 1.0));
 }
 
-fn trace_begin(o: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> Trace {
-    var trace = course_begin(o, d, first, to);
+fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
+    var trace = course_begin(o, d, front, to);
     trace.left = cones_budget(d, trace.s);
     return trace;
 }

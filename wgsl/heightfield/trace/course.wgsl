@@ -62,17 +62,17 @@ fn course_within(o: vec3<f32>, d: vec3<f32>) -> array<vec3<f32>, 2> {
 
 /// Starts a ray: the part of it inside the block, its first cell, and the hit where it
 /// comes in through the solid.
-fn course_begin(o: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> Trace {
+fn course_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     let inside = course_within(o, d);
     let near = inside[0];
     let far = inside[1];
     let face = max(near.x, max(near.y, near.z));
-    let start = max(first, face);
+    let start = max(front, face);
     let side = min(min(far.x, far.y), to);
     var trace = Trace(start, min(side, far.z), start, COURSE_FAR, vec2<i32>(0), 0u, 0u,
         0u, STATE_MOVING, 0u, 0.0, 0.0, 0u);
     if !(start <= trace.end && trace.end < COURSE_FAR) {
-        trace.s = first;
+        trace.s = front;
         trace.state = STATE_SKY;
         return trace;
     }
@@ -83,7 +83,7 @@ fn course_begin(o: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> Trace {
     let z = o.z + start * d.z;
     // The face that it comes in by is the last that it passes. A start on it counts as
     // outside: a caller's bounds may lie there.
-    if first > face + COURSE_ON_FACE * abs(face) {
+    if front > face + COURSE_ON_FACE * abs(face) {
         return trace;
     }
     let under = z <= relief_height(trace.cell, at);
@@ -119,9 +119,9 @@ fn course_cell(o: vec3<f32>, d: vec3<f32>, s: f32) -> vec2<i32> {
     let enter = course_crossing(o, d, course_lines(d, i + 1, i));
     let leave = course_crossing(o, d, course_lines(d, i, i + 1));
     let flat = abs(d.xy) < vec2<f32>(COURSE_FLAT);
-    let at = vec2<f32>(s);
-    let on = select(vec2<i32>(0), step, at >= leave) - select(vec2<i32>(0), step, at < enter);
-    return clamp(i + select(on, vec2<i32>(0), flat), vec2<i32>(0), last);
+    let past = select(vec2<i32>(0), step, vec2<f32>(s) >= leave);
+    let before = select(vec2<i32>(0), step, vec2<f32>(s) < enter);
+    return clamp(i + select(past - before, vec2<i32>(0), flat), vec2<i32>(0), last);
 }
 
 /// Where the ray leaves the rectangle of cells low..high: s, and 0 or 1 for the axis.
@@ -146,10 +146,11 @@ fn course_land(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, s: f32) 
     let cell = select(min(found, was), max(found, was), d.xy > vec2<f32>(0.0));
     let enter = course_crossing(o, d, course_lines(d, cell + 1, cell));
     let flat = abs(d.xy) < vec2<f32>(COURSE_FLAT);
-    let last = select(enter, vec2<f32>(-COURSE_FAR), flat);
+    // A ray that crosses no line stays where it came in.
+    let last = select(enter, vec2<f32>((*trace).enter), flat);
     (*trace).cell = cell;
     (*trace).s = s;
-    (*trace).enter = max(last.x, last.y);
+    (*trace).enter = max(max(last.x, last.y), (*trace).enter);
 }
 
 /// Moves to where the ray leaves a rectangle of cells, by one of two lines. Of lines that are

@@ -1,8 +1,8 @@
 // Relief mapping: so many equal steps over the part of the ray inside the block, then
 // halvings (Policarpo, Oliveira, Comba 2005). What is thinner than a step is missed.
 
-fn trace_begin(o: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> Trace {
-    var trace = course_begin(o, d, first, to);
+fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
+    var trace = course_begin(o, d, front, to);
     trace.left = relief.steps;
     return trace;
 }

@@ -6,8 +6,8 @@
 /// Share of a way that f32 may use: heights are rounded by about 1e-7.
 const MAX_MIP_TRUST = 1.0 - 1e-5;
 
-fn trace_begin(o: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> Trace {
-    var trace = course_begin(o, d, first, to);
+fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
+    var trace = course_begin(o, d, front, to);
     trace.level = relief.levels - 1u;
     return trace;
 }

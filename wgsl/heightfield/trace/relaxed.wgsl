@@ -3,8 +3,8 @@
 // down or level crosses the surface once at most, and the height at its end says whether it
 // did. A rising ray goes cell by cell until it is above everything.
 
-fn trace_begin(o: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> Trace {
-    return course_begin(o, d, first, to);
+fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
+    return course_begin(o, d, front, to);
 }
 
 /// How far the ray may go on from over a cell.

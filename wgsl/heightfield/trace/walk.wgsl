@@ -3,8 +3,8 @@
 // fall per texel, before any higher cell can reach it; at least to the cell's exit. The
 // patch of the cell is solved where the ray comes down to A in it.
 
-fn trace_begin(o: vec3<f32>, d: vec3<f32>, first: f32, to: f32) -> Trace {
-    return course_begin(o, d, first, to);
+fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
+    return course_begin(o, d, front, to);
 }
 
 fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
