@@ -114,7 +114,6 @@ fn measure(
         name,
         found: HashMap::new(),
     };
-    let view = plan.view();
     let fitting: Vec<(&Setting, Plan)> = settings
         .iter()
         .filter_map(|s| Some((s, s.apply(plan)?)))
@@ -129,7 +128,7 @@ fn measure(
         };
         let frame = executor.render(plan, extras, watch)?;
         let mut row = blank(name, plan, setting, &frame, truth, executor);
-        row.fill(&compare(&frame, &truth.frame, &view));
+        row.fill(&compare(&frame, &truth.frame, plan));
         row.flip = look_apart(&truth.frame, &frame, plan);
         rows.push(row);
     }
