@@ -50,12 +50,21 @@ impl Subject {
                 keys.push(Key::new(
                     "iterations",
                     AutoCount(iterations, 1, MOST_ITERATIONS),
-                    "iteration limit; auto follows the finest footprint",
+                    "iteration limit; auto follows the finest footprint, up to 1000",
                 ));
                 keys
             }
             Self::Slab(shape) => shape.keys(),
         }
+    }
+
+    /// Every subject with its defaults: each formula, and each other kind of scene.
+    pub fn all() -> Vec<Self> {
+        let formulas = Shape::all().into_iter().map(|shape| Self::Distance {
+            shape,
+            iterations: None,
+        });
+        formulas.chain([Self::Slab(SlabShape::default())]).collect()
     }
 
     /// `kind`, and `formula` where there is one.
@@ -207,8 +216,9 @@ impl Plan {
         levels.chain([Pass::Trace, Pass::Color]).collect()
     }
 
-    /// What would be run, without a GPU: passes, programs, modules and constants.
-    pub fn explain(&self) -> String {
+    /// What would be run for a frame with extras, without a GPU: passes, programs, modules
+    /// and constants.
+    pub fn explain(&self, extras: Extras) -> String {
         let scene = self.scene();
         let mut text = String::new();
         let [w, h] = self.size;
@@ -216,7 +226,8 @@ impl Plan {
         let _ = writeln!(text, "{}", scene.twin().describe());
         let mut programs: Vec<Program> = Vec::new();
         text.push_str("passes\n");
-        for pass in self.passes() {
+        let left_out = |pass: &Pass| extras.depth_only && *pass == Pass::Color;
+        for pass in self.passes().into_iter().filter(|p| !left_out(p)) {
             let (cells, limit) = match pass {
                 Pass::March(level) => (level.cells(self.size), level.steps.to_string()),
                 Pass::Trace => (self.size, self.march.ray_steps().to_string()),
@@ -228,7 +239,7 @@ impl Plan {
                 "  {name:<12} {:>6} x {:<6} steps {limit}",
                 cells[0], cells[1]
             );
-            let program = self.program(&scene, pass, Extras::default());
+            let program = self.program(&scene, pass, extras);
             if !programs.contains(&program) {
                 programs.push(program);
             }

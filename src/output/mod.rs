@@ -2,12 +2,14 @@
 
 mod error;
 mod exr;
+mod folder;
 mod layer;
 mod place;
 mod png;
 
 pub use error::OutputError;
 pub use exr::write_exr;
+pub use folder::Folder;
 pub use layer::{Layer, Shades};
 pub use place::{Place, clear, commit};
 pub use png::{BitDepth, write_png};

@@ -3,6 +3,14 @@
 use super::row::Row;
 use super::steps::StepsRow;
 
+/// Said above times of a device that does not tell its own.
+const UNTIMED: &str = "The device has no timestamps: times are wall time.\n\n";
+
+/// A line of warning where there is one.
+pub fn precision(warning: Option<&str>) -> String {
+    warning.map_or(String::new(), |w| format!("Precision: {w}.\n\n"))
+}
+
 /// The rows of one preset, compared with the first.
 pub fn preset(rows: &[Row]) -> String {
     let Some(first) = rows.first() else {
@@ -10,10 +18,11 @@ pub fn preset(rows: &[Row]) -> String {
     };
     let [w, h] = first.size;
     let mut text = format!("\n### {}, {w} x {h}\n\n", first.preset);
-    if let Some(warning) = &first.precision {
-        text += &format!("Precision: {warning}.\n\n");
+    text += &precision(first.precision.as_deref());
+    if rows.iter().all(|r| r.gpu_ms.is_none()) {
+        text += UNTIMED;
     }
-    text += "| setting                              | evaluations per pixel | fewer |      ms | faster | behind % | holes % | behind 8 % | p99 footprints | unconverged % |   FLIP | start violations, coarse to fine |\n";
+    text += "| setting                              | evaluations per pixel | fewer | wall ms | faster | behind % | holes % | behind 8 % | p99 footprints | unconverged % |   FLIP | start violations, coarse to fine |\n";
     text += "|:-------------------------------------|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|:----|\n";
     for row in rows {
         let starts: Vec<String> = row.start_violations.iter().map(u64::to_string).collect();
@@ -165,7 +174,16 @@ pub fn levels(rows: &[StepsRow]) -> String {
     };
     let [w, h] = first.size;
     let mut text = format!("\n### {}, {}, {w} x {h}\n\n", first.preset, first.mode);
-    text += "| pass       |   cells | evaluations | iterations | p50 | p90 | p99 |  max |  sky % | unconverged % | waste 8 x 4 | waste 8 x 8 |      ms |\n";
+    text += &precision(first.precision.as_deref());
+    // One clock for the whole column.
+    let timed = rows.iter().all(|r| r.gpu_ms.is_some());
+    if !timed {
+        text += UNTIMED;
+    }
+    let clock = if timed { " gpu ms" } else { "wall ms" };
+    text += &format!(
+        "| pass       |   cells | evaluations | iterations | p50 | p90 | p99 |  max |  sky % | unconverged % | waste 8 x 4 | waste 8 x 8 | {clock} |\n"
+    );
     text +=
         "|:-----------|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|\n";
     for row in rows {
@@ -183,7 +201,7 @@ pub fn levels(rows: &[StepsRow]) -> String {
             100.0 * row.unconverged,
             row.waste_8x4,
             row.waste_8x8,
-            row.gpu_ms.unwrap_or(row.wall_ms),
+            row.gpu_ms.filter(|_| timed).unwrap_or(row.wall_ms),
         );
     }
     text
@@ -215,5 +233,49 @@ mod tests {
         assert!(!listed(row("safe", r#""shell":0.1"#, 90.0, 0.011, 0.0)));
         assert!(!listed(row("safe", r#""steps":16"#, 90.0, 0.001, 0.01)));
         assert!(!listed(row("safe", r#""detail":2.0"#, 90.0, 0.001, 0.0)));
+    }
+
+    #[test]
+    fn a_column_of_times_has_one_clock_and_says_which() {
+        let step = |gpu_ms: Option<f64>, precision: Option<String>| StepsRow {
+            preset: "p".into(),
+            mode: "safe".into(),
+            pass: "trace".into(),
+            size: [9, 9],
+            device: "d".into(),
+            cells: 81,
+            visited: 81,
+            evaluations: 81,
+            iterations: 81,
+            p50: 1,
+            p90: 1,
+            p99: 1,
+            max: 1,
+            sky: 0.0,
+            unconverged: 0.0,
+            waste_8x4: 1.0,
+            waste_8x8: 1.0,
+            histogram: Vec::new(),
+            gpu_ms,
+            wall_ms: 77.0,
+            precision,
+        };
+        let timed = levels(&[step(Some(5.0), None), step(Some(6.0), None)]);
+        assert!(timed.contains("|  gpu ms |") && timed.contains("|    5.00 |"));
+        assert!(!timed.contains("wall") && !timed.contains("Precision"));
+        let partly = levels(&[step(Some(5.0), None), step(None, None)]);
+        assert!(partly.contains("| wall ms |") && partly.contains(UNTIMED));
+        assert_eq!(partly.matches("|   77.00 |").count(), 2);
+        let marked = levels(&[step(None, Some("too near".into()))]);
+        assert!(marked.contains("Precision: too near.\n"));
+        // Errors are measured beside wall time on every device.
+        let mut error = row("safe", "", 77.0, 0.0, 0.0);
+        let untimed = preset(std::slice::from_ref(&error));
+        assert!(untimed.contains("| wall ms |") && untimed.contains(UNTIMED));
+        error.gpu_ms = Some(5.0);
+        error.precision = Some("too near".into());
+        let timed = preset(&[error]);
+        assert!(timed.contains("| wall ms |") && !timed.contains(UNTIMED));
+        assert!(timed.contains("Precision: too near.\n"));
     }
 }
