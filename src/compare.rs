@@ -6,9 +6,10 @@
 //! Fronts of cones are allowed to lie beyond the reference's hit by the hit threshold of
 //! the pixel, `detail` footprints, and by no more. A hit is where the estimate falls under
 //! that threshold, so the reference stops in a skin up to so thick before the surface;
-//! what is proven free may reach into that skin (docs/method.md, 2), and only beyond it has
-//! a proof passed what the pixel should show. Roundings are far smaller than the threshold
-//! and get no allowance of their own.
+//! what is proven free may reach into that skin (docs/method.md, 2). A ray that grazes the
+//! surface crosses the skin aslant, over more than its thickness: it gets no more allowance,
+//! so that a few such pixels may count whose proof is right. Roundings are far smaller than
+//! the threshold and get none of their own.
 
 use crate::frame::{Frame, State};
 use crate::plan::Plan;

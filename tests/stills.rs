@@ -153,7 +153,8 @@ fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
         let (slides, slides_starts) = wrong(Mode::SlidesDeep);
         assert!(safe <= ray + allowed, "{name}: safe {safe}, ray {ray}");
         assert!(slides > ray + 0.01, "{name}: slides {slides}, ray {ray}");
-        // No cell starts behind the truth; with the slides' rule hundreds of pixels do.
+        // No cell starts behind the skin of the truth; with the slides' rule, hundreds of
+        // pixels do.
         assert_eq!(safe_starts, 0, "{name}");
         assert!(slides_starts > 500, "{name}: {slides_starts}");
     }

@@ -108,7 +108,7 @@ fn a_preset_that_is_no_file_is_refused_at_once() {
         .arg(folder.0.join("pipe.toml"))
         .status();
     assert!(made.expect("mkfifo").success());
-    for preset in ["pipe.toml", "/dev/zero", "/dev/null"] {
+    for preset in ["/dev/zero", "/dev/null", "pipe.toml"] {
         let args = ["render", preset, "--device", "cpu", "--size", "24x16"];
         folder.fails(&args, 1, &[preset, "no regular file"]);
     }
