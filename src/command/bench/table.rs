@@ -109,7 +109,7 @@ it.
 ";
 
 /// Settings that are both at least 5 % faster than `safe` and wrong on fewer pixels, preset
-/// by preset, by the rules of [`BEATS`].
+/// by preset, by the rules that its head states.
 pub fn better_than_safe(rows: &[Row]) -> String {
     let mut text = String::from(BEATS);
     let mut found = 0;
