@@ -65,9 +65,9 @@ fn passes(c: &mut Criterion) {
 
 fn comparisons(c: &mut Criterion) {
     let (one, two) = (depth(Mode::Safe), depth(Mode::Ray));
-    let view = plan(Mode::Safe).view();
+    let plan = plan(Mode::Safe);
     c.bench_function("compare, 160 x 90", |b| {
-        b.iter(|| compare::compare(black_box(&one), &two, &view));
+        b.iter(|| compare::compare(black_box(&one), &two, &plan));
     });
     let ramp: Vec<DVec3> = (0..160 * 90)
         .map(|i| DVec3::splat(f64::from(i) / 14_400.0))

@@ -86,7 +86,7 @@ impl Default for Marching {
             mode: Mode::Safe,
             coarsest: 16,
             detail: 1.0,
-            shell: 0.3,
+            shell: 0.45,
             relaxation: Relaxation::Auto,
             fudge: vec![1.0],
             steps: 256,

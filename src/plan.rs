@@ -47,23 +47,6 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// Every kind of subject, with its defaults; the shape of the first is replaced by
-    /// the one that is named.
-    pub fn all() -> Vec<Self> {
-        let first = Shape::all()
-            .into_iter()
-            .take(1)
-            .map(|shape| Self::Distance {
-                shape,
-                iterations: None,
-            });
-        let rest = [
-            Self::Heightfield(HeightfieldShape::default()),
-            Self::Slab(SlabShape::default()),
-        ];
-        first.chain(rest).collect()
-    }
-
     /// The keys of `[scene]`, beside `kind` and `formula`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         match self {
@@ -72,13 +55,26 @@ impl Subject {
                 keys.push(Key::new(
                     "iterations",
                     AutoCount(iterations, 1, MOST_ITERATIONS),
-                    "iteration limit; auto follows the finest footprint",
+                    "iteration limit; auto follows the finest footprint, up to 1000",
                 ));
                 keys
             }
             Self::Heightfield(shape) => shape.keys(),
             Self::Slab(shape) => shape.keys(),
         }
+    }
+
+    /// Every subject with its defaults: each formula, and each other kind of scene.
+    pub fn all() -> Vec<Self> {
+        let formulas = Shape::all().into_iter().map(|shape| Self::Distance {
+            shape,
+            iterations: None,
+        });
+        let others = [
+            Self::Heightfield(HeightfieldShape::default()),
+            Self::Slab(SlabShape::default()),
+        ];
+        formulas.chain(others).collect()
     }
 
     /// `kind`, and `formula` where there is one.
@@ -247,8 +243,9 @@ impl Plan {
         levels.chain([Pass::Trace, Pass::Color]).collect()
     }
 
-    /// What would be run, without a GPU: passes, programs, modules and constants.
-    pub fn explain(&self) -> String {
+    /// What would be run for a frame with extras, without a GPU: passes, programs, modules
+    /// and constants.
+    pub fn explain(&self, extras: Extras) -> String {
         let scene = self.scene();
         let mut text = String::new();
         let [w, h] = self.size;
@@ -256,7 +253,8 @@ impl Plan {
         let _ = writeln!(text, "{}", scene.twin().describe());
         let mut programs: Vec<Program> = Vec::new();
         text.push_str("passes\n");
-        for pass in self.passes() {
+        let left_out = |pass: &Pass| extras.depth_only && *pass == Pass::Color;
+        for pass in self.passes().into_iter().filter(|p| !left_out(p)) {
             let (cells, limit) = match pass {
                 Pass::March(level) => (level.cells(self.size), level.steps.to_string()),
                 Pass::Trace => (self.size, self.march.ray_steps().to_string()),
@@ -268,7 +266,7 @@ impl Plan {
                 "  {name:<12} {:>6} x {:<6} steps {limit}",
                 cells[0], cells[1]
             );
-            let program = self.program(&scene, pass, Extras::default());
+            let program = self.program(&scene, pass, extras);
             if !programs.contains(&program) {
                 programs.push(program);
             }

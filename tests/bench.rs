@@ -355,6 +355,10 @@ fn cones_are_measured_map_by_map_and_view_by_view() {
 #[test]
 fn bad_input_is_one_sentence() {
     let folder = Folder::new();
+    folder.write("file", "of nothing");
+    std::fs::create_dir(folder.0.join("a")).expect("a folder");
+    let preset = text(&folder.done(&["presets", "bench-far"]));
+    folder.write("a/bench-far.toml", preset);
     let cases: &[(&str, &[&str], i32, &[&str])] = &[
         ("error", &["bench-fat"], 2, &["bench-fat", "bench-far"]),
         ("error", &["no.toml"], 1, &["no.toml"]),
@@ -367,6 +371,44 @@ fn bad_input_is_one_sentence() {
             &["fast", "safe", "slides-even"],
         ),
         ("steps", &["bench-far", "--csv", "no/a.csv"], 1, &["no"]),
+        (
+            "error",
+            &["bench-far", "--plot", "x.png"],
+            2,
+            &["x.png", ".svg"],
+        ),
+        (
+            "error",
+            &["bench-far", "--plot", "svg"],
+            2,
+            &["`svg`", ".svg"],
+        ),
+        (
+            "error",
+            &["bench-far", "--json", "a", "--csv", "./a"],
+            2,
+            &["--json and --csv", "`./a`"],
+        ),
+        (
+            "error",
+            &["bench-far", "--csv", "-", "--plot", "-"],
+            2,
+            &["--csv and --plot", "`-`"],
+        ),
+        (
+            "steps",
+            &["bench-far", "a/bench-far.toml", "--heat", "h"],
+            2,
+            &["two", "`bench-far`"],
+        ),
+        // A folder that was made goes again with what fails after it.
+        (
+            "steps",
+            &["bench-far", "--heat", "h/i", "--json", "no/a.json"],
+            1,
+            &["no/a.json"],
+        ),
+        ("steps", &["bench-far", "--heat", "file"], 1, &["file"]),
         ("calibrate", &["bench-far", "--budget", "2"], 2, &["0.5"]),
         ("calibrate", &["bench-far", "--budget", "nan"], 2, &["0.5"]),
         ("calibrate", &["bench-far", "--rays", "0"], 2, &["100"]),
@@ -380,4 +422,60 @@ fn bad_input_is_one_sentence() {
         &["nothing", "cpu"],
     );
     folder.fails(&["bench", "errors"], 2, &["errors"]);
+}
+
+/// Whatever is sent to standard output stands there alone, and the tables on stderr.
+#[test]
+fn rows_and_pictures_go_to_standard_output() {
+    let folder = Folder::new();
+    let json = |text: &str| serde_json::from_str::<Vec<Value>>(text).expect("JSON alone");
+    for verb in ["error", "steps", "calibrate"] {
+        let more: &[&str] = match verb {
+            "calibrate" => &["bench-far", "--rays", "100", "--json", "-"],
+            _ => &["bench-far", "--json", "-"],
+        };
+        let (out, told) = bench(&folder, &tiny(verb, more));
+        assert!(!json(&out).is_empty());
+        assert!(told.contains("### bench-far"), "{verb}: {told}");
+        let more = &[&more[..more.len() - 2], &["--csv", "-"]].concat();
+        let (out, told) = bench(&folder, &tiny(verb, more));
+        let mut csv = csv::Reader::from_reader(out.as_bytes());
+        assert_eq!(csv.headers().unwrap().get(0), Some("preset"), "{out}");
+        assert!(
+            csv.records()
+                .all(|r| r.unwrap().get(0) == Some("bench-far"))
+        );
+        assert!(told.contains("### bench-far"), "{verb}: {told}");
+    }
+    let (out, told) = bench(
+        &folder,
+        &tiny("error", &["bench-far", "--plot", "-", "--json", "a.json"]),
+    );
+    assert!(
+        out.starts_with("<svg") && out.ends_with("</svg>\n"),
+        "{out}"
+    );
+    assert!(told.contains("### What beats"), "{told}");
+    // Where nothing else is printed, tables are.
+    let (out, told) = bench(&folder, &tiny("steps", &["bench-far", "--json", "b.json"]));
+    assert!(
+        out.contains("### bench-far") && !told.contains("###"),
+        "{told}"
+    );
+    assert_eq!(folder.files(), ["a.json", "b.json", "cache"]);
+}
+
+/// The CPU executor tells no device time, and every table says what its times are.
+#[test]
+fn times_without_timestamps_are_called_wall_time() {
+    let folder = Folder::new();
+    for verb in ["error", "steps"] {
+        let (table, told) = bench(&folder, &tiny(verb, &["bench-far"]));
+        assert!(table.contains("| wall ms |"), "{table}");
+        assert!(table.contains("times are wall time"), "{table}");
+        assert!(told.contains("times are wall time"), "{told}");
+    }
+    let (table, _) = bench(&folder, &tiny("calibrate", &["bench-far", "--rays", "100"]));
+    let words: Vec<&str> = table.split_whitespace().collect();
+    assert!(words.join(" ").contains(" ms of wall time"), "{table}");
 }

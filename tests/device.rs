@@ -153,7 +153,6 @@ fn every_adapter_can_be_chosen_by_index_and_by_part_of_its_name() {
 fn choices_are_read_from_words() {
     let cases = [
         ("auto", Choice::Auto),
-        ("", Choice::Auto),
         (" gpu ", Choice::Hardware),
         ("software", Choice::Software),
         ("cpu", Choice::Cpu),
@@ -164,7 +163,10 @@ fn choices_are_read_from_words() {
         ("gpus", Choice::Named("gpus".into())),
     ];
     for (text, choice) in cases {
-        assert_eq!(Choice::read(text), choice, "`{text}`");
+        assert_eq!(Choice::read(text), Some(choice), "`{text}`");
+    }
+    for blank in ["", " ", "\t"] {
+        assert_eq!(Choice::read(blank), None, "`{blank}`");
     }
 }
 
@@ -180,8 +182,12 @@ impl Folder {
     }
 
     fn render(&self, args: &[&str]) -> Output {
+        self.run(&[&["render"], args].concat())
+    }
+
+    fn run(&self, args: &[&str]) -> Output {
         let mut command = Command::new(env!("CARGO_BIN_EXE_conemarch"));
-        command.arg("render").args(args).current_dir(&self.0);
+        command.args(args).current_dir(&self.0);
         command.stdin(Stdio::null()).output().unwrap()
     }
 }
@@ -212,20 +218,26 @@ fn assert_done(output: &Output, path: &Path) {
     assert!(output.stdout.is_empty());
 }
 
+/// An adapter by the name of its kind: software, or hardware where there is no other.
+fn some_adapter() -> &'static str {
+    let adapters = Adapters::find();
+    let found = [("software", Choice::Software), ("gpu", Choice::Hardware)]
+        .into_iter()
+        .find(|(_, choice)| adapters.choose(choice).is_ok());
+    found.map(|(name, _)| name).expect(
+        "this test needs a GPU adapter; any will do, and `apt-get install mesa-vulkan-drivers` installs a software one",
+    )
+}
+
 #[test]
-fn the_program_renders_on_software_and_its_picture_renders_the_same_again() {
-    let folder = Folder::new("software");
-    let software = Adapters::find();
-    let software = software.choose(&Choice::Software);
-    assert!(
-        software.is_ok(),
-        "this test needs a software Vulkan adapter: `apt-get install mesa-vulkan-drivers`"
-    );
+fn the_program_renders_on_an_adapter_and_its_picture_renders_the_same_again() {
+    let folder = Folder::new("adapter");
+    let device = some_adapter();
     let (first, second) = (folder.0.join("f.png"), folder.0.join("g.png"));
-    let size = ["--size", "64x36", "--device", "software", "-o"];
+    let size = ["--size", "64x36", "--device", device, "-o"];
     let output = folder.render(&[&["mandelbox"], &size[..], &["f.png"]].concat());
     assert_done(&output, &first);
-    let output = folder.render(&["f.png", "--device", "software", "-o", "g.png"]);
+    let output = folder.render(&["f.png", "--device", device, "-o", "g.png"]);
     assert_done(&output, &second);
     let bytes = std::fs::read(&first).unwrap();
     assert!(bytes == std::fs::read(&second).unwrap());
@@ -246,5 +258,28 @@ fn the_program_says_what_there_is_instead_of_a_device_it_has_not() {
         assert_eq!(errors.len(), 1, "{said:?}");
         assert!(errors[0].contains(device) && errors[0].contains("there is: "));
         assert!(!folder.0.join("f.png").exists());
+    }
+}
+
+/// Measurements of what f32 cannot hold say so in their tables, where f32 measures.
+#[test]
+fn measurements_under_the_floor_of_f32_are_marked() {
+    let folder = Folder::new("floor");
+    let near = "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n[camera]\neye = [0, 0, 6.001]\nup = [0, 1, 0]\nfov = 2\n";
+    std::fs::write(folder.0.join("near.toml"), near).unwrap();
+    let verbs: [&[&str]; 3] = [
+        &["error"],
+        &["steps", "--mode", "safe"],
+        &["calibrate", "--rays", "100"],
+    ];
+    for verb in verbs {
+        for (device, marked) in [(some_adapter(), true), ("cpu", false)] {
+            let preset = ["near.toml", "--size", "16x9", "--device", device];
+            let output = folder.run(&[&["bench"], verb, &preset].concat());
+            assert_eq!(output.status.code(), Some(0), "{:?}", said(&output));
+            let table = String::from_utf8_lossy(&output.stdout).into_owned();
+            let found = table.contains("Precision: the finest footprint");
+            assert_eq!(found, marked, "{verb:?} on {device}: {table}");
+        }
     }
 }

@@ -83,7 +83,7 @@ fn assert_sound(plan: &Plan, what: &str) -> f64 {
     let divisors: Vec<u32> = frame.levels.iter().map(|l| l.divisor).collect();
     assert_eq!(divisors, [32, 16, 8, 4, 2]);
     assert_eq!(overclaims(&frame, &t), 0, "{what}");
-    let report = compare(&frame, &reference, &plan.view());
+    let report = compare(&frame, &reference, plan);
     for (divisor, pixels) in report.start_violations {
         assert_eq!(pixels, 0, "{what}: level 1/{divisor}");
     }
@@ -148,7 +148,7 @@ fn the_rule_of_the_slides_is_caught() {
         let (reference, t) = solved(&plan);
         let frame = render(&plan, LEVELS);
         assert!(overclaims(&frame, &t) > 100);
-        let report = compare(&frame, &reference, &plan.view());
+        let report = compare(&frame, &reference, &plan);
         let found: u64 = report.start_violations.iter().map(|v| v.1).sum();
         assert!(found > 100, "{:?}", report.start_violations);
         assert!(report.behind > 0.001, "{}", report.behind);
@@ -322,7 +322,7 @@ fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
         let frame = render(&plan, Extras::default());
         let other = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
         assert!(frame.census()[1] > 100 && frame.census()[2] > 20);
-        let report = compare(&frame, &other, &plan.view());
+        let report = compare(&frame, &other, &plan);
         // Of 5184 rays, those that end within a rounding of the threshold.
         assert!(report.mask < 1e-3, "{}", report.mask);
         for f in [&frame, &other] {

@@ -12,12 +12,7 @@ const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
 
 /// A plan of every subject there is.
 fn subjects() -> Vec<Plan> {
-    let distance = Shape::all().into_iter().map(|shape| Subject::Distance {
-        shape,
-        iterations: None,
-    });
-    let others = Subject::all().into_iter().skip(1);
-    distance.chain(others).map(Plan::new).collect()
+    Subject::all().into_iter().map(Plan::new).collect()
 }
 
 /// `[scene]` with nothing but what is required.

@@ -263,12 +263,13 @@ fn changed(change: impl FnOnce(&mut Mandelbox)) -> Plan {
 
 #[test]
 fn a_rotation_by_nothing_is_no_rotation() {
-    let none = changed(|_| {}).explain();
-    let whole_turns = changed(|m| m.rotation = DVec3::new(360.0, 0.0, -360.0)).explain();
+    let none = changed(|_| {}).explain(Extras::default());
+    let whole_turns =
+        changed(|m| m.rotation = DVec3::new(360.0, 0.0, -360.0)).explain(Extras::default());
     assert_eq!(none, whole_turns);
     assert!(none.contains("wgsl/formula/rotation_none.wgsl"));
     assert!(!none.contains("wgsl/formula/rotation.wgsl"));
-    let turned = changed(|m| m.rotation = DVec3::new(0.0, 0.0, 1.0)).explain();
+    let turned = changed(|m| m.rotation = DVec3::new(0.0, 0.0, 1.0)).explain(Extras::default());
     assert_ne!(none, turned);
     assert!(turned.contains("wgsl/formula/rotation.wgsl"));
     assert!(!turned.contains("wgsl/formula/rotation_none.wgsl"));
@@ -300,17 +301,58 @@ fn features_that_are_off_are_not_joined() {
         for on in [true, false] {
             let mut plan = preset("mandelbox");
             set(&mut plan, on);
-            let text = plan.explain();
+            let text = plan.explain(Extras::default());
             assert_eq!(text.contains(real), on, "{real}\n{text}");
             assert_eq!(text.contains(stand_in), !on, "{stand_in}\n{text}");
         }
     }
 }
 
+/// The lines of a program in an explanation.
+fn explained<'a>(text: &'a str, entry: &str) -> &'a str {
+    let (_, programs) = text.split_once("\nprograms\n").unwrap();
+    let (_, from) = programs.split_once(&format!("  {entry}\n")).unwrap();
+    // Modules stand deeper than the names of programs.
+    let end = from
+        .match_indices("\n  ")
+        .find(|(at, _)| from.as_bytes()[at + 3] != b' ');
+    end.map_or(from, |(at, _)| &from[..at])
+}
+
+#[test]
+fn what_is_asked_for_beside_the_picture_is_explained() {
+    let plan = preset("mandelbox");
+    let explain = |extras| plan.explain(extras);
+    let plain = explain(Extras::default());
+    let counted = explain(Extras {
+        count: true,
+        ..Extras::default()
+    });
+    for (entry, counts) in [("march", true), ("trace", true), ("color", false)] {
+        assert!(!explained(&plain, entry).contains("wgsl/counters.wgsl"));
+        let text = explained(&counted, entry);
+        assert_eq!(text.contains("wgsl/counters.wgsl"), counts, "{text}");
+        assert_eq!(text.contains("wgsl/counters_off.wgsl"), !counts, "{text}");
+    }
+    let normals = explain(Extras {
+        normals: true,
+        ..Extras::default()
+    });
+    assert!(plain.contains("COLOR_KEEPS_NORMALS=0"));
+    assert!(normals.contains("COLOR_KEEPS_NORMALS=1"));
+    let shapes = explain(Extras {
+        depth_only: true,
+        ..Extras::default()
+    });
+    assert!(
+        plain.contains("  color ") && !shapes.contains("color"),
+        "{shapes}"
+    );
+}
+
 #[test]
 fn work_is_counted_only_where_it_is_asked_for() {
     let plan = preset("mandelbox");
-    assert!(!plan.explain().contains("wgsl/counters.wgsl"));
     let scene = plan.scene();
     for pass in plan.passes() {
         for count in [false, true] {
@@ -358,7 +400,7 @@ fn the_rule_of_the_slides_takes_the_place_of_the_exact_one() {
     let mut plan = preset("mandelbox");
     for (mode, exact) in [(Mode::Safe, true), (Mode::SlidesDeep, false)] {
         plan.march.mode = mode;
-        let text = plan.explain();
+        let text = plan.explain(Extras::default());
         assert_eq!(text.contains("wgsl/cone.wgsl"), exact);
         assert_eq!(text.contains("wgsl/cone_slides.wgsl"), !exact);
     }
@@ -366,7 +408,7 @@ fn the_rule_of_the_slides_takes_the_place_of_the_exact_one() {
 
 #[test]
 fn the_mandelbox_is_explained() {
-    insta::assert_snapshot!(preset("mandelbox").explain(), @r"
+    insta::assert_snapshot!(preset("mandelbox").explain(Extras::default()), @r"
     1280 x 720, mode safe
     mandelbox: 14 iterations, lipschitz 1
     passes

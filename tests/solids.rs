@@ -44,7 +44,7 @@ fn cases(cases: u32) -> ProptestConfig {
 fn stepping(rule: ConeRule) -> Stepping {
     Stepping {
         detail: 1e-3,
-        shell: 0.3,
+        shell: 0.45,
         relaxation: Relaxation::Auto,
         stride: 1.0,
         rule,

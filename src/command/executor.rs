@@ -14,7 +14,29 @@ pub enum Executor {
     Cpu,
 }
 
+/// Reads `--device`.
+///
+/// # Errors
+/// There is nothing to read.
+pub fn device(text: &str) -> Result<Choice, String> {
+    Choice::read(text).ok_or_else(|| {
+        "must be auto, gpu, software, cpu, an index or a part of a name; `conemarch devices` lists them".into()
+    })
+}
+
 impl Executor {
+    /// Whether a choice means anything here, nothing being opened.
+    ///
+    /// # Errors
+    /// It matches nothing.
+    pub fn check(choice: &Choice) -> Result<(), DeviceError> {
+        // These two always mean something, and ask no driver.
+        if matches!(choice, Choice::Auto | Choice::Cpu) {
+            return Ok(());
+        }
+        Adapters::find().choose(choice).map(|_| ())
+    }
+
     /// Opens what a choice means, and says in a line who it is and why.
     ///
     /// # Errors
@@ -62,9 +84,22 @@ impl Executor {
         }
     }
 
-    /// Whether a device renders that cannot tell the time.
+    /// Whether nothing but the clock tells the time: on the CPU, and on devices that have
+    /// no timestamps.
     pub fn is_untimed(&self) -> bool {
-        matches!(self, Self::Gpu(renderer) if renderer.device.tick_ns.is_none())
+        match self {
+            Self::Gpu(renderer) => renderer.device.tick_ns.is_none(),
+            Self::Cpu => true,
+        }
+    }
+
+    /// A sentence where the numbers of the executor cannot hold what a plan asks for. The
+    /// CPU has f64, and nothing to be warned of.
+    pub fn precision_warning(&self, plan: &Plan) -> Option<String> {
+        match self {
+            Self::Gpu(_) => plan.precision_warning(),
+            Self::Cpu => None,
+        }
     }
 
     /// The device's name.

@@ -12,5 +12,6 @@ pub mod memory;
 pub mod presets;
 pub mod print;
 pub mod render;
+pub mod sink;
 pub mod size;
 pub mod stats;

@@ -9,14 +9,15 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::executor::Executor;
+use super::executor::{Executor, device};
 use super::failure::usage;
 use super::print::{print, say};
+use super::sink::{Parcel, Sink, apart, is_stdout};
 use super::stats::{Stats, shares};
 use super::{interrupt, memory, size};
 use crate::frame::Frame;
 use crate::gpu::device::Choice;
-use crate::output::{BitDepth, Layer, Place, Shades, commit, write_exr, write_png};
+use crate::output::{BitDepth, Layer, Shades, write_exr, write_png};
 use crate::plan::{Extras, Plan};
 use crate::preset::{self, Override, Preset};
 use crate::render::{Progress, RenderError};
@@ -50,8 +51,8 @@ pub struct Render {
     set: Vec<String>,
 
     /// auto, gpu, software, cpu, an index, or part of a name
-    #[arg(long, value_name = "DEVICE", default_value = "auto")]
-    device: String,
+    #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
+    device: Choice,
 
     /// What the PNG shows
     #[arg(long, value_name = "LAYER", default_value = "color", value_parser = layers())]
@@ -65,7 +66,7 @@ pub struct Render {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     stats: Option<PathBuf>,
 
-    /// Print the passes and programs, and render nothing
+    /// Print the passes and programs of this very command, and render nothing
     #[arg(long)]
     explain: bool,
 }
@@ -126,21 +127,6 @@ enum Format {
     Exr,
 }
 
-/// Where the picture or the figures go.
-enum Sink {
-    Stdout,
-    File(Place),
-}
-
-impl Sink {
-    fn prepare(path: &Path) -> Result<Self> {
-        Ok(match path.as_os_str() == "-" {
-            true => Self::Stdout,
-            false => Self::File(Place::prepare(path)?),
-        })
-    }
-}
-
 /// Renders a preset.
 pub fn run(args: &Render) -> Result<()> {
     let overrides: Result<Vec<Override>, _> = args.set.iter().map(|s| Override::read(s)).collect();
@@ -148,37 +134,30 @@ pub fn run(args: &Render) -> Result<()> {
     if let Some(size) = args.size {
         plan.size = size;
     }
-    if args.explain {
-        return print(plan.explain().as_bytes());
-    }
     let output = match &args.output {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{name}.png")),
     };
     let format = format(args, &output)?;
-    if let Some(stats) = &args.stats
-        && *stats == output
-    {
-        return Err(usage(format!(
-            "the picture and the figures cannot both go to `{}`; give --stats another name",
-            stats.display()
-        )));
+    let stats = args.stats.as_deref();
+    apart(&[("the picture", Some(&output)), ("--stats", stats)])?;
+    let extras = extras(args, format);
+    if args.explain {
+        return explain(args, &plan, extras);
     }
-    let choice = Choice::read(&args.device);
-    let per_pixel = bytes_per_pixel(format, choice == Choice::Cpu);
+    let per_pixel = bytes_per_pixel(format, args.device == Choice::Cpu);
     if let Some(why) = memory::lacking(plan.size, per_pixel, memory::available()) {
         anyhow::bail!(why);
     }
     interrupt::listen();
     let picture = Sink::prepare(&output)?;
-    let figures = args.stats.as_deref().map(Sink::prepare).transpose()?;
-    let (mut executor, who) = Executor::open(&choice)?;
+    let figures = stats.map(Sink::prepare).transpose()?;
+    let (mut executor, who) = Executor::open(&args.device)?;
     say(&format!("rendering on {who}"));
-    // The CPU executor has f64, and nothing to be warned of.
-    if let (Executor::Gpu(_), Some(warning)) = (&executor, plan.precision_warning()) {
+    if let Some(warning) = executor.precision_warning(&plan) {
         say(&format!("warning: {warning}"));
     }
-    let frame = march(&mut executor, &plan, extras(args, format))?;
+    let frame = march(&mut executor, &plan, extras)?;
     let preset = preset::write(&plan);
     let truth = match args.layer {
         Layer::Error => {
@@ -197,42 +176,40 @@ pub fn run(args: &Render) -> Result<()> {
         }
     };
     let depth = args.depth.unwrap_or_default();
-    let mut places = Vec::new();
-    let mut printed = Vec::new();
-    match picture {
-        Sink::Stdout => write_png(&mut Cursor::new(&mut printed), &draw(), depth, &preset)?,
-        Sink::File(mut place) => {
-            let mut content = Vec::new();
-            let to = &mut Cursor::new(&mut content);
-            match format {
-                Format::Png => write_png(to, &draw(), depth, &preset)?,
-                Format::Exr => write_exr(to, &frame, &plan)?,
-            }
-            place.write_all(&content)?;
-            places.push(place);
-        }
+    let mut parcel = Parcel::default();
+    let mut content = Vec::new();
+    let to = &mut Cursor::new(&mut content);
+    match format {
+        Format::Png => write_png(to, &draw(), depth, &preset)?,
+        Format::Exr => write_exr(to, &frame, &plan)?,
     }
+    parcel.put(picture, &content)?;
+    drop(content);
     if let Some(figures) = figures {
         let mut frame = frame.clone();
         warm_times(&mut executor, &plan, &mut frame)?;
         let stats = Stats::new(&name, &plan, &executor, &frame);
         let mut text = serde_json::to_vec_pretty(&stats)?;
         text.push(b'\n');
-        match figures {
-            Sink::Stdout => printed = text,
-            Sink::File(mut place) => {
-                place.write_all(&text)?;
-                places.push(place);
-            }
-        }
+        parcel.put(figures, &text)?;
     }
     if interrupt::asked() {
         return Err(RenderError::Cancelled.into());
     }
-    print(&printed)?;
-    commit(places)?;
+    parcel.hand_over()?;
     say(&summary(&output, &frame));
     Ok(())
+}
+
+/// Prints what would be run, once all arguments are known to be right: those that a
+/// render would refuse are refused here too. No device is opened.
+fn explain(args: &Render, plan: &Plan, extras: Extras) -> Result<()> {
+    for path in args.output.iter().chain(&args.stats) {
+        // Nothing is written: what was prepared goes again at once.
+        Sink::prepare(path)?;
+    }
+    Executor::check(&args.device)?;
+    print(plan.explain(extras).as_bytes())
 }
 
 /// The format that a name asks for, if everything else fits it.
@@ -240,7 +217,7 @@ fn format(args: &Render, output: &Path) -> Result<Format> {
     let ending = output.extension().and_then(|e| e.to_str());
     let ending = ending.unwrap_or_default().to_lowercase();
     let format = match ending.as_str() {
-        _ if output.as_os_str() == "-" => Format::Png,
+        _ if is_stdout(output) => Format::Png,
         "png" => Format::Png,
         "exr" => Format::Exr,
         _ => {

@@ -70,10 +70,12 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// Reads `auto`, `gpu`, `software`, `cpu`, an index or a part of a name.
-    pub fn read(text: &str) -> Self {
-        match text.trim() {
-            "auto" | "" => Self::Auto,
+    /// Reads `auto`, `gpu`, `software`, `cpu`, an index or a part of a name; `None` of
+    /// nothing but blanks, which would be a part of every name.
+    pub fn read(text: &str) -> Option<Self> {
+        Some(match text.trim() {
+            "" => return None,
+            "auto" => Self::Auto,
             "gpu" => Self::Hardware,
             "software" => Self::Software,
             "cpu" => Self::Cpu,
@@ -81,7 +83,7 @@ impl Choice {
                 Ok(index) => Self::Index(index),
                 Err(_) => Self::Named(other.to_string()),
             },
-        }
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod error;
 mod exr;
+mod folder;
 mod layer;
 mod map;
 mod place;
@@ -9,6 +10,7 @@ mod png;
 
 pub use error::OutputError;
 pub use exr::write_exr;
+pub use folder::Folder;
 pub(crate) use layer::heat;
 pub use layer::{Layer, Shades};
 pub use map::{WriteMapError, write_map};

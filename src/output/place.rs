@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::error::OutputError;
+use super::folder;
 
 /// Names of all temporary files that exist now.
 static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -153,12 +154,13 @@ pub fn commit(places: Vec<Place>) -> Result<(), OutputError> {
     failed.map_or(Ok(()), Err)
 }
 
-/// Removes all temporary files and lets no more be renamed: for the moment before the
-/// process ends. The guard must be kept until then.
+/// Removes all temporary files, and folders that were made for them and are empty then,
+/// and lets no more be renamed: for the moment before the process ends. The guard must be kept until then.
 pub fn clear() -> MutexGuard<'static, Vec<PathBuf>> {
     let mut list = temporary();
     for held in list.drain(..) {
         let _ = fs::remove_file(held);
     }
+    folder::clear();
     list
 }

@@ -5,6 +5,7 @@ mod document;
 mod error;
 mod nearest;
 mod read;
+mod reference;
 mod source;
 mod write;
 
@@ -13,5 +14,6 @@ pub use document::Override;
 pub use error::PresetError;
 pub use nearest::nearest;
 pub use read::{read, read_with};
+pub use reference::reference;
 pub use source::{MOST_BYTES, PNG_KEYWORD, Preset, load};
 pub use write::write;

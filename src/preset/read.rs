@@ -13,7 +13,10 @@ use crate::plan::{Plan, Subject};
 
 /// Words for `scene.kind`.
 fn kinds() -> Vec<&'static str> {
-    Subject::all().iter().map(|s| s.words().0).collect()
+    let mut kinds: Vec<&str> = Subject::all().iter().map(|s| s.words().0).collect();
+    // One distance scene for each formula.
+    kinds.dedup();
+    kinds
 }
 
 /// Reads a preset. `origin` is what errors call it: a file's path, mostly.

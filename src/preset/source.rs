@@ -1,7 +1,7 @@
 //! Finding a preset by what the command line calls it: a built-in name, the path of a
 //! TOML file, or a picture that carries its preset.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{BufReader, Read};
 use std::path::Path;
 
@@ -80,6 +80,11 @@ fn failure(path: &Path, why: impl Into<String>) -> PresetError {
     }
 }
 
+/// Whether a name means a stream of this process, as a shell's `<(command)` does.
+fn is_own_stream(path: &Path) -> bool {
+    path == Path::new("/dev/stdin") || path.starts_with("/dev/fd")
+}
+
 /// The preset's text in a file, be it the file itself or a picture's.
 fn file_text(path: &Path) -> Result<String, PresetError> {
     let unreadable = |e: std::io::Error| {
@@ -88,13 +93,22 @@ fn file_text(path: &Path) -> Result<String, PresetError> {
             format!("cannot be read: {e}; check its path and rights, or name a built-in preset"),
         )
     };
-    let mut file = File::open(path).map_err(unreadable)?;
-    if path.is_dir() {
+    let what = fs::metadata(path).map_err(unreadable)?;
+    if what.is_dir() {
         return Err(failure(
             path,
             "is a folder; name a .toml or .png file in it",
         ));
     }
+    // Asked before it is opened: opening a pipe waits for somebody to write into it, and a
+    // device may never end. Streams that this process was given are open already.
+    if !what.is_file() && !is_own_stream(path) {
+        return Err(failure(
+            path,
+            "is no regular file but a pipe, a socket or a device; name a .toml or .png file, or send the preset to /dev/stdin",
+        ));
+    }
+    let mut file = File::open(path).map_err(unreadable)?;
     let mut bytes = Vec::new();
     let mut start = (&mut file).take(PNG_SIGNATURE.len() as u64);
     start.read_to_end(&mut bytes).map_err(unreadable)?;

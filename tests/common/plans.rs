@@ -83,8 +83,7 @@ fn mandelboxes() -> Vec<Mandelbox> {
 
 /// Everything that can be in a picture, with its features.
 fn subjects() -> Vec<Subject> {
-    let mut all: Vec<Subject> = Shape::all().into_iter().map(distance).collect();
-    all.extend(Subject::all().into_iter().skip(1));
+    let mut all = Subject::all();
     for subject in &mut all {
         // Small: what is joined does not depend on how many samples there are.
         if let Subject::Heightfield(shape) = subject {

@@ -6,19 +6,25 @@
 @group(2) @binding(1) var<storage, read> state: array<u32>;
 @group(2) @binding(2) var<storage, read> marks: array<Mark>;
 @group(2) @binding(4) var<storage, read_write> radiance: array<vec4<f32>>;
+/// Only for layers that show them; else a stub.
 @group(2) @binding(5) var<storage, read_write> normals: array<vec4<f32>>;
 
 override COLOR_KEEPS_NORMALS: bool;
 
+/// Radiance towards the eye of a hit at q, relative to the eye; `grain` is half a pixel
+/// there, by which shadow and occlusion stand off the surface.
 fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec3<f32> {
     let n = surface.normal;
     let albedo = pigment_color(surface.pigment);
     let facing = dot(n, look.light);
+    // What faces away is dark without asking: it needs no shadow ray.
     var lit = 0.0;
     if facing > 0.0 {
         lit = facing * shadow(q, n, grain);
     }
     let open = occlusion(q, n, grain);
+    // From 0 for what faces down to 1 for what faces up: between the two skies. The lower
+    // one is dimmed, as the ground keeps back more than half of what falls on it.
     let up = 0.5 + 0.5 * dot(n, look.world_up);
     let ambient = mix(0.45 * look.sky_low, look.sky_high, up) * look.fill;
     // Light thrown back by lit neighbours: warm, from below and behind.
@@ -27,6 +33,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec3<f32> {
     // Of no length where a ray goes straight into the light, which has no direction then.
     let between = look.light - ray.axis;
     let half_way = between / max(length(between), 1e-20);
+    // Blinn and Phong's highlight: dry, narrow, and dark in shadow like the key light.
     let shine = pow(max(0.0, dot(n, half_way)), 40.0);
     c += look.light_color * (look.gloss * lit * shine);
     return c;
@@ -40,6 +47,7 @@ fn color(
     scene_load();
     view_load();
     look_load();
+    // No list of pixels here: every pixel gets a colour, the sky too.
     let local = tile_cell(group.xy, lane);
     if any(local >= view.block_size) {
         return;
@@ -58,6 +66,7 @@ fn color(
             hit.uv = vec2<f32>(mark.u, mark.v);
         }
         let at = surface(ray, hit);
+        // An unconverged ray is lit where it stopped, which is mostly close to a surface.
         let grain = footprint(ray, hit.t);
         c = fog(shade(ray, ray.origin + hit.t * ray.axis, at, grain), ray.axis, hit.t);
         n = at.normal;

@@ -17,12 +17,17 @@ struct SlabUniform {
     pad: f32,
 }
 
+/// A ray that is solved already: `begin` finds the hit, and the one step reports it.
 struct Walk {
     t: f32,
+    /// Shadow rays read an empty ball's radius of walks that go on, and none of these does.
     radius: f32,
+    /// Distance of the hit; negative where there is none.
     hit: f32,
     end: f32,
+    /// 0 the lower plane, 1 the upper one, 2 the rim.
     face: u32,
+    /// Coordinates of the hit along `side` and `other`.
     u: f32,
     v: f32,
 }
@@ -40,7 +45,8 @@ fn bounds_far() -> f32 {
     return slab.far;
 }
 
-/// Distance to the solid disc with flat faces.
+/// Distance to the solid disc with flat faces, negative inside: that to a rectangle, in
+/// the half plane of distance from the axis and height.
 fn slab_distance(q: vec3<f32>) -> f32 {
     let p = slab.eye + q;
     let z = dot(p, slab.normal);
@@ -48,6 +54,7 @@ fn slab_distance(q: vec3<f32>) -> f32 {
     return length(max(o, vec2<f32>(0.0))) + min(max(o.x, o.y), 0.0);
 }
 
+/// The distance is exact, so one ball after another is worth it as long as there is any.
 fn advance(cone: Beam, front: f32) -> Advance {
     count_evaluation();
     let d = slab_distance(cone.origin + front * cone.axis) - cone.r0;
@@ -68,6 +75,8 @@ fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
     if slab_distance(ray.origin + front * ray.axis) <= 0.0 {
         walk.hit = front;
     }
+    // Of two planes only that on the eye's side can be entered. A ray along it is left to
+    // the rim: its quotient would be noise.
     let face = select(-slab.half, slab.half, z > 0.0);
     if walk.hit < 0.0 && abs(z) > slab.half && abs(dz) > 1e-12 {
         let t = (face - z) / dz;
@@ -83,6 +92,7 @@ fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
         let middle = -dot(s, ds) / a;
         let nearest = s + middle * ds;
         let q = slab.radius * slab.radius - dot(nearest, nearest);
+        // The first of both crossings: from within, the rim is left and not entered.
         let t = middle - sqrt(max(q, 0.0) / a);
         if q > 0.0 && t >= front && abs(z + t * dz) <= slab.half {
             walk.hit = t;

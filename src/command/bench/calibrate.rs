@@ -6,9 +6,10 @@ use serde::Serialize;
 
 use super::common::Common;
 use super::row::flat;
+use super::table;
 use crate::calibrate::{Calibration, calibrate};
 use crate::command::executor::Executor;
-use crate::command::{interrupt, print};
+use crate::command::interrupt;
 use crate::frame::State;
 use crate::mode::Mode;
 use crate::plan::{Extras, Plan};
@@ -58,6 +59,8 @@ struct CalibrateRow {
     evaluations_per_pixel: f64,
     safe_ms: f64,
     wall_ms: f64,
+    /// A warning where f32 cannot hold what the preset asks for.
+    precision: Option<String>,
 }
 
 /// Runs the probes.
@@ -67,7 +70,7 @@ struct CalibrateRow {
 pub fn run(args: &CalibrateBench) -> Result<()> {
     interrupt::listen();
     let plans = args.common.plans()?;
-    let files = args.common.files()?;
+    let files = args.common.files(None)?;
     let mut executor = args.common.executor()?;
     let mut rows = Vec::new();
     for (name, plan) in &plans {
@@ -76,11 +79,11 @@ pub fn run(args: &CalibrateBench) -> Result<()> {
         });
         let found = found.ok_or(RenderError::Cancelled)?;
         let row = measure(&mut executor, name, plan, &found, args.budget)?;
-        print::print(sentence(&row, plan).as_bytes())?;
+        files.show(&sentence(&row, plan))?;
         rows.push(row);
     }
     let flat: Vec<_> = rows.iter().map(flat).collect();
-    files.write(&rows, &flat, Vec::new())
+    files.write(&rows, &flat)
 }
 
 /// The proposal on the device, beside `safe`.
@@ -140,6 +143,7 @@ fn measure(
         evaluations_per_pixel: work[1],
         safe_ms: time[0],
         wall_ms: time[1],
+        precision: executor.precision_warning(plan),
     })
 }
 
@@ -155,8 +159,9 @@ fn sentence(row: &CalibrateRow, plan: &Plan) -> String {
         )
     };
     let fudge: Vec<String> = row.fudge.iter().map(|f| format!("{f}")).collect();
+    let precision = table::precision(row.precision.as_deref());
     let mut text = format!(
-        "\n### {}, {w} x {h}, {} rays\n\nLargest slope {:.3}, slack {:.1} in the median. Lost {:.3} % of rays in f64, {:.3} % on the\ndevice. Evaluations per pixel {:.2}, `safe` {:.2}; {:.1} ms, `safe` {:.1}.\n{verdict}\n",
+        "\n### {}, {w} x {h}, {} rays\n\n{precision}Largest slope {:.3}, slack {:.1} in the median. Lost {:.3} % of rays in f64, {:.3} % on the\ndevice. Evaluations per pixel {:.2}, `safe` {:.2}; {:.1} ms of wall\ntime, `safe` {:.1}.\n{verdict}\n",
         row.preset,
         row.rays,
         row.slope,

@@ -6,11 +6,12 @@ use anyhow::{Context, Result};
 use clap::Args;
 use serde::Serialize;
 
-use crate::command::executor::Executor;
-use crate::command::print::say;
+use crate::command::executor::{Executor, device};
+use crate::command::failure::usage;
+use crate::command::print::{print, say, tell};
+use crate::command::sink::{Parcel, Sink, apart, is_stdout};
 use crate::command::size;
 use crate::gpu::device::{Choice, DeviceError};
-use crate::output::{self, Place};
 use crate::plan::Plan;
 use crate::preset;
 
@@ -23,12 +24,12 @@ pub struct Common {
     #[arg(long, value_name = "WxH", value_parser = size::read)]
     pub size: Option<[u32; 2]>,
     /// auto, gpu, software, cpu, an index or a part of a name
-    #[arg(long, value_name = "DEVICE", default_value = "auto")]
-    pub device: String,
-    /// Write the rows as JSON too
+    #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
+    pub device: Choice,
+    /// Write the rows as JSON too; - is standard output, and the tables go to stderr then
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write the rows as CSV too
+    /// Write the rows as CSV too, - as above
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
 }
@@ -37,7 +38,7 @@ impl Common {
     /// Every preset's name and plan.
     ///
     /// # Errors
-    /// A preset is unknown or wrong.
+    /// A preset is unknown or wrong, or two have one name.
     pub fn plans(&self) -> Result<Vec<(String, Plan)>> {
         let all = || preset::BUILTIN.iter().map(|(name, _)| (*name).to_string());
         let names: Vec<String> = if self.names.is_empty() {
@@ -51,7 +52,16 @@ impl Common {
             plan.size = self.size.unwrap_or(plan.size);
             Ok((found.name, plan))
         };
-        names.into_iter().map(load).collect()
+        let plans: Result<Vec<(String, Plan)>> = names.into_iter().map(load).collect();
+        let plans = plans?;
+        for (i, (name, _)) in plans.iter().enumerate() {
+            if plans[..i].iter().any(|(n, _)| n == name) {
+                return Err(usage(format!(
+                    "two of the presets are called `{name}`, and rows and pictures go by the name; leave one out, or give its file another name"
+                )));
+            }
+        }
+        Ok(plans)
     }
 
     /// The executor, announced on standard error.
@@ -59,65 +69,87 @@ impl Common {
     /// # Errors
     /// The choice matches nothing, or the adapter does not open.
     pub fn executor(&self) -> Result<Executor, DeviceError> {
-        let (executor, who) = Executor::open(&Choice::read(&self.device))?;
+        let (executor, who) = Executor::open(&self.device)?;
         say(&format!("measuring on {who}"));
         if executor.is_untimed() {
-            say("this device has no timestamps: times are those of the clock");
+            say("this device has no timestamps: times are wall time");
         }
         Ok(executor)
     }
 
-    /// Makes sure that the asked files can be written, before anything is measured.
+    /// Makes sure that the asked files can be written, before anything is measured;
+    /// `plot` is that of a measurement that draws.
     ///
     /// # Errors
-    /// One of them cannot.
-    pub fn files(&self) -> Result<Files> {
+    /// One of them cannot, or two are the same.
+    pub fn files(&self, plot: Option<&Path>) -> Result<Files> {
+        let named = [
+            ("--json", self.json.as_deref()),
+            ("--csv", self.csv.as_deref()),
+            ("--plot", plot),
+        ];
+        apart(&named)?;
+        let [json, csv, plot] = named.map(|(_, path)| path.map(Sink::prepare).transpose());
         Ok(Files {
-            json: prepare(self.json.as_deref())?,
-            csv: prepare(self.csv.as_deref())?,
+            json: json?,
+            csv: csv?,
+            plot: plot?,
+            printing: named.iter().any(|(_, path)| path.is_some_and(is_stdout)),
+            parcel: Parcel::default(),
         })
     }
 }
 
-/// A place for an optional file.
-///
-/// # Errors
-/// It cannot be written.
-pub fn prepare(path: Option<&Path>) -> Result<Option<Place>> {
-    Ok(path.map(Place::prepare).transpose()?)
-}
-
-/// Files that rows will go to.
+/// Where the rows and pictures of a measurement go.
 pub struct Files {
-    json: Option<Place>,
-    csv: Option<Place>,
+    json: Option<Sink>,
+    csv: Option<Sink>,
+    plot: Option<Sink>,
+    /// Whether standard output is one of them.
+    printing: bool,
+    /// Results that are written already.
+    pub parcel: Parcel,
 }
 
 impl Files {
-    /// Writes all rows, and other files that are already written, or none.
+    /// Shows a table: on standard output, unless that carries rows or a picture.
     ///
     /// # Errors
-    /// A file cannot be written.
-    pub fn write<R: Serialize>(
-        self,
-        rows: &[R],
-        flat: &[Vec<(String, String)>],
-        more: Vec<Place>,
-    ) -> Result<()> {
-        let mut places = more;
-        if let Some(mut place) = self.json {
+    /// Standard output cannot be written.
+    pub fn show(&self, table: &str) -> Result<()> {
+        if self.printing {
+            tell(table);
+            return Ok(());
+        }
+        print(table.as_bytes())
+    }
+
+    /// Writes the picture, if one was asked for.
+    ///
+    /// # Errors
+    /// The disk is full.
+    pub fn draw(&mut self, picture: impl FnOnce() -> String) -> Result<()> {
+        if let Some(sink) = self.plot.take() {
+            self.parcel.put(sink, picture().as_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Writes all rows, and hands over everything that was written, or nothing.
+    ///
+    /// # Errors
+    /// A file or standard output cannot be written.
+    pub fn write<R: Serialize>(mut self, rows: &[R], flat: &[Vec<(String, String)>]) -> Result<()> {
+        if let Some(sink) = self.json {
             let mut text =
                 serde_json::to_string_pretty(rows).context("the rows cannot be written")?;
             text.push('\n');
-            place.write_all(text.as_bytes())?;
-            places.push(place);
+            self.parcel.put(sink, text.as_bytes())?;
         }
-        if let Some(mut place) = self.csv {
-            place.write_all(&csv(flat)?)?;
-            places.push(place);
+        if let Some(sink) = self.csv {
+            self.parcel.put(sink, &csv(flat)?)?;
         }
-        output::commit(places)?;
-        Ok(())
+        self.parcel.hand_over()
     }
 }
 

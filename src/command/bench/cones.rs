@@ -12,11 +12,11 @@ use serde::{Deserialize, Serialize};
 use super::common::Common;
 use super::row::flat;
 use super::table;
-use crate::command::executor::Executor;
+use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
-use crate::command::print::{print, say};
+use crate::command::print::say;
 use crate::command::{interrupt, size};
-use crate::gpu::device::Device;
+use crate::gpu::device::{Choice, Device};
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::field::Field;
 use crate::heightfield::generate::cpu;
@@ -65,8 +65,8 @@ pub struct ConesBench {
     #[arg(long, value_name = "WxH", value_parser = size::read)]
     size: Option<[u32; 2]>,
     /// Who makes the maps: cpu, auto, gpu, software, an index or a part of a name
-    #[arg(long, value_name = "DEVICE", default_value = "cpu")]
-    device: String,
+    #[arg(long, value_name = "DEVICE", default_value = "cpu", value_parser = device)]
+    device: Choice,
     /// Write the rows as JSON too
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -154,7 +154,7 @@ pub fn run(args: &ConesBench) -> Result<()> {
         Heights::new(*size, [false; 2], vec![0.0; area(*size)])
             .map_err(|e| usage(e.to_string()))?;
     }
-    let files = common.files()?;
+    let files = common.files(None)?;
     let executor = common.executor()?;
     let mut generators = Vec::new();
     let mut tracers = Vec::new();
@@ -163,10 +163,10 @@ pub fn run(args: &ConesBench) -> Result<()> {
             let heights = Heights::new(size, [false; 2], field.heights(size, SEED, POWER))?;
             let relief = Arc::new(Relief::new(heights, Patches::Bilinear, [1, 1])?);
             let (rows, maps) = generate(&executor, *field, &relief)?;
-            print(table::generators(&rows).as_bytes())?;
+            files.show(&table::generators(&rows))?;
             generators.extend(rows);
             let rows = trace(*field, &relief, &maps)?;
-            print(table::tracers(&rows).as_bytes())?;
+            files.show(&table::tracers(&rows))?;
             tracers.extend(rows);
         }
     }
@@ -175,7 +175,7 @@ pub fn run(args: &ConesBench) -> Result<()> {
         .chain(tracers.into_iter().map(ConesRow::Tracer))
         .collect();
     let flat = one_header(all.iter().map(flat).collect());
-    files.write(&all, &flat, Vec::new())
+    files.write(&all, &flat)
 }
 
 fn area([w, h]: [u32; 2]) -> usize {

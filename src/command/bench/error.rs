@@ -4,19 +4,21 @@
 //! the others, so that a machine whose speed drifts slows all of them alike.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
 use glam::DVec3;
 
-use super::common::{Common, median, prepare};
+use super::common::{Common, median};
 use super::row::{DepthError, Row, TruthNote, flat};
 use super::setting::{Setting, baselines, sweeps};
 use super::{plot, table};
 use crate::command::executor::Executor;
+use crate::command::failure::usage;
 use crate::command::interrupt;
-use crate::command::print::{print, say};
+use crate::command::print::say;
+use crate::command::sink::is_stdout;
 use crate::compare::compare;
 use crate::flip::{Picture, flip};
 use crate::frame::Frame;
@@ -33,7 +35,7 @@ pub struct ErrorBench {
     /// Move single settings too: coarsest level, shell, relaxation, steps, fudge, detail
     #[arg(long)]
     sweep: bool,
-    /// Draw time against error
+    /// Draw time against error; - is standard output, and the tables go to stderr then
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
 }
@@ -48,8 +50,15 @@ const RUNS: usize = 5;
 pub fn run(args: &ErrorBench) -> Result<()> {
     interrupt::listen();
     let plans = args.common.plans()?;
-    let files = args.common.files()?;
-    let plot = prepare(args.plot.as_deref())?;
+    if let Some(path) = &args.plot
+        && !is_svg(path)
+    {
+        return Err(usage(format!(
+            "--plot draws an SVG, and `{}` does not end in .svg; - would be standard output",
+            path.display()
+        )));
+    }
+    let mut files = args.common.files(args.plot.as_deref())?;
     let mut executor = args.common.executor()?;
     let cache = Cache::user();
     let mut settings = baselines();
@@ -59,19 +68,21 @@ pub fn run(args: &ErrorBench) -> Result<()> {
     let mut rows = Vec::new();
     for (name, plan) in &plans {
         let measured = measure(&mut executor, cache.as_ref(), name, plan, &settings)?;
-        print(table::preset(&measured).as_bytes())?;
+        files.show(&table::preset(&measured))?;
         rows.extend(measured);
     }
-    print(table::means(&rows).as_bytes())?;
-    print(table::better_than_safe(&rows).as_bytes())?;
-    print(table::slides(&rows).as_bytes())?;
-    let mut more = Vec::new();
-    if let Some(mut place) = plot {
-        place.write_all(plot::draw(&rows).as_bytes())?;
-        more.push(place);
-    }
+    files.show(&table::means(&rows))?;
+    files.show(&table::better_than_safe(&rows))?;
+    files.show(&table::slides(&rows))?;
+    files.draw(|| plot::draw(&rows))?;
     let flat: Vec<_> = rows.iter().map(flat).collect();
-    files.write(&rows, &flat, more)
+    files.write(&rows, &flat)
+}
+
+/// Whether a name is one for an SVG, or standard output's.
+fn is_svg(path: &Path) -> bool {
+    let ending = path.extension().and_then(|e| e.to_str());
+    is_stdout(path) || ending.is_some_and(|e| e.eq_ignore_ascii_case("svg"))
 }
 
 /// Truths by what they are asked for: settings that change the hit rule have their own.
@@ -114,7 +125,6 @@ fn measure(
         name,
         found: HashMap::new(),
     };
-    let view = plan.view();
     let fitting: Vec<(&Setting, Plan)> = settings
         .iter()
         .filter_map(|s| Some((s, s.apply(plan)?)))
@@ -129,7 +139,7 @@ fn measure(
         };
         let frame = executor.render(plan, extras, watch)?;
         let mut row = blank(name, plan, setting, &frame, truth, executor);
-        row.fill(&compare(&frame, &truth.frame, &view));
+        row.fill(&compare(&frame, &truth.frame, plan));
         row.flip = look_apart(&truth.frame, &frame, plan);
         rows.push(row);
     }
@@ -207,6 +217,6 @@ fn blank(
             stride: truth.stride,
             moved: truth.moved,
         },
-        precision: plan.precision_warning(),
+        precision: executor.precision_warning(plan),
     }
 }

@@ -105,17 +105,30 @@ impl Axis {
         self.at + share * self.length
     }
 
-    /// 1, 2 and 5 times powers of ten.
+    /// The coarsest choice of round numbers that still makes four ticks.
     fn ticks(&self) -> Vec<f64> {
         let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
-        let all = decades.flat_map(|e| [1.0, 2.0, 5.0].map(|m| m * 10_f64.powi(e)));
-        let inside: Vec<f64> = all.filter(|t| (self.low..=self.high).contains(t)).collect();
-        if inside.len() > 8 {
-            let whole = |t: &f64| (t.log10() - t.log10().round()).abs() < 1e-9;
-            return inside.into_iter().filter(whole).collect();
-        }
-        inside
+        let choices: [&[f64]; 4] = [
+            &[1.0],
+            &[1.0, 2.0, 5.0],
+            &[1.0, 2.0, 3.0, 5.0, 7.0],
+            &[1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
+        ];
+        let of = |round: &[f64]| -> Vec<f64> {
+            let all = decades
+                .clone()
+                .flat_map(|e| round.iter().map(move |m| m * 10_f64.powi(e)));
+            all.filter(|t| (self.low..=self.high).contains(t)).collect()
+        };
+        let made = choices.map(of);
+        let enough = made.iter().find(|ticks| ticks.len() >= 4);
+        enough.unwrap_or(&made[3]).clone()
     }
+}
+
+/// A tick's number without what its power of ten was rounded by.
+fn rounded(t: f64) -> f64 {
+    (t * 1e6).round() / 1e6
 }
 
 /// No wrong pixel at all is shown as half of one.
@@ -140,16 +153,16 @@ fn panel(svg: &mut String, preset: &str, rows: &[&Row], [left, top]: [f64; 2]) {
         y0 - 12.0
     );
     for t in x.ticks() {
-        let at = x.place(t);
+        let (at, label) = (x.place(t), rounded(t));
         let _ = writeln!(
             svg,
-            r##"<path d="M{at:.1} {y0:.1}v{h:.1}" stroke="#eee"/><text x="{at:.1}" y="{:.1}" text-anchor="middle">{t}</text>"##,
+            r##"<path d="M{at:.1} {y0:.1}v{h:.1}" stroke="#eee"/><text x="{at:.1}" y="{:.1}" text-anchor="middle">{label}</text>"##,
             y0 + h + 14.0
         );
     }
     for t in y.ticks() {
         let at = y.place(t);
-        let label = (t * 1e6).round() / 1e6;
+        let label = rounded(t);
         let _ = writeln!(
             svg,
             r##"<path d="M{x0:.1} {at:.1}h{w:.1}" stroke="#eee"/><text x="{:.1}" y="{:.1}" text-anchor="end">{label}</text>"##,
@@ -195,33 +208,51 @@ fn panel(svg: &mut String, preset: &str, rows: &[&Row], [left, top]: [f64; 2]) {
             100.0 * row.wrong()
         );
     }
-    names(svg, &best, &x, &y, x0 + w);
+    let dots: Vec<[f64; 2]> = rows
+        .iter()
+        .map(|r| [x.place(r.wall_ms), y.place(shown(r))])
+        .collect();
+    names(svg, &best, &dots, &x, &y);
 }
 
-/// The names of the sweeps on the front, kept off each other.
-fn names(svg: &mut String, best: &[&Row], x: &Axis, y: &Axis, right: f64) {
-    let mut taken: Vec<[f64; 2]> = Vec::new();
-    for row in best.iter().filter(|r| !r.baseline) {
+/// Where a name may stand beside its dot: to the right or left, level, above or below.
+const BESIDE: [[f64; 2]; 6] = [
+    [6.0, 3.0],
+    [-6.0, 3.0],
+    [5.0, -6.0],
+    [-5.0, -6.0],
+    [5.0, 12.0],
+    [-5.0, 12.0],
+];
+
+/// The names of the sweeps on the front, the least wrong first, where there is room for
+/// them: not over each other, nor over a dot. A dot says its name to a pointer, too.
+fn names(svg: &mut String, best: &[&Row], dots: &[[f64; 2]], x: &Axis, y: &Axis) {
+    let mut taken: Vec<[f64; 4]> = dots
+        .iter()
+        .map(|[x, y]| [x - 3.0, y - 3.0, x + 3.0, y + 3.0])
+        .collect();
+    let [left, right] = [x.at, x.at + x.length];
+    for row in best.iter().rev().filter(|r| !r.baseline) {
         let (cx, cy) = (x.place(row.wall_ms), y.place(shown(row)));
         let label = row.label().replace(", ", " ");
-        let mut at = cy - 5.0;
-        while taken
-            .iter()
-            .any(|t| (t[0] - cx).abs() < 110.0 && (t[1] - at).abs() < 10.0)
-        {
-            at -= 10.0;
+        let width = 4.8 * label.len() as f64;
+        let room = BESIDE.iter().find_map(|[dx, dy]| {
+            let start = if *dx > 0.0 { cx + dx } else { cx + dx - width };
+            let shape = [start, cy + dy - 7.0, start + width, cy + dy + 2.0];
+            let apart = |t: &[f64; 4]| {
+                shape[0] > t[2] || shape[2] < t[0] || shape[1] > t[3] || shape[3] < t[1]
+            };
+            let fits = start > left && start + width < right && taken.iter().all(apart);
+            fits.then_some((shape, start, cy + dy))
+        });
+        if let Some((shape, start, base)) = room {
+            taken.push(shape);
+            let _ = writeln!(
+                svg,
+                r##"<text x="{start:.1}" y="{base:.1}" font-size="9" fill="#666">{label}</text>"##
+            );
         }
-        taken.push([cx, at]);
-        let (side, offset) = if cx > right - 110.0 {
-            ("end", -5.0)
-        } else {
-            ("start", 5.0)
-        };
-        let _ = writeln!(
-            svg,
-            r##"<text x="{:.1}" y="{at:.1}" font-size="9" text-anchor="{side}" fill="#666">{label}</text>"##,
-            cx + offset
-        );
     }
 }
 

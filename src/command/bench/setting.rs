@@ -63,7 +63,7 @@ pub fn sweeps() -> Vec<Setting> {
     for divisor in [32, 8, 4, 2] {
         all.push(safe("coarsest", Value::Integer(divisor)));
     }
-    for shell in [0.0, 0.15, 0.45, 0.6, 0.8] {
+    for shell in [0.0, 0.15, 0.3, 0.6, 0.8] {
         all.push(safe("shell", Value::Float(shell)));
     }
     all.push(safe("relaxation", "off".into()));

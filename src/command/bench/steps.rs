@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
@@ -12,9 +12,9 @@ use super::setting::{Setting, baselines};
 use super::table;
 use crate::command::executor::Executor;
 use crate::command::failure::usage;
-use crate::command::{interrupt, print};
+use crate::command::interrupt;
 use crate::frame::{Frame, State, Work};
-use crate::output::{BitDepth, Layer, Place, Shades, write_png};
+use crate::output::{BitDepth, Folder, Layer, Place, Shades, write_png};
 use crate::plan::{Extras, Plan};
 use crate::preset;
 use crate::render::RenderError;
@@ -75,6 +75,8 @@ pub struct StepsRow {
     pub gpu_ms: Option<f64>,
     /// Time on the clock; median of warm runs.
     pub wall_ms: f64,
+    /// A warning where f32 cannot hold what the preset asks for.
+    pub precision: Option<String>,
 }
 
 /// Warm runs that a median is taken of.
@@ -88,22 +90,18 @@ pub fn run(args: &StepsBench) -> Result<()> {
     interrupt::listen();
     let plans = args.common.plans()?;
     let settings = modes(args.mode.as_deref())?;
-    let files = args.common.files()?;
-    if let Some(folder) = &args.heat {
-        let shown = folder.display();
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("the folder `{shown}` cannot be made"))?;
-    }
+    // Kept until the end: a folder that was made goes again if no map comes into it.
+    let _folder = args.heat.as_deref().map(Folder::prepare).transpose()?;
+    let mut files = args.common.files(None)?;
     let mut executor = args.common.executor()?;
     let mut rows = Vec::new();
-    let mut maps = Vec::new();
     for (name, plan) in &plans {
         for setting in &settings {
             let Some(plan) = setting.apply(plan) else {
                 continue;
             };
             let (measured, frame) = measure(&mut executor, name, &plan)?;
-            print::print(table::levels(&measured).as_bytes())?;
+            files.show(&table::levels(&measured))?;
             rows.extend(measured);
             if let Some(folder) = &args.heat {
                 let file = format!("{name}-{}.png", plan.march.mode.name());
@@ -111,12 +109,12 @@ pub fn run(args: &StepsBench) -> Result<()> {
                 let shades = Shades::new(Layer::Steps, &frame, &plan);
                 let text = preset::write(&plan);
                 place.write(|to| write_png(to, &shades, BitDepth::Eight, &text))?;
-                maps.push(place);
+                files.parcel.add(place);
             }
         }
     }
     let flat: Vec<_> = rows.iter().map(flat).collect();
-    files.write(&rows, &flat, maps)
+    files.write(&rows, &flat)
 }
 
 /// The mode of a name, or all.
@@ -181,6 +179,7 @@ fn measure(
         row.device = executor.name();
         row.wall_ms = median(&mut wall).unwrap_or(0.0);
         row.gpu_ms = median(&mut gpu);
+        row.precision = executor.precision_warning(plan);
         rows.push(row);
     }
     Ok((rows, frame))
@@ -233,6 +232,7 @@ fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
         histogram,
         gpu_ms: None,
         wall_ms: 0.0,
+        precision: None,
     }
 }
 

@@ -8,13 +8,12 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 
 use crate::command::failure::usage;
-use crate::command::print::{print, say};
+use crate::command::print::say;
 use crate::command::size;
 use crate::heightfield::conemap::MapKind;
 use crate::heightfield::heights::MOST_SAMPLES;
 use crate::heightfield::load::{LoadError, LoadOptions, Loaded, load};
 use crate::heightfield::mapfile::{Bits, Foreign, Form, Layout, MapError, MapFile, decode};
-use crate::output::{Place, commit};
 
 /// How heights are read.
 #[derive(Args, Clone, Copy, Debug)]
@@ -207,35 +206,6 @@ pub struct Output {
     /// Where to write: a .png or .exr file, or - for PNG on standard output
     #[arg(short, long, value_name = "MAP", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
-}
-
-/// Where bytes go.
-pub enum Sink {
-    /// Standard output.
-    Stdout,
-    /// A file to be.
-    File(Place),
-}
-
-impl Sink {
-    /// Makes sure that there is a way to write.
-    pub fn prepare(path: &Path) -> Result<Self> {
-        Ok(match path.as_os_str() == "-" {
-            true => Self::Stdout,
-            false => Self::File(Place::prepare(path)?),
-        })
-    }
-
-    /// Writes everything.
-    pub fn finish(self, bytes: &[u8]) -> Result<()> {
-        match self {
-            Self::Stdout => print(bytes),
-            Self::File(mut place) => {
-                place.write_all(bytes)?;
-                Ok(commit(vec![place])?)
-            }
-        }
-    }
 }
 
 /// A file as summaries call it.

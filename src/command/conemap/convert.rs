@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::{Args, ValueHint};
 
-use super::common::{Output, Sink, Strange, Writing, of_map, shown, wraps};
+use super::common::{Output, Strange, Writing, of_map, shown, wraps};
 use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
+use crate::command::sink::Sink;
 use crate::heightfield::mapfile::{MapFile, decode_bytes, encode, kind_word};
 
 /// What `convert` takes.

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::{Args, ValueHint};
 
-use super::common::{Reading, Sink, Strange, of_map, shown};
+use super::common::{Reading, Strange, of_map, shown};
 use super::describe::{describe_heights, describe_map};
 use super::panels::{heights_panels, map_panels};
 use crate::command::failure::usage;
 use crate::command::print::{print, say};
+use crate::command::sink::Sink;
 use crate::heightfield::mapfile::{MapFile, Wanted, has_map};
 
 /// What `inspect` takes.

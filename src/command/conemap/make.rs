@@ -7,11 +7,13 @@ use anyhow::{Context, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 
-use super::common::{Output, Reading, Sink, Writing, of_map, shown};
+use super::common::{Output, Reading, Writing, of_map, shown};
 use super::convert::kept;
 use super::generate::{Maker, generate};
+use crate::command::executor::device;
 use crate::command::failure::usage;
 use crate::command::print::say;
+use crate::command::sink::Sink;
 use crate::command::{interrupt, memory};
 use crate::gpu::device::Choice;
 use crate::heightfield::generate::generator::{Generator, Options};
@@ -63,8 +65,8 @@ pub struct Make {
     /// auto, gpu, software, cpu, an index, or part of a name
     ///
     /// auto is a hardware adapter, or the CPU in f64 where there is none.
-    #[arg(long, value_name = "DEVICE", default_value = "auto")]
-    device: String,
+    #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
+    device: Choice,
 }
 
 fn generators() -> impl TypedValueParser<Value = Generator> {
@@ -107,7 +109,7 @@ pub fn run(args: &Make) -> Result<()> {
     } else {
         Patches::Bilinear
     };
-    let (maker, who) = Maker::open(&Choice::read(&args.device))?;
+    let (maker, who) = Maker::open(&args.device)?;
     say(&format!("making cones on {who}"));
     let start = Instant::now();
     let map = generate(&maker, generator, heights, patches, &options)?;

@@ -1,0 +1,125 @@
+//! Where results go: a file, or standard output under the name `-`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+
+use super::failure::usage;
+use super::print::deliver;
+use crate::output::{OutputError, Place, commit};
+
+/// Where one result goes.
+#[derive(Debug)]
+pub enum Sink {
+    /// Standard output.
+    Stdout,
+    /// A file that can be written.
+    File(Place),
+}
+
+impl Sink {
+    /// Makes sure that a result can go where it is meant to.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn prepare(path: &Path) -> Result<Self, OutputError> {
+        Ok(match is_stdout(path) {
+            true => Self::Stdout,
+            false => Self::File(Place::prepare(path)?),
+        })
+    }
+
+    /// Writes the one result of a command.
+    ///
+    /// # Errors
+    /// The disk is full, or standard output does not take all of it.
+    pub fn finish(self, content: &[u8]) -> Result<()> {
+        let mut parcel = Parcel::default();
+        parcel.put(self, content)?;
+        parcel.hand_over()
+    }
+}
+
+/// Whether a name means standard output.
+pub fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Refuses outputs of one command that would overwrite each other. Each comes with the
+/// option that names it; those that were not given are no matter.
+///
+/// # Errors
+/// Two have the same name, or two names of one file.
+pub fn apart(outputs: &[(&str, Option<&Path>)]) -> Result<()> {
+    let given = outputs
+        .iter()
+        .filter_map(|(option, path)| Some((option, (*path)?)));
+    let mut seen: Vec<(&str, PathBuf)> = Vec::new();
+    for (option, path) in given {
+        let file = file_of(path);
+        if let Some((other, _)) = seen.iter().find(|(_, f)| *f == file) {
+            return Err(usage(format!(
+                "{other} and {option} cannot both go to `{}`; give {option} another name",
+                path.display()
+            )));
+        }
+        seen.push((option, file));
+    }
+    Ok(())
+}
+
+/// The file behind a name: links and ways around taken out, be it there already or not.
+fn file_of(path: &Path) -> PathBuf {
+    if is_stdout(path) {
+        return path.into();
+    }
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let new = || Some(fs::canonicalize(folder).ok()?.join(path.file_name()?));
+    let there = fs::canonicalize(path).ok();
+    there.or_else(new).unwrap_or_else(|| path.into())
+}
+
+/// The results of a command, handed over in one go at its end.
+#[derive(Debug, Default)]
+pub struct Parcel {
+    printed: Vec<u8>,
+    places: Vec<Place>,
+}
+
+impl Parcel {
+    /// Adds a result.
+    ///
+    /// # Errors
+    /// The disk is full.
+    pub fn put(&mut self, sink: Sink, content: &[u8]) -> Result<(), OutputError> {
+        match sink {
+            Sink::Stdout => self.printed.extend(content),
+            Sink::File(mut place) => {
+                place.write_all(content)?;
+                self.add(place);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a file that is written already.
+    pub fn add(&mut self, place: Place) {
+        self.places.push(place);
+    }
+
+    /// Prints what goes to standard output, and then gives all files their names.
+    ///
+    /// # Errors
+    /// Standard output does not take all of it, or a file cannot be renamed.
+    pub fn hand_over(self) -> Result<()> {
+        if !self.printed.is_empty() {
+            deliver(&self.printed)?;
+        }
+        commit(self.places)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,111 @@
+//! Every key of a preset in words: what `docs/presets.md` shows. It is written from the
+//! same lists that presets are read by, so that it cannot name what there is not.
+
+use std::fmt::Write as _;
+
+use super::document::SECTIONS;
+use crate::key::{Key, Text};
+use crate::plan::{Plan, Subject};
+
+/// What stands above the tables.
+const HEAD: &str = "# Presets
+
+<!-- Written by `cargo run --release --example presets`; do not edit. -->
+
+A preset is a TOML file with a title and the sections below. Only `scene.kind` is required,
+and `scene.formula` where the kind is \"distance\"; every other key has the default that its
+table shows. Unknown keys and values that a key does not take are refused, with the file, the
+line and what would do.
+
+`conemarch presets NAME` prints a built-in preset to start from, and
+`conemarch render PRESET --set section.key=value` changes single values, like
+`--set camera.fov=30`. Whole numbers serve where numbers are asked for. [method.md](method.md)
+explains shell, detail, cones and bounds, and [benchmarks.md](benchmarks.md) shows what the
+modes and the keys of `[march]` cost in time and in error.
+
+";
+
+/// The reference of all keys, section by section, as Markdown.
+pub fn reference() -> String {
+    let mut text = HEAD.to_string();
+    let mut title = String::new();
+    let top = vec![Key::new("title", Text(&mut title), "a line for people")];
+    table(&mut text, "Above all sections", top);
+    for section in SECTIONS {
+        for subject in Subject::all() {
+            let (kind, formula) = subject.words();
+            let mut plan = Plan::new(subject);
+            let keys = plan.keys(section).unwrap_or_default();
+            if section != "scene" {
+                // The same for every subject.
+                table(&mut text, &format!("`[{section}]`"), keys);
+                break;
+            }
+            let chosen = formula.map_or(String::new(), |f| format!(", `formula = \"{f}\"`"));
+            let head = format!("`[scene]` with `kind = \"{kind}\"`{chosen}");
+            table(&mut text, &head, keys);
+        }
+    }
+    text.truncate(text.trim_end().len());
+    text.push('\n');
+    text
+}
+
+/// A heading, and a row for each key.
+fn table(text: &mut String, head: &str, keys: Vec<Key<'_>>) {
+    // Writing to a string cannot fail, here and below.
+    let _ = writeln!(text, "## {head}\n");
+    text.push_str("| key | what it is | what it takes | default |\n|---|---|---|---|\n");
+    for key in keys {
+        let (takes, default) = (key.slot.expects(), key.slot.get());
+        let cells = [key.help, &takes].map(|cell| cell.replace('|', "\\|"));
+        let _ = writeln!(
+            text,
+            "| `{}` | {} | {} | `{default}` |",
+            key.name, cells[0], cells[1]
+        );
+    }
+    text.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_is_what_would_be_written() {
+        let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/presets.md");
+        let text = std::fs::read_to_string(page).expect("the page");
+        assert!(
+            text == reference(),
+            "{page} is out of date; `cargo run --release --example presets` writes it"
+        );
+    }
+
+    #[test]
+    fn every_key_is_there_with_its_help_and_no_help_is_empty() {
+        let text = reference();
+        for subject in Subject::all() {
+            let mut plan = Plan::new(subject);
+            for section in SECTIONS {
+                for key in plan.keys(section).expect("a section") {
+                    assert!(!key.help.is_empty(), "{section}.{}", key.name);
+                    let row = format!("| `{}` | {} | {} |", key.name, key.help, key.slot.expects());
+                    assert!(text.contains(&row), "{row}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_limit_of_automatic_iterations_is_told() {
+        let mut subjects = Subject::all();
+        let keys = subjects[0].keys();
+        let key = keys
+            .iter()
+            .find(|k| k.name == "iterations")
+            .expect("a formula's key");
+        let most = crate::plan::MOST_ITERATIONS.to_string();
+        assert!(key.help.ends_with(&format!("up to {most}")), "{}", key.help);
+    }
+}
