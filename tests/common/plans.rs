@@ -147,19 +147,19 @@ pub fn programs_of(plan: &Plan) -> Vec<Program> {
     all
 }
 
-/// All different programs, each under its entry and listing: those of plans, and those of
-/// the generators of cone maps.
+/// All different programs, each under its entry and listing: of plans, and of the
+/// generators of cone maps.
 pub fn every_program() -> BTreeMap<String, Program> {
     let mut all = BTreeMap::new();
+    for program in generate::program::every_program().expect("one sample is a map") {
+        let listing = format!("{}\n{}", program.entry, program.describe());
+        all.entry(listing).or_insert(program);
+    }
     for plan in plans() {
         for program in programs_of(&plan) {
             let listing = format!("{}\n{}", program.entry, program.describe());
             all.entry(listing).or_insert(program);
         }
-    }
-    for program in generate::program::every_program().expect("one sample") {
-        let listing = format!("{}\n{}", program.entry, program.describe());
-        all.entry(listing).or_insert(program);
     }
     all
 }

@@ -128,12 +128,11 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
             quick_node(0u, level, own.x),
             quick_node(0u, level, own.x + 1),
         );
-        var block_y = vec2<i32>(0);
         let block_x = quick_block(0u, xs[0], xs[1], xs[2]);
         let before = quick_node(1u, level, own.y - 1);
         let here = quick_node(1u, level, own.y);
         let after = quick_node(1u, level, own.y + 1);
-        block_y = quick_block(1u, before, here, after);
+        let block_y = quick_block(1u, before, here, after);
         for (var j = 0; j < 3; j++) {
             let y = quick_node(1u, level, own.y + j - 1);
             for (var i = 0; i < 3; i++) {
@@ -142,13 +141,15 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
                 if !x.exists || !y.exists || itself {
                     continue;
                 }
-                let quarters = quick_quarters(place, x, y, vec2<i32>(i - 1, j - 1), seen);
-                if quarters == 0xffffffffu {
-                    continue;
-                }
                 let tile = at + (y.own >> 1u) * width + (x.own >> 1u);
                 let top = tiles[4u * tile + 2u * (y.own & 1u) + (x.own & 1u)];
-                offer(quarters, top, s);
+                if top - apex < COST_LEAST_RISE {
+                    continue;
+                }
+                let quarters = quick_quarters(place, x, y, vec2<i32>(i - 1, j - 1), seen);
+                if quarters != 0xffffffffu {
+                    offer(quarters, top, s);
+                }
             }
         }
         seen = vec4<i32>(block_x.x, block_y.x, block_x.y, block_y.y);
