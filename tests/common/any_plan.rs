@@ -87,13 +87,11 @@ fn heightfield() -> impl Strategy<Value = Subject> {
     );
     (field, tracer, wrap, any::<bool>(), numbers, cube(180.0)).prop_map(
         |(field, tracer, wrap, boxes, (w, h, seed, width, depth), turn)| {
-            let mut shape = HeightfieldShape {
-                width,
-                // Needles a thousand times as high as wide are no picture of anything.
-                depth: depth.clamp(0.01 * width, 2.0 * width),
-                turn,
-                ..HeightfieldShape::default()
-            };
+            let mut shape = HeightfieldShape::default();
+            shape.width = width;
+            // Needles a thousand times as high as wide are no picture of anything.
+            shape.depth = depth.clamp(0.01 * width, 2.0 * width);
+            shape.turn = turn;
             shape.source.field = format!("{field}:{w}x{h},seed={seed}");
             shape.source.wrap = wrap;
             shape.tiles = wrap.axes().map(|wraps| if wraps { 2 } else { 1 });

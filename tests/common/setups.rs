@@ -4,6 +4,7 @@ use bytemuck::bytes_of;
 use conemarch::formula::balls::Balls;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
 use conemarch::formula::{Formula, Shape};
+use conemarch::heightfield::shape::HeightfieldShape;
 use conemarch::plan::{Plan, Subject};
 use conemarch::pyramid::Block;
 use conemarch::scene::slab::SlabShape;
@@ -54,6 +55,15 @@ pub fn shape_plan(shape: Shape, iterations: u32, eye: DVec3) -> Plan {
 /// A plan of the slab.
 pub fn slab_plan(shape: SlabShape) -> Plan {
     plan(Subject::Slab(shape), DVec3::new(4.0, -9.0, 6.0))
+}
+
+/// A small heightfield, seen from the same place.
+pub fn heightfield_plan(depth: f64) -> Plan {
+    let mut shape = HeightfieldShape::default();
+    shape.depth = depth;
+    shape.turn = DVec3::new(5.0, -8.0, 30.0);
+    shape.source.field = "fbm:33x25,seed=3,power=3".into();
+    plan(Subject::Heightfield(shape), DVec3::new(4.0, -9.0, 6.0))
 }
 
 /// The Mandelboxes that are asked about, by name.
@@ -159,6 +169,7 @@ pub fn beams(plan: &Plan, spread: f64, steps: f64, seed: u64) -> Vec<Numbers> {
     let mut random = Random::new(seed);
     let far = match plan.scene() {
         Scene::Distance(s) => s.bounds_far(),
+        Scene::Heightfield(s) => s.bounds_far(),
         Scene::Slab(s) => s.bounds_far(),
     };
     let of = |_| {

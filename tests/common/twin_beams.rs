@@ -2,7 +2,9 @@
 
 use super::probe::{Allowed, Errors, Numbers, agree_unless_moved, probe};
 use super::random::Random;
-use super::setups::{MOVED, balls, beam, beams, four, probe_of, shape_plan, slab_plan};
+use super::setups::{
+    MOVED, balls, beam, beams, four, heightfield_plan, probe_of, shape_plan, slab_plan,
+};
 use conemarch::formula::Shape;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::frame::Work;
@@ -27,6 +29,7 @@ fn beam_errors(gpu: &Plan, cpu: &Plan, steps: f64) -> BeamErrors {
     let told = probe_of(gpu, probe!("beam")).ask(&asked);
     match cpu.scene() {
         Scene::Distance(s) => beam_errors_of(&s, &asked, &told),
+        Scene::Heightfield(s) => beam_errors_of(&s, &asked, &told),
         Scene::Slab(s) => beam_errors_of(&s, &asked, &told),
     }
 }
@@ -53,6 +56,7 @@ fn beam_errors_of<S: Solid>(solid: &S, asked: &[Numbers], told: &[Numbers]) -> B
             Step::Moving => 3.0,
             Step::Hit => 1.0,
             Step::Out => 0.0,
+            Step::Spent => 2.0,
         };
         let hit = solid.walk_hit(&walk);
         walks.extend([(a[1][0], hit.t), (a[1][3], solid.walk_radius(&ray, &walk))]);
@@ -196,6 +200,31 @@ fn the_part_of_a_ray_near_the_bounds_agrees() {
         let held = (start <= near || outside > -3e-6) && end >= far;
         assert!(near > far || held, "{near} {far} {outside} {a:?}");
     }
+}
+
+#[test]
+fn the_heightfield_agrees() {
+    let of = |factor: f64| heightfield_plan(2.0 * factor);
+    let own = beam_errors(&of(1.0), &of(1.0), 6.0);
+    let moved = beam_errors(&of(MOVED), &of(1.0), 6.0);
+    let allowed = Allowed {
+        median: 2e-6,
+        p99: 2e-4,
+    };
+    agree_unless_moved(
+        "clearance, heightfield",
+        allowed,
+        own.clearance,
+        moved.clearance,
+    );
+    agree_unless_moved("walk, heightfield", allowed, own.walk, moved.walk);
+    // Fronts are the way so far or one of a row of halved lengths: all or nothing, and
+    // the depth is no part of the lengths.
+    let fronts = Allowed {
+        median: 0.0,
+        p99: 1e-5,
+    };
+    assert!(own.advance.within(fronts), "{:?}", own.advance);
 }
 
 #[test]

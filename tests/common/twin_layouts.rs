@@ -14,6 +14,7 @@ use conemarch::pass::look::LookUniform;
 use conemarch::pass::march::LevelUniform;
 use conemarch::pass::queue::{COUNT_AT, Turn};
 use conemarch::scene::distance::DistanceUniform;
+use conemarch::scene::heightfield::HeightfieldUniform;
 use conemarch::scene::slab::SlabUniform;
 use conemarch::view::ViewUniform;
 
@@ -74,6 +75,18 @@ fn layouts() -> Vec<(&'static str, Layout)> {
             iterations,
             clip,
             pad0,
+            pad1
+        }),
+        layout!(HeightfieldUniform {
+            row_x,
+            texel,
+            row_y,
+            depth,
+            row_z,
+            far,
+            eye,
+            pad0,
+            slack,
             pad1
         }),
         layout!(SlabUniform {
