@@ -1,7 +1,6 @@
 //! Presets are the text of a Plan: what is written reads back to the last bit, and what
 //! is wrong is named with its place.
 
-use conemarch::formula::Shape;
 use conemarch::plan::{Plan, Subject};
 use conemarch::preset::{BUILTIN, Override, PresetError, builtin, load, read, read_with, write};
 use conemarch::scene::slab::SlabShape;
