@@ -312,7 +312,7 @@ fn mips_have_the_highest_apex_and_the_narrowest_cone_of_all_below() {
                 let [w, h] = level.size;
                 assert_eq!([w, h], size.map(|s| s.div_ceil(1 << n)));
                 for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
-                    let under = |i: u32| [i % size[0] >> n, i / size[0] >> n] == [x, y];
+                    let under = |i: u32| [(i % size[0]) >> n, (i / size[0]) >> n] == [x, y];
                     let places = (0..size[0] * size[1]).filter(|i| under(*i));
                     let places: Vec<usize> = places.map(|i| i as usize).collect();
                     let at = (y * w + x) as usize;
