@@ -16,5 +16,6 @@ pub mod reach;
 pub mod relaxed;
 pub mod scan;
 pub mod search;
+pub mod settle;
 pub mod slopes;
 pub mod uniform;

@@ -132,14 +132,14 @@ impl Reach {
     /// if there is none.
     pub fn outside(&self, from: [u32; 2], block: Places) -> Option<u32> {
         let mut least = None;
-        for (a, (axis, place)) in self.axes.iter().zip(from).enumerate() {
-            let last = axis.count - 1;
+        for (a, at) in from.into_iter().enumerate() {
             let (low, high) = (block.low[a], block.high[a]);
-            if low == 0 && high == last {
+            let Axis { count, wrap } = self.axes[a];
+            if low == 0 && high == count - 1 {
                 continue;
             }
-            let down = (axis.wrap || low > 0).then(|| place - low + 1);
-            let up = (axis.wrap || high < last).then(|| high - place + 1);
+            let down = (wrap || low > 0).then(|| at - low + 1);
+            let up = (wrap || high < count - 1).then(|| high - at + 1);
             least = [least, down, up].into_iter().flatten().min();
         }
         least.map(|n| n - u32::from(self.cells))
