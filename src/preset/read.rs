@@ -77,7 +77,7 @@ pub fn read_in(
         })
         .collect();
     if !changed.is_empty() {
-        let kind = sets.clone().filter(|e| e.path() == "scene.kind").last();
+        let kind = sets.clone().rfind(|e| e.path() == "scene.kind");
         let formula = kind.is_none_or(|e| e.value.as_str() == Some("distance"));
         let keeps = |e: &Entry| match e.key.as_str() {
             "kind" => true,
