@@ -340,7 +340,8 @@ fn cones_are_measured_map_by_map_and_view_by_view() {
     assert!(lines[0].starts_with("field,size,generator") && lines[0].ends_with("error_texels"));
     // The reader refuses records of unlike lengths.
     let records = csv::Reader::from_reader(table.as_bytes()).into_records();
-    assert_eq!(records.map(|r| r.expect(&table)).count(), all.len());
+    let records: Result<Vec<_>, _> = records.collect();
+    assert_eq!(records.expect(&table).len(), all.len());
     for (more, words) in [
         (&["fbn"][..], &["fbn", "fbm, ridges"][..]),
         (&["fbm", "--size", "9999x9"], &["9999"]),
