@@ -2,8 +2,8 @@
 //!
 //! Prints, as tables, how many nodes a place takes by field and size, how long each
 //! generator takes on the CPU and on the device that `auto` chooses, and how the maps
-//! compare with the exact one. `generators nodes`, `generators device 1024` and
-//! `generators quality` print one of them. A generator that is not done within a minute
+//! compare with the exact one. `generators nodes`, `generators quality` and `generators
+//! device 1024 exact improved` print one of them. A generator that is not done within a minute
 //! is given as an estimate, with a tilde.
 
 use std::time::Instant;
@@ -29,12 +29,21 @@ fn main() -> Result<()> {
         [] => {
             nodes()?;
             quality()?;
-            device(1024)
+            device(1024, &Generator::ALL)
         }
         ["nodes"] => nodes(),
         ["quality"] => quality(),
-        ["device", size] => device(size.parse().context("a size")?),
-        _ => anyhow::bail!("usage: generators [nodes | quality | device SIZE]"),
+        ["device", size, ref names @ ..] => {
+            let named = |name: &&str| Generator::named(name).context("a generator's name");
+            let chosen: Vec<Generator> = names.iter().map(named).collect::<Result<_>>()?;
+            let all = if chosen.is_empty() {
+                &Generator::ALL[..]
+            } else {
+                &chosen
+            };
+            device(size.parse().context("a size")?, all)
+        }
+        _ => anyhow::bail!("usage: generators [nodes | quality | device SIZE [GENERATOR]...]"),
     }
 }
 
@@ -114,7 +123,7 @@ fn quality() -> Result<()> {
 }
 
 /// Times of one map of `fbm`, whole and of the dispatches alone, warm.
-fn device(size: u32) -> Result<()> {
+fn device(size: u32, generators: &[Generator]) -> Result<()> {
     let adapters = Adapters::find();
     let found = adapters.choose(&Choice::Auto)?;
     let (adapter, _) = found.context("there is no adapter")?;
@@ -134,7 +143,7 @@ fn device(size: u32) -> Result<()> {
     let here = conemarch::heightfield::maxmip::MaxMip::new(heights.size(), heights.data().to_vec());
     println!("| max-mip | {there:.0} | | | {:.0} |", ms(start));
     drop(here);
-    for generator in Generator::ALL {
+    for &generator in generators {
         let options = Options::default();
         // The first run compiles; an estimate needs no second.
         let mut row = format!("| {} |", generator.name());

@@ -13,6 +13,9 @@ pub const POWER: f64 = 2.6;
 /// Which axes wrap, in every combination.
 pub const WRAPS: [[bool; 2]; 4] = [[false, false], [true, false], [false, true], [true, true]];
 
+/// What can lie between samples.
+pub const PATCHES: [Patches; 2] = [Patches::Bilinear, Patches::Boxes];
+
 /// A field as a height map.
 pub fn field(field: Field, size: [u32; 2], wrap: [bool; 2]) -> Heights {
     Heights::new(size, wrap, field.heights(size, 7, POWER)).unwrap()
@@ -102,4 +105,11 @@ pub fn difference(a: &[f64], b: &[f64]) -> Option<String> {
     let mut pairs = a.iter().zip(b).enumerate();
     let (i, (a, b)) = pairs.find(|(_, (a, b))| a.to_bits() != b.to_bits())?;
     Some(format!("at {i}: {a} against {b}"))
+}
+
+/// Asserts that two lists are the same to the last bit.
+pub fn assert_same(what: &str, a: &[f64], b: &[f64]) {
+    if let Some(how) = difference(a, b) {
+        panic!("{what}: {how}");
+    }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use conemarch::formula::Shape;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
+use conemarch::heightfield::generate;
 use conemarch::mode::MODES;
 use conemarch::plan::{Extras, Plan, Subject};
 use conemarch::preset::{BUILTIN, builtin, read};
@@ -142,9 +143,14 @@ pub fn programs_of(plan: &Plan) -> Vec<Program> {
     all
 }
 
-/// All different programs, each under its entry and listing.
+/// All different programs, each under its entry and listing: of plans, and of the
+/// generators of cone maps.
 pub fn every_program() -> BTreeMap<String, Program> {
     let mut all = BTreeMap::new();
+    for program in generate::program::every_program().expect("one sample is a map") {
+        let listing = format!("{}\n{}", program.entry, program.describe());
+        all.entry(listing).or_insert(program);
+    }
     for plan in plans() {
         for program in programs_of(&plan) {
             let listing = format!("{}\n{}", program.entry, program.describe());

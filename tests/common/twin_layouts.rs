@@ -7,6 +7,9 @@ use super::plans::every_program;
 use conemarch::formula::balls::BallsUniform;
 use conemarch::formula::mandelbox::MandelboxUniform;
 use conemarch::formula::rotation::RotationUniform;
+use conemarch::heightfield::generate::uniform::{
+    GenerateUniform, MipUniform, PyramidUniform, Search,
+};
 use conemarch::pass::look::LookUniform;
 use conemarch::pass::march::LevelUniform;
 use conemarch::pass::queue::{COUNT_AT, Turn};
@@ -82,6 +85,49 @@ fn layouts() -> Vec<(&'static str, Layout)> {
             far,
             other,
             pad
+        }),
+        layout!(GenerateUniform {
+            size,
+            wrap,
+            first,
+            rows,
+            rounds,
+            levels,
+            begins,
+            keeps,
+            aim,
+            steps,
+            offset,
+            top,
+            pad0,
+            pad1,
+            at
+        }),
+        layout!(Search {
+            squared,
+            top,
+            note,
+            stage,
+            node_x,
+            node_y,
+            pending_low,
+            pending_high
+        }),
+        layout!(PyramidUniform {
+            below,
+            size,
+            below_at,
+            at,
+            first,
+            pad
+        }),
+        layout!(MipUniform {
+            below,
+            size,
+            below_at,
+            at,
+            pad0,
+            pad1
         }),
         layout!(LevelUniform {
             divisor,

@@ -1,5 +1,7 @@
 //! Cone maps in f64 on the CPU, places over threads.
 
+use std::time::Instant;
+
 use rayon::prelude::*;
 
 use super::generator::{GenerateError, Generator, Options, Watch, Work};
@@ -7,9 +9,12 @@ use super::prepared::{Found, Prepared};
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::heights::{Heights, Patches};
 
-/// Places between two looks at the watch: a blink for a search, and for the slowest
-/// generators on large maps still seconds at most.
-const BAND: usize = 4096;
+/// Places before the first look at the watch: seconds at most for the slowest generators
+/// on large maps.
+const BAND: usize = 1 << 10;
+/// How long a band should take at least, in seconds. Bands grow until they do: each ends
+/// with waiting for the last thread, long on a busy machine.
+const SHORT: f64 = 0.03;
 /// Places that a thread takes at least: fewer cost more in handing out than they save.
 const TAKEN: usize = 64;
 
@@ -45,9 +50,11 @@ pub fn generate_counted(
     let mut ratios = Vec::with_capacity(places * channels);
     let mut work = Work::default();
     let mut band: Vec<Found> = Vec::new();
-    for start in (0..places).step_by(BAND) {
-        let places_of = (start..places.min(start + BAND)).into_par_iter();
-        let found = places_of
+    let (mut start, mut length) = (0, BAND);
+    while start < places {
+        let since = Instant::now();
+        let indices = (start..places.min(start + length)).into_par_iter();
+        let found = indices
             .with_min_len(TAKEN)
             .map(|index| prepared.find(index));
         found.collect_into_vec(&mut band);
@@ -56,8 +63,12 @@ pub fn generate_counted(
             work.nodes += u64::from(found.nodes);
             work.most = work.most.max(found.nodes);
         }
-        if !watch((start + band.len()) as f64 / places as f64) {
+        start += band.len();
+        if !watch(start as f64 / places as f64) {
             return Err(GenerateError::Cancelled);
+        }
+        if since.elapsed().as_secs_f64() < SHORT {
+            length *= 2;
         }
     }
     let map = map_of(&prepared, ratios);

@@ -15,7 +15,6 @@ use std::time::Instant;
 use bytemuck::{Pod, bytes_of};
 use rayon::prelude::*;
 
-use super::cost::Cost;
 use super::cpu::map_of;
 use super::generator::{GenerateError, Generator, Options, Watch};
 use super::mips::{ConeLevel, rounded_down};
@@ -23,8 +22,8 @@ use super::prepared::Prepared;
 use super::program::program;
 use super::pyramid::{Tiles, mip_levels, mips_program, tiles_program};
 use super::reach::Aim;
+use super::settle::{settled, unsettled};
 use super::uniform::{GenerateUniform, Search};
-use super::{quick, relaxed};
 use crate::gpu::buffer::{Buffer, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::kernel::{Kernel, KernelError};
@@ -409,35 +408,4 @@ impl Band<'_> {
             ..GenerateUniform::default()
         }
     }
-}
-
-/// Whether f32 leaves open what bounds the cones of a place.
-fn unsettled<'a>(prepared: &Prepared<'_>, mut found: impl Iterator<Item = &'a Search>) -> bool {
-    // The note of a search along rays is something else.
-    prepared.generator != Generator::RelaxedSearch && found.any(|s| s.note != 0)
-}
-
-/// The ratios of a place in f64, from what the device has found for each channel.
-fn settled(prepared: &Prepared<'_>, index: usize, found: &[Search; 4]) -> [f64; 4] {
-    let height = f64::from(prepared.values[index]);
-    let cost = prepared.cost();
-    if unsettled(prepared, found.iter()) {
-        return prepared.find(index).ratios;
-    }
-    found.map(|s| {
-        if s.top < 0.0 {
-            return cost.ratio(cost.widest());
-        }
-        let (top, squared) = (f64::from(s.top), s.squared);
-        let found = match prepared.generator {
-            Generator::RelaxedSearch => {
-                relaxed::exit_cost(squared, top, height, s.note, prepared.options.search_steps)
-            }
-            Generator::Naive | Generator::Improved | Generator::Center => {
-                quick::cost(squared, top - height)
-            }
-            _ => cost.of(squared, top - height),
-        };
-        cost.ratio(found.min(Cost::widest(cost)))
-    })
 }

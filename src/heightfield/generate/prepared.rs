@@ -4,6 +4,7 @@
 use super::brute::Scan;
 use super::cost::Cost;
 use super::generator::{GenerateError, Generator, Options};
+use super::planes::Planes;
 use super::reach::{Aim, Reach};
 use super::search::{Best, Search};
 use super::{falling, quick, relaxed};
@@ -27,6 +28,8 @@ pub struct Prepared<'a> {
     /// Maxima of what bounds cones, for each of the directions that are searched one by
     /// one; none for generators that need none.
     pub mips: Vec<MaxMip>,
+    /// Planes above the heights, for searches all around.
+    pub planes: Option<Planes>,
 }
 
 /// The cones of one place.
@@ -70,12 +73,15 @@ impl<'a> Prepared<'a> {
             _ => vec![values.clone()],
         };
         let mips = masked.into_iter().map(|limits| MaxMip::new(size, limits));
+        let mips: Vec<MaxMip> = mips.collect();
+        let around = matches!(generator, Generator::Exact | Generator::Walk);
         Ok(Self {
             generator,
             options: *options,
             heights,
             size,
-            mips: mips.collect(),
+            planes: mips.first().filter(|_| around).map(Planes::new),
+            mips,
             top: f64::from(values.iter().copied().fold(0.0, f32::max)),
             values,
         })
@@ -179,6 +185,7 @@ impl<'a> Prepared<'a> {
     fn search(&self, mip: usize, aim: Aim) -> Search<'_> {
         Search {
             mip: &self.mips[mip],
+            planes: self.planes.as_ref(),
             reach: Reach {
                 axes: self.axes(),
                 aim,

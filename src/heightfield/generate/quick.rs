@@ -145,6 +145,11 @@ pub fn run(
             if [x, y] == own {
                 continue;
             }
+            best.nodes += 1;
+            let rise = f64::from(maxima.at(x, y)) - height;
+            if rise <= 0.0 {
+                continue;
+            }
             let place = [along, across];
             // In quarters of a square texel, as centres lie between places.
             let quarters = match rule {
@@ -162,10 +167,7 @@ pub fn run(
                     Some(x * x + y * y)
                 }
             };
-            let Some(quarters) = quarters else { continue };
-            best.nodes += 1;
-            let rise = f64::from(maxima.at(x, y)) - height;
-            if rise > 0.0 {
+            if let Some(quarters) = quarters {
                 best.cost = best.cost.min(cost(quarters, rise));
             }
         }

@@ -132,14 +132,14 @@ impl Reach {
     /// if there is none.
     pub fn outside(&self, from: [u32; 2], block: Places) -> Option<u32> {
         let mut least = None;
-        for a in 0..2 {
-            let last = self.axes[a].count - 1;
-            if block.low[a] == 0 && block.high[a] == last {
+        for (a, at) in from.into_iter().enumerate() {
+            let (low, high) = (block.low[a], block.high[a]);
+            let Axis { count, wrap } = self.axes[a];
+            if low == 0 && high == count - 1 {
                 continue;
             }
-            let wrap = self.axes[a].wrap;
-            let down = (wrap || block.low[a] > 0).then(|| from[a] - block.low[a] + 1);
-            let up = (wrap || block.high[a] < last).then(|| block.high[a] - from[a] + 1);
+            let down = (wrap || low > 0).then(|| at - low + 1);
+            let up = (wrap || high < count - 1).then(|| high - at + 1);
             least = [least, down, up].into_iter().flatten().min();
         }
         least.map(|n| n - u32::from(self.cells))

@@ -7,11 +7,18 @@
 //! From there the search climbs: at each level it looks at the three siblings of its own
 //! ancestor, cheapest first, and stops as soon as nothing outside that ancestor can
 //! matter. On rough fields that takes some tens of nodes per place whatever the size;
-//! on smooth ones it grows like the length of a crest.
+//! on smooth ones it grows like the length of a crest, which planes above the heights
+//! keep in bounds ([`super::planes`]; here alone, as they only save time).
 
 use super::cost::Cost;
+use super::planes::Planes;
 use super::reach::{Places, Reach};
 use crate::heightfield::maxmip::MaxMip;
+
+/// Nodes after which a search asks the planes, too. Most searches of rough fields end
+/// sooner, and planes would cost them more than they save; on smooth fields long searches
+/// are the rule, and planes take away most of them.
+const PATIENCE: u32 = 64;
 
 /// What is known so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +33,8 @@ pub struct Best {
 pub struct Search<'a> {
     /// Maxima of the heights that bound cones; where a place does not, less than 0.
     pub mip: &'a MaxMip,
+    /// Planes above the same.
+    pub planes: Option<&'a Planes>,
     /// Which places count.
     pub reach: Reach,
     /// What they cost.
@@ -106,7 +115,20 @@ impl Search<'_> {
         let (low, high) = self.mip.places(level, at[0], at[1]);
         let squared = self.reach.squared(from, Places { low, high })?;
         let cost = self.cost.of(squared, rise);
-        (cost < best.cost).then_some(cost)
+        if cost >= best.cost {
+            return None;
+        }
+        if level > 0
+            && best.nodes > PATIENCE
+            && let Some(planes) = self.planes
+        {
+            let rules = (&self.reach, self.cost);
+            let to = Places { low, high };
+            if planes.rule_out(rules, (from, height), (level, at), to, best.cost) {
+                return None;
+            }
+        }
+        Some(cost)
     }
 
     /// Visits the children of a node, which lie on `level`, but for one; cheapest first.

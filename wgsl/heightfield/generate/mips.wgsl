@@ -1,5 +1,8 @@
 // Pyramids of cone maps: of each node the highest apex and the narrowest cone under it.
 // One dispatch makes one level of one channel.
+//
+// A cone that is raised and narrowed lies within the one that it was, so a node's cone
+// holds over every place under it; averages would hold nowhere. Sizes halve rounding up.
 
 struct MipUniform {
     /// Nodes along each axis of the level below, and of this level.
@@ -16,6 +19,7 @@ struct MipUniform {
 /// All levels after one another, row by row.
 @group(0) @binding(1) var<storage, read_write> apexes: array<f32>;
 @group(0) @binding(2) var<storage, read_write> ratios: array<f32>;
+/// The parameters, copied once.
 var<private> level: MipUniform;
 
 fn mips_load() {
@@ -31,6 +35,7 @@ fn mips(@builtin(global_invocation_id) id: vec3<u32>) {
     // Beyond the last row or column the last one counts twice.
     let first = 2u * id.xy;
     let last = min(first + 1u, level.below - 1u);
+    // Rows of the level below.
     let upper = level.below_at + first.y * level.below.x;
     let lower = level.below_at + last.y * level.below.x;
     let to = level.at + id.y * level.size.x + id.x;

@@ -20,8 +20,10 @@ fn offer(squared: u32, top: f32, s: ptr<function, Search>) {
     if squared == (*s).squared && top == (*s).top {
         return;
     }
+    // Clearly cheaper than all before, whatever was nearly a tie among those.
     let clearly = cost < best * (1.0 - COST_MARGIN);
     (*s).note = select(1u, 0u, clearly);
+    // A tie keeps the cheaper of the two: what comes later is compared with it.
     if cost < best {
         best = cost;
         (*s).squared = squared;

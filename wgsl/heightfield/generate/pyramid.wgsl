@@ -18,7 +18,9 @@ struct PyramidUniform {
 @group(0) @binding(0) var<storage, read> pyramid_parameters: PyramidUniform;
 /// The grid, row by row.
 @group(0) @binding(1) var<storage, read> grid: array<f32>;
+/// All levels after one another; a dispatch reads one of them and writes the next.
 @group(0) @binding(2) var<storage, read_write> tiles: array<vec4<f32>>;
+/// The parameters, copied once.
 var<private> level: PyramidUniform;
 
 /// Less than every height.
@@ -47,6 +49,7 @@ fn pyramid(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= level.size) {
         return;
     }
+    // Children are in rows: left and right of the upper one, then of the lower.
     let at = 2u * id.xy;
     tiles[level.at + id.y * level.size.x + id.x] = vec4<f32>(
         below(at),

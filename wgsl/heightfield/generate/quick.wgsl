@@ -1,5 +1,9 @@
 // Quick cone maps: the eight neighbours of a place's node at every level of the maxima.
 // Together they cover everything, and each is taken to be as near as its rule says.
+//
+// Rectangles are on the unrolled plane, where a neighbour across a wrapping border has
+// indices below 0 or beyond the last. Distances to them are the shortest on the wrapping
+// grid again, since another image of the same places may be nearer.
 
 /// 0: naive, at the nearest point; 1: improved, at the nearest point that no finer level
 /// has seen; 2: at the centre.
@@ -47,13 +51,14 @@ fn quick_gap(axis: u32, place: u32, low: i32, high: i32) -> u32 {
     if params.wrap[axis] == 0u {
         return u32(direct);
     }
+    // The interval's images one turn on and one turn back.
     let n = i32(params.size[axis]);
     let ahead = max(max(low - p - n, p + n - high), 0);
     let back = max(max(low - p + n, p - n - high), 0);
     return u32(min(direct, min(ahead, back)));
 }
 
-/// The squared distance to a rectangle, or to nothing if it is empty.
+/// The squared distance to a rectangle of the unrolled plane, or to nothing if it is empty.
 fn quick_squared(place: vec2<u32>, low: vec2<i32>, high: vec2<i32>) -> u32 {
     if any(low > high) {
         return 0xffffffffu;
@@ -79,6 +84,7 @@ fn quick_to_center(axis: u32, place: u32, low: i32, high: i32) -> u32 {
     if params.wrap[axis] == 0u {
         return u32(twice);
     }
+    // The shorter way round.
     let round = 2 * i32(params.size[axis]);
     let rest = twice % round;
     return u32(min(rest, round - rest));
@@ -86,6 +92,7 @@ fn quick_to_center(axis: u32, place: u32, low: i32, high: i32) -> u32 {
 
 /// Four times the squared distance at which a neighbour counts, `step` nodes away.
 fn quick_quarters(place: vec2<u32>, x: QuickNode, y: QuickNode, step: vec2<i32>, seen: vec4<i32>) -> u32 {
+    // First and last place of the neighbour.
     let low = vec2<i32>(x.low, y.low);
     let high = vec2<i32>(x.high, y.high);
     if QUICK_RULE == 2u {
@@ -120,6 +127,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
     var seen = vec4<i32>(vec2<i32>(place), vec2<i32>(place));
     for (var level = 0u; level < params.levels; level++) {
         let own = vec2<i32>(place >> vec2<u32>(level));
+        // A node's maximum lies in the tile of its parent.
         let above = level + 1u;
         let width = ((params.size.x - 1u) >> above) + 1u;
         let at = params.at[above >> 2u][above & 3u];
@@ -128,27 +136,31 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
             quick_node(0u, level, own.x),
             quick_node(0u, level, own.x + 1),
         );
-        var block_y = vec2<i32>(0);
+        // What the block of 3 x 3 covers, for the next level to leave out.
         let block_x = quick_block(0u, xs[0], xs[1], xs[2]);
         let before = quick_node(1u, level, own.y - 1);
         let here = quick_node(1u, level, own.y);
         let after = quick_node(1u, level, own.y + 1);
-        block_y = quick_block(1u, before, here, after);
+        let block_y = quick_block(1u, before, here, after);
         for (var j = 0; j < 3; j++) {
             let y = quick_node(1u, level, own.y + j - 1);
             for (var i = 0; i < 3; i++) {
                 let x = xs[i];
+                // Across a border that wraps a node may be its own neighbour.
                 let itself = x.own == u32(own.x) && y.own == u32(own.y);
                 if !x.exists || !y.exists || itself {
                     continue;
                 }
-                let quarters = quick_quarters(place, x, y, vec2<i32>(i - 1, j - 1), seen);
-                if quarters == 0xffffffffu {
-                    continue;
-                }
                 let tile = at + (y.own >> 1u) * width + (x.own >> 1u);
                 let top = tiles[4u * tile + 2u * (y.own & 1u) + (x.own & 1u)];
-                offer(quarters, top, s);
+                // Not higher: it need not be located.
+                if top - apex < COST_LEAST_RISE {
+                    continue;
+                }
+                let quarters = quick_quarters(place, x, y, vec2<i32>(i - 1, j - 1), seen);
+                if quarters != 0xffffffffu {
+                    offer(quarters, top, s);
+                }
             }
         }
         seen = vec4<i32>(block_x.x, block_y.x, block_x.y, block_y.y);

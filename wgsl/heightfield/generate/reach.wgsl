@@ -1,5 +1,9 @@
 // Which places bound a cone, and how far away they are, in whole numbers: equal to the
 // twin's.
+//
+// A cone that looks to one side meets a place of a wrapping grid only at that one of its
+// images which lies there. A node is never farther away than a place under it, so that
+// skipping nodes by their distance skips no place that is near.
 
 /// 0: all around; 1: one quadrant; 2: one side.
 override REACH_AIM: u32;
@@ -18,12 +22,14 @@ fn reach_gap(axis: u32, place: u32, low: u32, high: u32) -> u32 {
     if params.wrap[axis] == 0u || direct == 0u {
         return direct;
     }
+    // Round the other way: on past the end, or back past the start.
     let count = params.size[axis];
     return min(direct, min(low + count - place, place + count - high));
 }
 
 /// The same in one direction; UNREACHED if there is none.
 fn reach_ahead(axis: u32, up: bool, place: u32, low: u32, high: u32) -> u32 {
+    // Downward is upward in a mirror.
     let last = params.size[axis] - 1u;
     let f = select(last - place, place, up);
     let l = select(last - high, low, up);
@@ -54,6 +60,7 @@ fn reach_beside(place: vec2<u32>, low: vec2<u32>, high: vec2<u32>) -> vec2<u32> 
         let turns = (across - along + count - 1u) / count;
         return vec2<u32>(select(UNREACHED, along + turns * count, wraps), across);
     }
+    // Of a node at least the far end must lie within the quarter.
     let above = max(high[axis], place[axis]) - place[axis];
     let below = place[axis] - min(low[axis], place[axis]);
     let farthest = select(below, above, up);
@@ -74,12 +81,14 @@ fn reach_squared(place: vec2<u32>, low: vec2<u32>, high: vec2<u32>) -> u32 {
             d.y = reach_ahead(1u, (params.aim & 2u) == 0u, place.y, low.y, high.y);
         }
         default: {
+            // Sides are numbered +x, -x, +y, -y.
             d = reach_beside(place, low, high);
         }
     }
     if any(d == vec2<u32>(UNREACHED)) {
         return UNREACHED;
     }
+    // From edge to edge: one less than from centre to centre.
     if REACH_CELLS {
         d = max(d, vec2<u32>(1u)) - vec2<u32>(1u);
     }
@@ -91,6 +100,7 @@ fn reach_squared(place: vec2<u32>, low: vec2<u32>, high: vec2<u32>) -> u32 {
 fn reach_outside(place: vec2<u32>, level: u32) -> u32 {
     var least = UNREACHED;
     for (var a = 0u; a < 2u; a++) {
+        // The block's ends; a border that does not wrap has no outside.
         let last = params.size[a] - 1u;
         let low = (place[a] >> level) << level;
         let high = min(low + (1u << level) - 1u, last);

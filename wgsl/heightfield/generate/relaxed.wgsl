@@ -9,6 +9,7 @@ override RELAXED_START: f32;
 fn exit_cost(squared: u32, entry: f32, step: u32) -> f32 {
     let part = f32(step) / f32(params.steps);
     let far = 1.0 + part * entry / (RELAXED_START - entry);
+    // Rays end at the bottom with the last step.
     let rise = entry * (1.0 - part) - apex;
     if rise < COST_LEAST_RISE {
         return COST_WIDEST;
@@ -21,7 +22,8 @@ fn cost_kept(s: Search) -> f32 {
     return exit_cost(s.squared, s.top, s.note);
 }
 
-/// The sample at an index of the unrolled plane.
+/// The sample at an index of the unrolled plane. A nearly flat ray leads a thousand times
+/// as far as its samples are apart: still whole numbers of 32 bits.
 fn sample(index: vec2<i32>) -> f32 {
     let n = vec2<i32>(params.size);
     let ends = clamp(index, vec2<i32>(0), n - 1);
@@ -40,6 +42,7 @@ fn surface_height(p: vec2<f32>) -> f32 {
     return mix(upper, lower, f.y);
 }
 
+/// Follows the ray through a sample to where it comes out; as many rounds as steps.
 fn scan_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, Search>) -> u32 {
     let entry = scan_height(place, step);
     let rise = entry - apex;
@@ -50,14 +53,17 @@ fn scan_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, Search>) -> u3
     }
     let start = vec2<f32>(place);
     let way = vec2<f32>(step);
+    // Distance to the ray's end at the bottom, in distances of the two samples.
     let reach = entry / (RELAXED_START - entry);
     var k = 1u;
     for (; k < params.steps; k++) {
         let part = f32(k) / f32(params.steps);
         let z = entry * (1.0 - part);
+        // Wherever it comes out now, it is no higher than the apex.
         if z <= apex {
             break;
         }
+        // Out again: the surface lies lower than the ray.
         if surface_height(start + way * (1.0 + reach * part)) < z {
             let cost = exit_cost(squared, entry, k);
             if cost < best {

@@ -1,5 +1,9 @@
 // All places around one, in growing square rings. What is done with a place is joined:
 // `scan_visit` tells how many rounds it took.
+//
+// Each place is visited once, at its nearest image where axes wrap, so that no corner
+// beyond two borders is missed. A ring can be the last once a place on it, as high as
+// the highest of all, would not narrow the cone: a rule in texels, for any aspect.
 
 /// The least and the greatest step from a place along an axis.
 fn scan_span(axis: u32, place: u32) -> vec2<i32> {
@@ -16,6 +20,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
     let y = scan_span(1u, place.y);
     let last = max(max(-x.x, x.y), max(-y.x, y.y));
     let most = params.top - apex;
+    // Rounds left in this dispatch. What is scanned when they end is where it goes on.
     var left = params.rounds;
     // It goes on at this ring, this side of it, and this step along the side.
     var ring = max(i32((*s).stage), 1);
@@ -30,6 +35,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
         // Two rows with their corners, then two columns without.
         while side < 4u {
             let rows = side < 2u;
+            // The step across the side, and the steps along it that the grid has.
             let across = select(-ring, ring, (side & 1u) != 0u);
             let span = select(y, x, rows);
             let other = select(x, y, rows);
@@ -57,6 +63,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
 
 /// The height at some steps from a place, at most one turn away.
 fn scan_height(place: vec2<u32>, step: vec2<i32>) -> f32 {
+    // One turn more keeps the remainder from being that of a negative number.
     let n = vec2<i32>(params.size);
     let at = (vec2<i32>(place) + step + n) % n;
     return heights[u32(at.y) * params.size.x + u32(at.x)];

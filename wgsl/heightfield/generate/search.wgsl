@@ -38,12 +38,14 @@ fn examine(place: vec2<u32>, node: vec2<u32>, level: u32, s: ptr<function, Searc
     if all(rises < vec4<f32>(COST_LEAST_RISE)) {
         return 0u;
     }
+    // Places from and to which the two columns and rows of children reach.
     let half = 1u << (level - 1u);
     let low = node << vec2<u32>(level);
     let last = params.size - 1u;
     let end = low + half - 1u;
     let next = low + half;
     let high = min(end + half, last);
+    // The last nodes of a level may reach beyond the grid.
     let squared = vec4<u32>(
         reach_squared(place, low, min(end, last)),
         reach_squared(place, vec2<u32>(next.x, low.y), vec2<u32>(high.x, min(end.y, last.y))),
@@ -58,6 +60,7 @@ fn examine(place: vec2<u32>, node: vec2<u32>, level: u32, s: ptr<function, Searc
             }
         }
     }
+    // Children of the lowest tiles are places, each at its own distance.
     if level > 1u || mask == 0u {
         return mask;
     }
@@ -75,6 +78,7 @@ fn tile_beside(axis: u32, place: u32) -> u32 {
     let own = place >> 1u;
     let last = (params.size[axis] - 1u) >> 1u;
     let wraps = params.wrap[axis] != 0u;
+    // Odd places have the next tile's as neighbours, even ones the previous tile's.
     if (place & 1u) != 0u {
         if own < last {
             return own + 1u;
@@ -95,6 +99,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
     var node = vec2<u32>((*s).node_x, (*s).node_y);
     var low = (*s).pending_low;
     var high = (*s).pending_high;
+    // Over the highest place of all nothing bounds the cone.
     let most = params.top - apex;
     if most < COST_LEAST_RISE {
         (*s).stage = SEARCH_DONE;
@@ -127,6 +132,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
             // The place's own side is done.
             skip = 1u;
         } else {
+            // Four bits per level from the second; a deeper level is a lower one.
             var bit = firstTrailingBit(low);
             if low == 0u {
                 bit = 32u + firstTrailingBit(high);
@@ -134,6 +140,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
             } else {
                 low &= low - 1u;
             }
+            // The node whose child this is: an ancestor of the last one, or that itself.
             let above = 2u + (bit >> 2u);
             node = node >> vec2<u32>(above - level);
             let child = (bit & 3u) ^ side_of(place, node, above);
@@ -151,6 +158,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
             }
         }
     }
+    // Out of rounds: the next dispatch goes on from here.
     (*s).stage = climbed | (level << 5u);
     (*s).node_x = node.x;
     (*s).node_y = node.y;
