@@ -1,5 +1,5 @@
 //! Tracers of heightfields find the first hit: the oracle against closed forms, all exact
-//! tracers against the oracle, the shaders against both; and what the others cost and miss.
+//! tracers against the oracle.
 #![allow(
     clippy::unwrap_used,
     missing_docs,
@@ -17,17 +17,12 @@ use std::sync::Arc;
 
 use common::random::Random;
 use common::reference_maps;
-use common::relief_rays::{Case, KINDS, case, cases, exact, made, rays, run};
+use common::relief_rays::{Case, END, block, cases, exact, rays, run};
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::generator::Generator;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::relief::{Relief, ReliefError};
-use conemarch::heightfield::survey::{first_hits, survey, view_rays};
-use conemarch::heightfield::trace::cones::{Budget, Cones, Lookup, Manner};
-use conemarch::heightfield::trace::linear::LinearBinary;
-use conemarch::heightfield::trace::max_mip::MaxMipTracer;
 use conemarch::heightfield::trace::oracle::Oracle;
+use conemarch::heightfield::trace::relaxed::WalkRelaxed;
 use conemarch::heightfield::trace::walk::Walk;
 use conemarch::heightfield::trace::{
     AnyTracer, BASE, LocalRay, SURFACE, Step, TraceError, TraceHit, Tracer, WALL_X_HIGH,
@@ -35,20 +30,6 @@ use conemarch::heightfield::trace::{
 };
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-
-/// No ray here is longer.
-const END: f64 = 1e9;
-
-fn block(
-    size: [u32; 2],
-    wrap: [bool; 2],
-    tiles: [u32; 2],
-    patches: Patches,
-    z: Vec<f32>,
-) -> Arc<Relief> {
-    let heights = Heights::new(size, wrap, z).unwrap();
-    Arc::new(Relief::new(heights, patches, tiles).unwrap())
-}
 
 fn hit_of(tracer: &impl Tracer, ray: &LocalRay) -> Option<TraceHit> {
     let (step, hit, _) = run(tracer, ray, END).expect("the ray ends");
@@ -291,6 +272,60 @@ fn exact_tracers_find_the_first_hit() {
     assert!(hits as u64 * 8 > traced, "{hits} hits in {traced}");
 }
 
+/// A level ray just under the top of a single box, from the near edge of a cell in its row
+/// or column to where it clips a corner of the box for a tenth of a texel: what a cone a
+/// little too wide jumps over. `middle` is the box's.
+fn clipping(random: &mut Random, middle: DVec2) -> LocalRay {
+    let cells = random.between(20.0, 45.0).floor();
+    let slope = random.between(0.2, 0.8) / cells;
+    let left = 0.5 - cells - 1e-3;
+    let mut start = DVec2::new(left, 0.5 - slope * (-0.4 - left));
+    let mut way = DVec2::new(1.0, slope);
+    let turn = (random.unit() * 4.0) as u32;
+    for _ in 0..turn {
+        (start, way) = (start.perp(), way.perp());
+    }
+    LocalRay {
+        origin: (middle + start).extend(1.0 - 1e-3 * random.unit()),
+        axis: way.extend(0.0),
+    }
+}
+
+#[test]
+fn cones_are_not_wider_than_they_may_be() {
+    let mut z = vec![0.0; 97 * 97];
+    z[48 * 97 + 48] = 1.0;
+    let relief = block([97, 97], [false; 2], [1, 1], Patches::Boxes, z);
+    let oracle = Oracle::new(relief.clone());
+    let mut random = Random::new(8);
+    let rays: Vec<_> = (0..4000)
+        .map(|_| clipping(&mut random, DVec2::splat(48.5)))
+        .collect();
+    let bad = |tracer: &AnyTracer| {
+        let faults = rays.iter().filter_map(|ray| {
+            let truth = run(&oracle, ray, END).unwrap();
+            wrong(ray, &truth, run(tracer, ray, END))
+        });
+        faults.count()
+    };
+    for (name, tracer) in exact(&relief) {
+        assert_eq!(bad(&tracer), 0, "{name}");
+    }
+    // A hundredth more and some are lost.
+    let wider = |map: ConeMap| {
+        Arc::new(ConeMap {
+            ratios: map.ratios.iter().map(|r| 1.01 * r).collect(),
+            ..map
+        })
+    };
+    let map = wider(reference_maps::walk(&relief, 1.5));
+    let walk = Walk::new(relief.clone(), map).unwrap();
+    assert!(bad(&AnyTracer::Walk(walk)) > 0);
+    let map = wider(reference_maps::walk_relaxed(&relief, 1.5));
+    let relaxed = WalkRelaxed::new(relief.clone(), map).unwrap();
+    assert!(bad(&AnyTracer::WalkRelaxed(relaxed)) > 0);
+}
+
 #[test]
 fn the_block_has_walls_and_a_floor() {
     let relief = block([3, 3], [false; 2], [1, 1], Patches::Bilinear, vec![0.5; 9]);
@@ -389,59 +424,6 @@ fn rays_of_no_numbers_end() {
     }
 }
 
-/// Every tracer that is not exact.
-fn inexact(relief: &Arc<Relief>) -> Vec<(&'static str, AnyTracer)> {
-    let linear = LinearBinary::new(relief.clone(), 32, 6);
-    let mut all = vec![("linear-binary", AnyTracer::LinearBinary(linear))];
-    let maps: Vec<Arc<ConeMap>> = [MapKind::Samples, MapKind::Quad, MapKind::Relaxed]
-        .map(|kind| Arc::new(reference_maps::samples(relief, kind)))
-        .into();
-    for manner in Manner::ALL {
-        for lookup in [Lookup::Nearest, Lookup::Bilinear] {
-            let map = maps
-                .iter()
-                .find(|m| manner.kinds().contains(&m.kind))
-                .unwrap();
-            let own = Manner { lookup, ..manner };
-            let tracer = Cones::new(relief.clone(), map.clone(), own).unwrap();
-            all.push((manner.name, AnyTracer::Cones(tracer)));
-        }
-    }
-    all
-}
-
-#[test]
-fn inexact_tracers_end_on_the_surface_or_say_that_they_do_not() {
-    let own: Vec<Case> = cases().into_iter().step_by(5).collect();
-    let mut spent = [0, 0];
-    for case in &own {
-        let oracle = Oracle::new(case.relief.clone());
-        let rays = rays(&case.relief, 600, 12).into_iter().enumerate();
-        // Rays that only touch are another question.
-        let rays: Vec<_> = rays
-            .filter(|(i, _)| ![7, 9].contains(&(*i as u64 % KINDS)))
-            .collect();
-        for (name, tracer) in inexact(&case.relief) {
-            for (_, ray) in &rays {
-                let truth = run(&oracle, ray, END).unwrap();
-                let (step, hit, _) = run(&tracer, ray, END).expect("ends");
-                let limited = ["csm-loop", "csm-fixed", "rcs-binary"].contains(&name);
-                spent[usize::from(limited)] += u32::from(step == Step::Spent);
-                // Never in front of the truth by more than a bracket leaves, and never a hit
-                // where there is none.
-                if step == Step::Hit {
-                    assert_eq!(truth.0, Step::Hit, "{}, {name}: {ray:?}", case.name);
-                    let early = (truth.1.s - hit.s) * ray.axis.length();
-                    let bracket = if name == "linear-binary" { 20.0 } else { 6.0 };
-                    assert!(early < bracket, "{}, {name}: {ray:?}: {early}", case.name);
-                }
-            }
-        }
-    }
-    assert_eq!(spent[0], 0);
-    assert!(spent[1] > 100, "{spent:?}");
-}
-
 #[test]
 fn what_does_not_fit_is_refused() {
     let heights = Heights::new([4, 3], [true, false], vec![0.5; 12]).unwrap();
@@ -488,117 +470,4 @@ fn what_does_not_fit_is_refused() {
         TraceError::Number(_)
     ));
     assert!(Walk::new(relief.clone(), Arc::new(good.clone())).is_ok());
-}
-
-/// Mean steps of the walk over those of the pyramid, in views of 30, 60 and 80 degrees.
-fn walk_over_pyramid(field: Field) -> [f64; 3] {
-    let case = case(field, [256, 256], [false; 2], [1, 1], Patches::Bilinear);
-    let relief = &case.relief;
-    let oracle = Oracle::new(relief.clone());
-    let map = made(Generator::Walk, relief, 2.0);
-    let walk = Walk::new(relief.clone(), map).unwrap();
-    let pyramid = MaxMipTracer::new(relief.clone());
-    [30.0, 60.0, 80.0].map(|degrees| {
-        let rays = view_rays(relief, degrees, 20_000);
-        let truths = first_hits(&oracle, &rays);
-        let both = [
-            survey(&walk, &rays, &truths),
-            survey(&pyramid, &rays, &truths),
-        ];
-        for own in both {
-            assert_eq!((own.skipped, own.unconverged), (0.0, 0.0), "{}", case.name);
-            assert!(own.error_texels < 1e-9, "{}: {own:?}", case.name);
-        }
-        let [walk, pyramid] = both.map(|own| own.steps_mean);
-        println!(
-            "{} {degrees}: walk {walk:.2} pyramid {pyramid:.2}",
-            case.name
-        );
-        walk / pyramid
-    })
-}
-
-#[test]
-fn the_walk_takes_fewer_steps_than_the_pyramid_on_terrain() {
-    for field in [Field::Fbm, Field::Ridges] {
-        let ratios = walk_over_pyramid(field);
-        assert!(
-            ratios[0] <= 1.0 && ratios[1] <= 1.0,
-            "{field:?}: {ratios:?}"
-        );
-        if field == Field::Fbm {
-            for (own, wanted) in ratios.iter().zip([0.65, 0.85, 1.05]) {
-                assert!((own / wanted - 1.0).abs() < 0.15, "{ratios:?}");
-            }
-        }
-    }
-}
-
-#[test]
-fn a_survey_counts_what_is_missed() {
-    // A wall one cell thick in a plain, and rays that meet it or the ground behind.
-    let z = (0..64 * 64).map(|i| if i % 64 == 32 { 1.0 } else { 0.0 });
-    let relief = block([64, 64], [false; 2], [1, 1], Patches::Bilinear, z.collect());
-    let rays = view_rays(&relief, 60.0, 4000);
-    let truths = first_hits(&Oracle::new(relief.clone()), &rays);
-    let coarse = LinearBinary::new(relief.clone(), 4, 0);
-    let own = survey(&coarse, &rays, &truths);
-    assert!(own.skipped > 0.05 && own.error_texels > 0.5, "{own:?}");
-    assert!(
-        (1.0..=4.0).contains(&own.steps_mean) && own.steps_p99 == 4,
-        "{own:?}"
-    );
-    let fine = LinearBinary::new(relief.clone(), 512, 20);
-    let fine = survey(&fine, &rays, &truths);
-    assert!(fine.skipped < 0.005 && fine.error_texels < 0.01, "{fine:?}");
-    let map = Arc::new(reference_maps::samples(&relief, MapKind::Samples));
-    let few = Manner {
-        budget: Budget::Fixed(2),
-        ..Manner::CSM_FIXED
-    };
-    let few = Cones::new(relief.clone(), map, few).unwrap();
-    let few = survey(&few, &rays, &truths);
-    assert!(few.unconverged > 0.2 && few.steps_p99 == 2, "{few:?}");
-}
-
-#[test]
-fn budgets_follow_the_view_and_the_distance() {
-    let relief = block(
-        [17, 17],
-        [false; 2],
-        [1, 1],
-        Patches::Bilinear,
-        vec![0.0; 289],
-    );
-    let map = Arc::new(ConeMap {
-        ratios: vec![0.0; 289],
-        ..reference_maps::samples(&relief, MapKind::Samples)
-    });
-    // Steps until it is spent: cones of no width let every ray go cell by cell.
-    let spent = |steps, lod, ray: &LocalRay| {
-        let manner = Manner {
-            budget: Budget::View { steps, lod },
-            ..Manner::CSM_LOOP
-        };
-        let tracer = Cones::new(relief.clone(), map.clone(), manner).unwrap();
-        let (step, _, steps) = run(&tracer, ray, END).unwrap();
-        assert_eq!(step, Step::Spent);
-        steps
-    };
-    let level = LocalRay {
-        origin: DVec3::new(0.25, 0.25, 0.25),
-        axis: DVec3::X,
-    };
-    assert_eq!(spent(8, 0.0, &level), 12);
-    let steep = LocalRay {
-        axis: DVec3::new(16.0, 0.0, 1.0),
-        ..level
-    };
-    assert_eq!(spent(8, 0.0, &steep), 10);
-    // From two and a half away, with half of the steps there.
-    let far = LocalRay {
-        origin: DVec3::new(-2.5, 0.25, 0.25),
-        ..level
-    };
-    assert_eq!(spent(8, 2.5, &far), 6);
 }

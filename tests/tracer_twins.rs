@@ -182,9 +182,9 @@ fn inexact_shaders_agree_with_their_twins() {
                 let way = (s - own.s).abs() * ray.axis.truncate().length();
                 apart += u32::from(code != *state || (code == 1 && way > 0.01));
             }
-            // Long steps from thresholds that f32 may take on either side.
+            // Thresholds that f32 may take on either side; 40 at most were measured.
             println!("{}, {name}: {apart} of 6000 apart", case.name);
-            assert!(apart < 180, "{}, {name}: {apart} apart", case.name);
+            assert!(apart < 90, "{}, {name}: {apart} apart", case.name);
         }
     }
 }

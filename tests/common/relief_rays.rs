@@ -46,6 +46,21 @@ pub fn case(
 /// Size, wrapping axes, tiles and surface of a relief.
 type Setting = ([u32; 2], [bool; 2], [u32; 2], Patches);
 
+/// No ray of a test is longer.
+pub const END: f64 = 1e9;
+
+/// A block of given heights.
+pub fn block(
+    size: [u32; 2],
+    wrap: [bool; 2],
+    tiles: [u32; 2],
+    patches: Patches,
+    z: Vec<f32>,
+) -> Arc<Relief> {
+    let heights = Heights::new(size, wrap, z).unwrap();
+    Arc::new(Relief::new(heights, patches, tiles).unwrap())
+}
+
 /// Every field in every setting, and some that are large, tiny or degenerate.
 pub fn cases() -> Vec<Case> {
     const SETTINGS: [Setting; 6] = [

@@ -2,6 +2,7 @@
 
 pub mod calibrate;
 pub mod common;
+pub mod cone_rows;
 pub mod cones;
 pub mod error;
 pub mod plot;

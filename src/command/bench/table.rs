@@ -1,6 +1,6 @@
 //! Rows as tables that are Markdown and read well on a terminal.
 
-use super::cones::{GeneratorRow, TracerRow};
+use super::cone_rows::{GeneratorRow, TracerRow};
 use super::row::Row;
 use super::steps::StepsRow;
 

@@ -48,6 +48,7 @@ fn cones_at(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {
     let shift = select(vec2<f32>(0.0), floor(middle), RELIEF_BOXES);
     let f = select(at, middle - shift, RELIEF_BOXES);
     let i = own + vec2<i32>(shift);
+    // Ratios at the four samples around, then between them.
     let a = cones_ratio(d, i);
     let b = cones_ratio(d, i + vec2<i32>(1, 0));
     let c = cones_ratio(d, i + vec2<i32>(0, 1));
@@ -72,12 +73,14 @@ fn cones_budget(d: vec3<f32>, s: f32) -> u32 {
     return u32(max(ceil(f32(relief.steps) * (0.5 + length(flat) / whole) / far), 1.0));
 }
 
+/// Starts a ray with the steps that its direction gives it.
 fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     var trace = course_begin(o, d, front, to);
     trace.left = cones_budget(d, trace.s);
     return trace;
 }
 
+/// One cone, and the look at where it ends.
 fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if (*trace).state != STATE_MOVING {
         return (*trace).state;
@@ -90,6 +93,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     let to = min(exit.x, end);
     let z = o.z + s * d.z;
     (*trace).gap = min(z, o.z + to * d.z) - relief_apex(cell);
+    // Only the first step can begin under the surface.
     if refine_over(o, d, s) <= 0.0 {
         course_hit(o, d, trace, s);
         return STATE_HIT;
@@ -122,6 +126,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     } else {
         course_cross(d, trace, exit);
     }
+    // The last of its own steps, and still above: not converged. 0 is no limit.
     if (*trace).left == 1u {
         (*trace).state = STATE_UNCONVERGED;
     }

@@ -1,12 +1,14 @@
 // Relief mapping: so many equal steps over the part of the ray inside the block, then
 // halvings (Policarpo, Oliveira, Comba 2005). What is thinner than a step is missed.
 
+/// Starts a ray with all of its steps.
 fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     var trace = course_begin(o, d, front, to);
     trace.left = relief.steps;
     return trace;
 }
 
+/// One of the steps that are left, all of one length.
 fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if (*trace).state != STATE_MOVING {
         return (*trace).state;
@@ -22,6 +24,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
             return STATE_HIT;
         }
     }
+    // The last ends where the ray does, whatever rounding made of the others.
     var next = (*trace).end;
     if left > 1u {
         next = s + ((*trace).end - s) / f32(left);

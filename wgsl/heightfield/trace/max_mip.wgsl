@@ -6,12 +6,14 @@
 /// Share of a way that f32 may use: heights are rounded by about 1e-7.
 const MAX_MIP_TRUST = 1.0 - 1e-5;
 
+/// Starts a ray at the one node over everything.
 fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     var trace = course_begin(o, d, front, to);
     trace.level = relief.levels - 1u;
     return trace;
 }
 
+/// One node.
 fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if (*trace).state != STATE_MOVING {
         return (*trace).state;
@@ -49,6 +51,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if exit.x >= (*trace).end {
         return course_end(o, d, trace);
     }
+    // Across the line, into the cell that a walk from cell to cell would come to.
     let lines = course_lines(d, low, high);
     course_pass(o, d, trace, exit, lines);
     // Up where the line ends a node of the next level too, or the tile.

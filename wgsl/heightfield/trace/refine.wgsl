@@ -20,6 +20,7 @@ fn refine_mark(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, s: f32) 
     course_hit(o, d, trace, s);
 }
 
+/// Halvings, and the middle of what is left.
 fn refine_binary(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracket: vec2<f32>) {
     var low = bracket.x;
     var high = bracket.y;
@@ -35,6 +36,7 @@ fn refine_binary(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
     refine_mark(o, d, trace, 0.5 * (low + high));
 }
 
+/// False positions: where the straight line between the heights at both ends crosses.
 fn refine_secant(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracket: vec2<f32>) {
     var low = bracket.x;
     var high = bracket.y;
@@ -61,6 +63,7 @@ fn refine_secant(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
     refine_mark(o, d, trace, at);
 }
 
+/// Halvings until both ends lie in one cell, or nearly, then the patches between them.
 fn refine_settle(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracket: vec2<f32>) {
     var low = bracket.x;
     var high = bracket.y;
@@ -76,6 +79,7 @@ fn refine_settle(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
             low = middle;
         }
     }
+    // The first of these patches that is met is the hit.
     course_land(o, d, trace, low);
     for (var i = 0u; i < SETTLE_CELLS; i++) {
         let exit = course_exit(o, d, (*trace).cell, (*trace).cell + 1);

@@ -3,6 +3,7 @@
 // down or level crosses the surface once at most, and the height at its end says whether it
 // did. A rising ray goes cell by cell until it is above everything.
 
+/// Starts a ray; nothing before `front` or beyond `to` counts.
 fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     return course_begin(o, d, front, to);
 }
@@ -13,10 +14,12 @@ fn relaxed_way(d: vec3<f32>, cell: vec2<i32>, z: f32, apex: f32) -> f32 {
         let ratio = ratios[relief_number(cell)] * WALK_TRUST_RATIO;
         return cone_way(d, ratio, z - apex, relief.offset);
     }
+    // The one node of the last level.
     let top = maxima_at(relief.levels - 1u, vec2<u32>(0u));
     return select(0.0, COURSE_FAR, z > top);
 }
 
+/// One cell as in the walk, and the look at the end of a jump.
 fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if (*trace).state != STATE_MOVING {
         return (*trace).state;
@@ -34,6 +37,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
             return STATE_HIT;
         }
     }
+    // In this cell nothing is met: a bracket may begin at its exit.
     var next = (*trace).s + relaxed_way(d, cell, z, apex) * WALK_TRUST_WAY;
     if exit.x >= end || (d.z > 0.0 && next >= end) {
         return course_end(o, d, trace);

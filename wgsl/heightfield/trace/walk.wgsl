@@ -3,10 +3,13 @@
 // fall per texel, before any higher cell can reach it; at least to the cell's exit. The
 // patch of the cell is solved where the ray comes down to A in it.
 
+/// Starts a ray; nothing before `front` or beyond `to` counts.
 fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     return course_begin(o, d, front, to);
 }
 
+/// One cell: its patch where the ray comes down to it, then the larger of the cell's exit
+/// and the cone's way.
 fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if (*trace).state != STATE_MOVING {
         return (*trace).state;
@@ -23,6 +26,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
             return STATE_HIT;
         }
     }
+    // The jump counts from where the ray stands, the exit is where the cell ends.
     let ratio = ratios[relief_number(cell)] * WALK_TRUST_RATIO;
     let next = (*trace).s + cone_way(d, ratio, z - apex, relief.offset) * WALK_TRUST_WAY;
     if max(next, exit.x) >= (*trace).end {
