@@ -31,6 +31,8 @@ const DISTANCE_SMOOTHING: f64 = 0.3;
 /// 1 a grazing ray would start far behind the place where it came under the threshold
 /// (at 0.9 on `bench-graze` 2.8 % of pixels did, at 0.99 0.2 %).
 const DISTANCE_WITHIN: f64 = 0.99;
+/// Gradients, as sums of four differences, below this are none, here as in the shader.
+const DISTANCE_FLAT: f64 = 1e-20;
 /// The longest automatic step, in radii of the last ball.
 const DISTANCE_MOST_RELAXED: f64 = 3.0;
 
@@ -367,7 +369,13 @@ impl Solid for Distance {
             .map(|&c| c * self.field(q + h * c, 0.0, work).0)
             .sum();
         Surface {
-            normal: g.try_normalize().unwrap_or(-ray.axis),
+            // A flat estimate has no gradient: turn such a point to the viewer. Deep in the
+            // set its squares would come under the range of f64, too.
+            normal: if g.length() > DISTANCE_FLAT {
+                g.normalize()
+            } else {
+                -ray.axis
+            },
             pigment: self.shape.trap(self.eye + q, self.iterations),
         }
     }
