@@ -204,7 +204,8 @@ proptest! {
 }
 
 #[test]
-fn rough_fields_take_at_most_110_nodes_to_the_place() {
+fn rough_fields_take_at_most_65_nodes_to_the_place() {
+    // Measured 56, 42, 31 and 53; the goal was 110.
     for f in [Field::Fbm, Field::Ridges, Field::Noise, Field::Spikes] {
         let heights = field(f, [256, 256], [false, false]);
         let (patches, options) = (Patches::default(), Options::default());
@@ -213,7 +214,7 @@ fn rough_fields_take_at_most_110_nodes_to_the_place() {
         let (_, work) = made.unwrap();
         let mean = work.nodes as f64 / 65_536.0;
         println!("{}: {mean:.1} nodes, at most {}", f.name(), work.most);
-        assert!(mean <= 110.0, "{f:?}: {mean}");
+        assert!(mean <= 65.0, "{f:?}: {mean}");
     }
 }
 

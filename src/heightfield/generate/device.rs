@@ -240,7 +240,7 @@ impl<'a> Maker<'a> {
         for turn in 0..aims.len().max(1) {
             let (mip, aim) = aims.get(turn).copied().unwrap_or((0, Aim::Around));
             let mut told = band.told(first, rows, mip, aim);
-            told.rounds = self.cutting.rounds.max(1);
+            told.rounds = (self.cutting.rounds / weight(prepared.generator)).max(1);
             told.keeps = u32::from(turn > 0 && !apart);
             let start = Instant::now();
             let read = self.until_done(band, mip, told, watch)?;
@@ -366,6 +366,16 @@ impl<'a> Maker<'a> {
             }
         };
         Ok(Some(starts.map(level).collect()))
+    }
+}
+
+/// How many rounds of a search one round of a generator takes. Of places that a device
+/// runs in step one may follow a ray to its end while the others wait, each in its turn.
+fn weight(generator: Generator) -> u32 {
+    if generator == Generator::RelaxedSearch {
+        8
+    } else {
+        1
     }
 }
 

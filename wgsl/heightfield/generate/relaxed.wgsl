@@ -42,7 +42,8 @@ fn surface_height(p: vec2<f32>) -> f32 {
     return mix(upper, lower, f.y);
 }
 
-/// Follows the ray through a sample to where it comes out; as many rounds as steps.
+/// Follows the ray through a sample to where it comes out. Each step counts as four
+/// rounds, one per sample read.
 fn scan_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, Search>) -> u32 {
     let entry = scan_height(place, step);
     let rise = entry - apex;
@@ -75,5 +76,5 @@ fn scan_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, Search>) -> u3
             break;
         }
     }
-    return k;
+    return 4u * k;
 }
