@@ -58,9 +58,12 @@ pub fn block(
     Arc::new(Relief::new(heights, patches, tiles).unwrap())
 }
 
+/// Samples, axes that wrap, tiles, and what lies between the samples.
+type Setting = ([u32; 2], [bool; 2], [u32; 2], Patches);
+
 /// Every field in every setting, and some that are large, tiny or degenerate.
 pub fn cases() -> Vec<Case> {
-    const SETTINGS: [([u32; 2], [bool; 2], [u32; 2], Patches); 6] = [
+    const SETTINGS: [Setting; 6] = [
         ([64, 64], [false, false], [1, 1], Patches::Bilinear),
         ([96, 65], [true, false], [1, 1], Patches::Bilinear),
         ([65, 80], [false, true], [1, 2], Patches::Bilinear),
