@@ -222,6 +222,29 @@ fn a_thin_rod_has_no_gaps_and_no_fringe() {
     }
 }
 
+/// Deep in the set every difference of the estimate is lost: such a point has no gradient,
+/// and still a normal of length 1, on both executors.
+#[test]
+fn normals_where_the_field_is_flat() {
+    let m = Mandelbox {
+        scale: -1.025_864_342_052_547_7,
+        min_radius: 0.000_240_441_218_161_666_9,
+        fixed_radius: 1.438_843_127_544_697_3,
+        fold_limit: 0.928_414_247_033_647_4,
+        ..Mandelbox::default()
+    };
+    let eye = DVec3::new(
+        0.638_620_022_163_400_7,
+        -1.340_407_182_638_302_2,
+        -0.751_712_268_458_604,
+    );
+    let mut plan = hard::from(m, eye, DVec3::ZERO);
+    plan.march.detail = 0.180_946_275_089_425_98;
+    for frame in both(&plan) {
+        assert_eq!(strain::faults(&plan, &frame), Vec::<String>::new());
+    }
+}
+
 /// A hit is where the estimate itself is within the threshold: not the estimate that
 /// steps divide by the Lipschitz constant, nor the one that they keep clear of the shell.
 #[test]

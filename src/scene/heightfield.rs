@@ -110,19 +110,20 @@ impl Heightfield {
         high.z < 0.0 || low.z > 1.0 || low.z > top()
     }
 
-    /// Height of a local position above the surface under it, in the world's length; far
-    /// from everything outside the block.
+    /// Room between a local position and the surface, in the world's length: its height
+    /// above the surface under it, or above the rim that is nearest and how far off that is.
     fn surface_gap(&self, p: DVec3) -> f64 {
         let xy = p.truncate();
-        if xy.cmplt(DVec2::ZERO).any() || xy.cmpge(self.placed.sides).any() {
-            return self.far;
-        }
-        let cell = xy.floor();
-        let at = xy - cell;
+        let inside = xy.clamp(DVec2::ZERO, self.placed.sides);
+        let last = (self.placed.sides - 1.0).max(DVec2::ZERO);
+        let cell = inside.floor().min(last);
+        let at = inside - cell;
         let height = self
             .relief
             .height([cell.x as i32, cell.y as i32], at.x, at.y);
-        (p.z - height) * self.placed.depth
+        let above = ((p.z - height) * self.placed.depth).max(0.0);
+        let off = (xy - inside) * self.placed.texel;
+        off.extend(above).length()
     }
 
     /// What f32 may be off by in local coordinates: some roundings of numbers of the size
@@ -266,9 +267,7 @@ impl Solid for Heightfield {
     /// Proven balls are far too small over steep ground, heights above it know nothing of
     /// what stands beside it: halfway between them is a good guess.
     fn room(&self, q: DVec3) -> f64 {
-        let gap = self
-            .surface_gap(self.placed.position(self.eye + q))
-            .max(0.0);
+        let gap = self.surface_gap(self.placed.position(self.eye + q));
         let proven = self.clearance(q);
         proven + HEIGHTFIELD_GUESS * (gap - proven)
     }

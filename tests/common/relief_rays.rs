@@ -61,9 +61,6 @@ pub fn block(
     Arc::new(Relief::new(heights, patches, tiles).unwrap())
 }
 
-/// Samples, axes that wrap, tiles, and what lies between the samples.
-type Setting = ([u32; 2], [bool; 2], [u32; 2], Patches);
-
 /// Every field in every setting, and some that are large, tiny or degenerate.
 pub fn cases() -> Vec<Case> {
     const SETTINGS: [Setting; 6] = [

@@ -1,6 +1,8 @@
 //! Structs of parameters have the layout that the shaders read.
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::LazyLock;
 
 use super::layout::{Layout, layout};
 use super::plans::every_program;
@@ -10,12 +12,14 @@ use conemarch::formula::rotation::RotationUniform;
 use conemarch::heightfield::generate::uniform::{
     GenerateUniform, MipUniform, PyramidUniform, Search,
 };
+use conemarch::heightfield::relief::ReliefUniform;
 use conemarch::pass::look::LookUniform;
 use conemarch::pass::march::LevelUniform;
 use conemarch::pass::queue::{COUNT_AT, Turn};
 use conemarch::scene::distance::DistanceUniform;
 use conemarch::scene::heightfield::HeightfieldUniform;
 use conemarch::scene::slab::SlabUniform;
+use conemarch::shader::Program;
 use conemarch::view::ViewUniform;
 
 /// Every struct of parameters, as Rust lays it out.
@@ -88,6 +92,20 @@ fn layouts() -> Vec<(&'static str, Layout)> {
             pad0,
             slack,
             pad1
+        }),
+        layout!(ReliefUniform {
+            samples,
+            cells,
+            domain,
+            wrap,
+            places,
+            offset,
+            scale,
+            levels,
+            steps,
+            lod,
+            rounds,
+            starts
         }),
         layout!(SlabUniform {
             eye,
@@ -173,8 +191,8 @@ fn layouts() -> Vec<(&'static str, Layout)> {
 
 /// The layout of a WGSL struct in the first program that has it.
 fn in_any_program(name: &str) -> Layout {
-    let programs = every_program();
-    let found = programs.values().find_map(|p| Layout::in_wgsl(p, name));
+    static PROGRAMS: LazyLock<BTreeMap<String, Program>> = LazyLock::new(every_program);
+    let found = PROGRAMS.values().find_map(|p| Layout::in_wgsl(p, name));
     found.unwrap_or_else(|| panic!("no program has a struct {name}"))
 }
 

@@ -120,20 +120,20 @@ fn walk_hit(walk: Walk) -> Hit {
     return trace_hit(walk.trace);
 }
 
-/// Room about where a walk stands: its height above the surface there.
+/// Room about where a walk stands.
 fn walk_radius(ray: Beam, walk: Walk) -> f32 {
     return surface_gap(heightfield.eye + to_local(ray.origin + walk.t * ray.axis));
 }
 
-/// Height of a local position above the surface under it, in the world's length; far from
-/// everything outside the block.
+/// Room between a local position and the surface, in the world's length: its height above
+/// the surface under it, or above the rim that is nearest and how far off that is.
 fn surface_gap(p: vec3<f32>) -> f32 {
     let sides = vec2<f32>(relief.domain);
-    if any(p.xy < vec2<f32>(0.0)) || any(p.xy >= sides) {
-        return heightfield.far;
-    }
-    let cell = vec2<i32>(floor(p.xy));
-    return (p.z - relief_height(cell, p.xy - vec2<f32>(cell))) * heightfield.depth;
+    let inside = clamp(p.xy, vec2<f32>(0.0), sides);
+    let cell = min(floor(inside), max(sides - 1.0, vec2<f32>(0.0)));
+    let height = relief_height(vec2<i32>(cell), inside - cell);
+    let above = max(0.0, (p.z - height) * heightfield.depth);
+    return length(vec3<f32>((p.xy - inside) * heightfield.texel, above));
 }
 
 /// Radius of a surely empty ball: for boxes of doubling size about the point, what lies
@@ -160,7 +160,7 @@ fn clearance(q: vec3<f32>) -> f32 {
 /// know nothing of what stands beside it: halfway between them is a good guess.
 fn room(q: vec3<f32>) -> f32 {
     let p = heightfield.eye + to_local(q);
-    return mix(clearance(q), max(0.0, surface_gap(p)), HEIGHTFIELD_GUESS);
+    return mix(clearance(q), surface_gap(p), HEIGHTFIELD_GUESS);
 }
 
 /// The world's direction of a local one of unit lengths.
