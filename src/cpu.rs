@@ -13,7 +13,7 @@ use crate::pass::march::{Ended, march};
 use crate::pass::{color, trace};
 use crate::plan::{Extras, Pass, Plan};
 use crate::pyramid::Level;
-use crate::render::{Progress, RenderError, Watch, blank, preparing};
+use crate::render::{Progress, RenderError, Watch, blank, prepare, preparing};
 use crate::scene::{Hit, Solid, Task};
 use crate::view::View;
 
@@ -39,15 +39,17 @@ struct Proofs {
 /// [`RenderError::Cancelled`], when `watch` returns `false`; heights or cones that cannot
 /// be had any more.
 pub fn render(plan: &Plan, extras: Extras, watch: Watch<'_>) -> Result<Frame, RenderError> {
-    plan.prepare(&mut |generator, heights, patches, options| {
+    let prepared = prepare(plan, &mut |generator, heights, patches, options| {
         let mut told = |share: f64| watch(&preparing(share));
         generate(generator, heights, patches, options, &mut told)
     })?;
-    plan.scene().run(Render {
+    let mut frame = plan.scene().run(Render {
         plan,
         extras,
         watch,
-    })
+    })?;
+    frame.lead(prepared);
+    Ok(frame)
 }
 
 struct Render<'a> {
@@ -97,7 +99,7 @@ impl Task for Render<'_> {
                 figures.iterations = Some(work.1);
             }
         }
-        let timed = run.frame.passes.iter().filter(|p| p.name != "color");
+        let timed = run.frame.passes.iter().filter(|p| p.marches());
         run.frame.march_ms = timed.map(|p| p.wall_ms).sum();
         Ok(run.frame)
     }

@@ -36,9 +36,9 @@ pub struct Work {
 /// What one pass did.
 #[derive(Clone, Debug, Default)]
 pub struct PassFigures {
-    /// `march 1/16`, `trace`, `color`.
+    /// `prepare`, `march 1/16`, `trace`, `color`.
     pub name: String,
-    /// Cells or pixels.
+    /// Cells or pixels; places of a cone map.
     pub cells: u64,
     /// Time on the device, where it can tell.
     pub gpu_ms: Option<f64>,
@@ -48,6 +48,13 @@ pub struct PassFigures {
     pub evaluations: Option<u64>,
     /// Fold iterations, where they were counted.
     pub iterations: Option<u64>,
+}
+
+impl PassFigures {
+    /// Whether the pass is one of march and trace, which times and counts are told of.
+    pub fn marches(&self) -> bool {
+        self.name == "trace" || self.name.starts_with("march ")
+    }
 }
 
 /// What a cone level ended with: fronts and states, row by row.
@@ -91,6 +98,11 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// Puts the figures of what was prepared before everything else.
+    pub(crate) fn lead(&mut self, prepared: Option<PassFigures>) {
+        self.passes.splice(0..0, prepared);
+    }
+
     /// Number of pixels in each state: sky, hit, unconverged.
     pub fn census(&self) -> [usize; 3] {
         let mut count = [0; 3];
@@ -103,7 +115,7 @@ impl Frame {
     /// Evaluations and iterations of march and trace per pixel, where counted.
     pub fn work_per_pixel(&self) -> Option<(f64, f64)> {
         let mut sum = (0, 0);
-        for pass in self.passes.iter().filter(|p| p.name != "color") {
+        for pass in self.passes.iter().filter(|p| p.marches()) {
             sum.0 += pass.evaluations?;
             sum.1 += pass.iterations?;
         }

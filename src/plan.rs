@@ -9,6 +9,8 @@ use std::fmt::Write as _;
 use glam::DVec3;
 
 use crate::formula::Shape;
+use crate::heightfield::generate::generator::Generator;
+use crate::heightfield::generate::program::program_of;
 use crate::heightfield::shape::HeightfieldShape;
 use crate::heightfield::tracing::{Make, PrepareError};
 use crate::key::{AutoCount, Fault, Key, Size};
@@ -107,12 +109,18 @@ pub struct Plan {
 impl Plan {
     /// A plan of a subject with defaults for everything else.
     pub fn new(subject: Subject) -> Self {
+        let look = Look {
+            // The papers' tracers run out of their own steps; a fractal's pixels that do
+            // are next to what they would have met.
+            flag_unconverged: matches!(subject, Subject::Heightfield(_)),
+            ..Look::default()
+        };
         Self {
             title: String::new(),
             subject,
             camera: Camera::default(),
             march: Marching::default(),
-            look: Look::default(),
+            look,
             size: [1280, 720],
         }
     }
@@ -183,6 +191,16 @@ impl Plan {
         }
     }
 
+    /// The scene with the same programs, and without what takes long to make.
+    fn outline(&self) -> Scene {
+        let Subject::Heightfield(shape) = &self.subject else {
+            return self.scene();
+        };
+        let ready = shape.outline().expect("a plan that passes its check");
+        let rule = self.march.stepping().rule;
+        Scene::Heightfield(Heightfield::new(ready, self.camera.eye, rule))
+    }
+
     fn auto_iterations(&self, shape: &Shape) -> u32 {
         // A quarter of the hit threshold: the skin of an unconverged estimate must not
         // move the surface by what a comparison could see.
@@ -237,16 +255,35 @@ impl Plan {
         self.look.light(up, distance)
     }
 
-    /// The passes, in order.
+    /// The passes over cells and pixels, in order.
     pub fn passes(&self) -> Vec<Pass> {
         let levels = self.pyramid().levels.into_iter().map(Pass::March);
         levels.chain([Pass::Trace, Pass::Color]).collect()
     }
 
+    /// What is made before them, if the scene needs a cone map made.
+    pub fn preparation(&self) -> Option<Preparation> {
+        let Subject::Heightfield(shape) = &self.subject else {
+            return None;
+        };
+        let generator = shape.tracing.generator()?;
+        let places = shape.places(generator)?;
+        Some(Preparation { generator, places })
+    }
+
+    /// Numbers that decide the picture beside the plan's text: those of the files that it
+    /// names.
+    pub fn contents(&self) -> Vec<u8> {
+        match &self.subject {
+            Subject::Heightfield(shape) => shape.contents(),
+            _ => Vec::new(),
+        }
+    }
+
     /// What would be run for a frame with extras, without a GPU: passes, programs, modules
     /// and constants.
     pub fn explain(&self, extras: Extras) -> String {
-        let scene = self.scene();
+        let scene = self.outline();
         let mut text = String::new();
         let [w, h] = self.size;
         let _ = writeln!(text, "{w} x {h}, mode {}", self.march.mode.name());
@@ -254,18 +291,20 @@ impl Plan {
         let mut programs: Vec<Program> = Vec::new();
         text.push_str("passes\n");
         let left_out = |pass: &Pass| extras.depth_only && *pass == Pass::Color;
+        let mut line = |name: &str, [w, h]: [u32; 2], limit: &str| {
+            let _ = writeln!(text, "  {name:<12} {w:>6} x {h:<6} steps {limit}");
+        };
+        if let Some(Preparation { generator, places }) = self.preparation() {
+            line(PREPARE, places, "-");
+            programs.push(program_of(generator));
+        }
         for pass in self.passes().into_iter().filter(|p| !left_out(p)) {
             let (cells, limit) = match pass {
                 Pass::March(level) => (level.cells(self.size), level.steps.to_string()),
                 Pass::Trace => (self.size, self.march.ray_steps().to_string()),
                 Pass::Color => (self.size, "-".into()),
             };
-            let name = pass.name();
-            let _ = writeln!(
-                text,
-                "  {name:<12} {:>6} x {:<6} steps {limit}",
-                cells[0], cells[1]
-            );
+            line(&pass.name(), cells, &limit);
             let program = self.program(&scene, pass, extras);
             if !programs.contains(&program) {
                 programs.push(program);
@@ -314,6 +353,19 @@ fn counters(on: bool) -> Module {
     } else {
         wgsl!("counters_off.wgsl")
     }
+}
+
+/// The name of what is made before the first pass.
+pub const PREPARE: &str = "prepare";
+
+/// A cone map that is made before the first pass, and kept for every later picture of the
+/// same heights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preparation {
+    /// Who makes it.
+    pub generator: Generator,
+    /// Places along each axis.
+    pub places: [u32; 2],
 }
 
 /// One step of a plan.

@@ -11,13 +11,14 @@ use std::time::Instant;
 
 use bytemuck::bytes_of;
 
-use crate::frame::Frame;
+use crate::frame::{Frame, PassFigures};
 use crate::gpu::buffer::{Buffer, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::kernel::{Kernel, KernelError};
 use crate::heightfield::generate::device::Maker;
+use crate::heightfield::tracing::Make;
 use crate::pass::queue::{COUNT_AT, Turn};
-use crate::plan::{Extras, Pass, Plan};
+use crate::plan::{Extras, PREPARE, Pass, Plan};
 use crate::pyramid::Block;
 use crate::scene::Scene;
 use crate::shader::Program;
@@ -71,6 +72,19 @@ pub(crate) fn preparing(share: f64) -> Progress {
         pass: format!("cones {:.0} %", 100.0 * share),
         done: 0.0,
     }
+}
+
+/// Makes what a plan needs beforehand; what that took, where something is made.
+pub(crate) fn prepare(plan: &Plan, make: Make<'_>) -> Result<Option<PassFigures>, RenderError> {
+    let start = Instant::now();
+    plan.prepare(make)?;
+    let wall_ms = start.elapsed().as_secs_f64() * 1e3;
+    Ok(plan.preparation().map(|made| PassFigures {
+        name: PREPARE.into(),
+        cells: made.places.map(u64::from).iter().product(),
+        wall_ms,
+        ..PassFigures::default()
+    }))
 }
 
 /// Told after every pass over a block (on the CPU, a band of rows); `false` cancels the
@@ -148,7 +162,7 @@ impl Renderer {
         watch: Watch<'_>,
     ) -> Result<Frame, RenderError> {
         let mut maker = Maker::new(&self.device);
-        plan.prepare(&mut |generator, heights, patches, options| {
+        let prepared = prepare(plan, &mut |generator, heights, patches, options| {
             let mut told = |share: f64| watch(&preparing(share));
             maker.generate(generator, heights, patches, options, &mut told)
         })?;
@@ -192,9 +206,10 @@ impl Renderer {
         frame.march_ms = frame
             .passes
             .iter()
-            .filter(|p| p.name != "color")
+            .filter(|p| p.marches())
             .map(|p| p.wall_ms)
             .sum();
+        frame.lead(prepared);
         Ok(frame)
     }
 

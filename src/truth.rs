@@ -1,7 +1,7 @@
 //! The truth that pictures are compared with (docs/method.md, 5), and where it is kept.
 //!
 //! Truths are kept in the user's cache folder, under a hash of everything that decides
-//! them: the plan's text and this very program. A program that was built anew, or a plan
+//! them: the plan's text, the heights of files that it names, and this very program. A program that was built anew, or a plan
 //! with another digit, finds nothing there; so does a file that was cut or changed.
 
 use std::fs;
@@ -14,7 +14,7 @@ use crate::cpu;
 use crate::frame::{Frame, State};
 use crate::mode::{Marching, Mode};
 use crate::output::{self, Place};
-use crate::plan::{Extras, Plan};
+use crate::plan::{Extras, Plan, Subject};
 use crate::preset;
 use crate::render::{RenderError, Watch};
 
@@ -41,6 +41,9 @@ const LEAST_STRIDE: f64 = 1.0 / 160.0;
 /// is spent has one value, so that all ways of spending it are held to the same truth.
 fn asked(plan: &Plan) -> Plan {
     let mut asked = plan.clone();
+    if let Subject::Heightfield(shape) = &mut asked.subject {
+        *shape = shape.exact();
+    }
     asked.march = Marching {
         mode: Mode::Truth,
         detail: plan.march.detail,
@@ -124,6 +127,7 @@ impl Cache {
         let mut hash = Sha256::new();
         hash.update(self.program);
         hash.update(preset::write(&asked(plan)));
+        hash.update(plan.contents());
         let name: String = hash.finalize().iter().map(|b| format!("{b:02x}")).collect();
         self.folder.join(format!("truth-{name}"))
     }
@@ -228,6 +232,7 @@ fn unpack(bytes: &[u8], size: [u32; 2]) -> Option<Truth> {
 mod tests {
     use super::*;
     use crate::formula::{Shape, balls::Balls};
+    use crate::heightfield::shape::HeightfieldShape;
     use crate::plan::Subject;
 
     fn plan() -> Plan {
@@ -237,6 +242,41 @@ mod tests {
         });
         plan.size = [20, 15];
         plan
+    }
+
+    #[test]
+    fn a_truth_of_heights_is_found_while_its_file_is_the_same() {
+        let name = format!("conemarch-heights-{}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        let cache = Cache::at(folder.join("kept")).expect("this program can be read");
+        fs::create_dir_all(&folder).expect("a folder");
+        let file = folder.join("slope-4x3.raw");
+        let plan = |heights: [f32; 12]| {
+            fs::write(&file, cast_slice::<f32, u8>(&heights)).expect("can be written");
+            let mut shape = HeightfieldShape::default();
+            shape.source.field = file.to_string_lossy().into_owned();
+            let mut plan = Plan::new(Subject::Heightfield(shape));
+            plan.size = [20, 15];
+            plan
+        };
+        let slope: [f32; 12] = std::array::from_fn(|i| i as f32 / 12.0);
+        let first = plan(slope);
+        let (_, before) = cached(Some(&cache), &first, &mut |_| true).expect("made");
+        assert!(!before && cache.find(&plan(slope)).is_some());
+        // By whom rays are traced does not matter.
+        let mut other = plan(slope);
+        let Subject::Heightfield(shape) = &mut other.subject else {
+            unreachable!("made above");
+        };
+        shape.tracing.tracer = "csm-fixed";
+        assert!(cache.find(&other).is_some());
+        // One height of the file does, with the same text of the plan.
+        let mut bent = slope;
+        bent[5] += 1e-6;
+        let second = plan(bent);
+        assert_eq!(preset::write(&first), preset::write(&second));
+        assert!(cache.find(&second).is_none());
+        fs::remove_dir_all(&folder).expect("made above");
     }
 
     #[test]

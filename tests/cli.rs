@@ -349,7 +349,8 @@ fn stats_have_the_promised_fields() {
         ];
         assert_eq!(names, promised);
         for pass in passes {
-            assert_eq!(pass.as_object().expect("an object").len(), 5, "{pass}");
+            assert_eq!(pass.as_object().expect("an object").len(), 6, "{pass}");
+            assert!(pass["wall_ms"].is_number(), "{pass}");
             assert_eq!(
                 pass["evaluations"].is_null(),
                 pass["name"] == "color",
@@ -363,6 +364,32 @@ fn stats_have_the_promised_fields() {
             .sum();
         assert!((sum / (24.0 * 16.0) - share("evaluations_per_pixel")).abs() < 1e-9);
     }
+}
+
+#[test]
+fn what_a_heightfield_prepares_is_told_apart() {
+    let folder = Folder::new();
+    let small = "scene.field=\"fbm:33x25\"";
+    let args = ["--set", small, "--stats", "-", "-o", "a.png"];
+    let output = folder.done(&tiny("terrain", &args));
+    let line = said(&output);
+    assert!(
+        line.contains("cone map ") && line.contains(" ms, march"),
+        "{line}"
+    );
+    let stats: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let first = &stats["passes"][0];
+    assert_eq!(
+        (&first["name"], &first["cells"]),
+        (&"prepare".into(), &(32 * 24).into())
+    );
+    assert!(first["evaluations"].is_null());
+    // It is no part of march and trace, whose figures are whole.
+    assert!(stats["evaluations_per_pixel"].as_f64() > Some(0.0));
+    let walls = stats["passes"].as_array().expect("a list")[1..6].iter();
+    let sum: f64 = walls.filter_map(|p| p["wall_ms"].as_f64()).sum();
+    let wall = stats["wall_ms"].as_f64().expect("a time");
+    assert!((sum - wall).abs() < 1e-6 * wall.max(1.0), "{sum} {wall}");
 }
 
 #[test]

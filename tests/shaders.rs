@@ -29,7 +29,7 @@ use conemarch::heightfield::trace::max_mip::MaxMipTracer;
 use conemarch::heightfield::trace::relaxed::WalkRelaxed;
 use conemarch::heightfield::trace::walk::Walk;
 use conemarch::heightfield::trace::{AnyTracer, Tracer};
-use conemarch::plan::{Extras, Pass, Plan};
+use conemarch::plan::{Extras, Pass, Plan, Subject};
 use conemarch::shader::{Module, Program, ShaderError};
 use glam::DVec3;
 use wgpu::naga::valid::Capabilities;
@@ -195,7 +195,7 @@ fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
 /// Files of heightfields: those that make cone maps, and those of every tracer.
 fn heightfield_paths() -> BTreeSet<&'static str> {
     let mut all = BTreeSet::new();
-    for program in generate::every_program().unwrap() {
+    for program in generate::every_program() {
         all.extend(paths(&program));
     }
     let heights = Heights::new([2, 2], [false; 2], vec![0.5; 4]).unwrap();
@@ -347,6 +347,32 @@ fn what_is_asked_for_beside_the_picture_is_explained() {
     assert!(
         plain.contains("  color ") && !shapes.contains("color"),
         "{shapes}"
+    );
+}
+
+#[test]
+fn what_is_prepared_for_a_heightfield_is_explained() {
+    let mut plan = preset("terrain");
+    let text = plan.explain(Extras::default());
+    let first = text.lines().skip(2).take(2).collect::<Vec<_>>().join("\n");
+    assert_eq!(first, "passes\n  prepare         511 x 511    steps -");
+    assert!(explained(&text, "generate").contains("wgsl/heightfield/generate/search.wgsl"));
+    // What is explained is what is run, though no cones are made for it.
+    for program in programs_of(&plan) {
+        let listing = program.describe();
+        let extras = listing.contains("counters.wgsl") || listing.contains("COLOR_KEEPS_NORMALS=1");
+        let plain = format!("  {}\n{listing}", program.entry);
+        assert_eq!(text.contains(&plain), !extras, "{plain}\n{text}");
+    }
+    // Nothing is prepared where nothing is needed.
+    let Subject::Heightfield(shape) = &mut plan.subject else {
+        unreachable!("the terrain");
+    };
+    shape.tracing.tracer = "max-mip";
+    let text = plan.explain(Extras::default());
+    assert!(
+        !text.contains("prepare") && !text.contains("generate"),
+        "{text}"
     );
 }
 

@@ -18,7 +18,7 @@ use super::{interrupt, memory, size};
 use crate::frame::Frame;
 use crate::gpu::device::Choice;
 use crate::output::{BitDepth, Layer, Shades, write_exr, write_png};
-use crate::plan::{Extras, Plan};
+use crate::plan::{Extras, PREPARE, Plan};
 use crate::preset::{self, Override, Preset};
 use crate::render::{Progress, RenderError};
 use crate::truth::{self, Cache};
@@ -303,7 +303,9 @@ fn warm_times(executor: &mut Executor, plan: &Plan, frame: &mut Frame) -> Result
     runs.sort_by(|a, b| a.march_ms.total_cmp(&b.march_ms));
     let middle = &runs[AGAIN / 2];
     frame.march_ms = middle.march_ms;
-    for (pass, warm) in frame.passes.iter_mut().zip(&middle.passes) {
+    // What was prepared is kept: only the first time tells what it takes.
+    let passes = frame.passes.iter_mut().zip(&middle.passes);
+    for (pass, warm) in passes.filter(|(pass, _)| pass.marches()) {
         pass.gpu_ms = warm.gpu_ms;
         pass.wall_ms = warm.wall_ms;
     }
@@ -313,15 +315,16 @@ fn warm_times(executor: &mut Executor, plan: &Plan, frame: &mut Frame) -> Result
 /// One line about a finished picture.
 fn summary(output: &Path, frame: &Frame) -> String {
     let [w, h] = frame.size;
-    let color = frame.passes.iter().find(|p| p.name == "color");
-    let color = color.map_or(String::new(), |p| format!(", colour {:.0} ms", p.wall_ms));
+    let time = |name: &str| Some(frame.passes.iter().find(|p| p.name == name)?.wall_ms);
+    let color = time("color").map_or(String::new(), |ms| format!(", colour {ms:.0} ms"));
+    let cones = time(PREPARE).map_or(String::new(), |ms| format!("cone map {ms:.0} ms, "));
     let [sky, hit, unconverged] = shares(frame).map(|s| 100.0 * s);
     let name = match output.to_str() {
         Some("-") => "standard output".into(),
         _ => output.display().to_string(),
     };
     format!(
-        "{name}  {w} x {h}  march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %",
+        "{name}  {w} x {h}  {cones}march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %",
         frame.march_ms
     )
 }

@@ -38,10 +38,12 @@ pub struct Stats {
 /// One pass.
 #[derive(Clone, Debug, Serialize)]
 pub struct PassStats {
-    /// `march 1/16`, `trace` or `color`.
+    /// `prepare`, `march 1/16`, `trace` or `color`.
     pub name: String,
-    /// Cells or pixels.
+    /// Cells or pixels; places of a cone map.
     pub cells: u64,
+    /// Time on the clock.
+    pub wall_ms: f64,
     /// Time on the device, where it tells.
     pub gpu_ms: Option<f64>,
     /// Estimate evaluations, where they were counted.
@@ -58,6 +60,7 @@ impl Stats {
         let passes = frame.passes.iter().map(|p| PassStats {
             name: p.name.clone(),
             cells: p.cells,
+            wall_ms: p.wall_ms,
             gpu_ms: p.gpu_ms,
             evaluations: p.evaluations,
             iterations: p.iterations,

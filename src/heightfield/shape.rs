@@ -4,16 +4,18 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use bytemuck::cast_slice;
 use glam::{DVec2, DVec3};
 
 use super::conemap::ConeMap;
+use super::generate::generator::Generator;
 use super::heights::Patches;
 use super::kept::Kept;
 use super::load::{LoadOptions, Loaded, Named, load};
 use super::placed::Placed;
 use super::relief::Relief;
 use super::trace::AnyTracer;
-use super::tracing::{Make, PrepareError, Tracing, on_cpu};
+use super::tracing::{Make, PrepareError, Tracing, on_cpu, without_cones};
 use crate::key::{Counts, Fault, Key, Number, Switch, Text, Triple, Word};
 
 /// Which axes of a height map come round to their start.
@@ -256,14 +258,65 @@ impl HeightfieldShape {
     pub fn ready(&self) -> Result<Ready, PrepareError> {
         let relief = self.relief()?;
         let cones = self.cones(&relief, &mut on_cpu)?;
+        self.assembled(relief, (*cones).clone())
+    }
+
+    /// What [`HeightfieldShape::ready`] gives, with maps of no cones in place of those
+    /// that would have to be made: its programs are the same.
+    ///
+    /// # Errors
+    /// As [`HeightfieldShape::ready`].
+    pub fn outline(&self) -> Result<Ready, PrepareError> {
+        let relief = self.relief()?;
+        let cones = self
+            .tracing
+            .cones(&relief, &self.source.folder, &mut without_cones)?;
+        self.assembled(relief, cones.map(Arc::new))
+    }
+
+    fn assembled(
+        &self,
+        relief: Arc<Relief>,
+        cones: Option<Arc<ConeMap>>,
+    ) -> Result<Ready, PrepareError> {
         let [w, h] = relief.domain().map(f64::from);
         let sides = DVec2::new(w, h);
         Ok(Ready {
-            tracer: self.tracing.tracer(&relief, (*cones).clone())?,
+            tracer: self.tracing.tracer(&relief, cones)?,
             placed: Placed::new(sides, self.width, self.depth, self.centre, self.turn),
             relief,
             name: self.tracing.tracer,
         })
+    }
+
+    /// Places of a generator's map along each axis; `None` where there are no heights.
+    pub fn places(&self, generator: Generator) -> Option<[u32; 2]> {
+        let relief = self.relief().ok()?;
+        Some(if generator.over_cells() {
+            relief.cells()
+        } else {
+            relief.heights().size()
+        })
+    }
+
+    /// The numbers of a file's heights; none of a field, whose word says everything.
+    pub fn contents(&self) -> Vec<u8> {
+        if Named::read(&self.source.field).is_some() {
+            return Vec::new();
+        }
+        let relief = self.relief();
+        let heights = relief.as_ref().map(|r| r.heights());
+        heights.map_or(Vec::new(), |h| cast_slice(h.data()).to_vec())
+    }
+
+    /// The same block, every first hit found: by a tracer that needs no cones.
+    pub fn exact(&self) -> Self {
+        let mut exact = self.clone();
+        exact.tracing = Tracing {
+            tracer: "max-mip",
+            ..Tracing::default()
+        };
+        exact
     }
 
     fn relief_key(&self) -> ReliefKey {

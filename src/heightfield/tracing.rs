@@ -42,6 +42,32 @@ pub fn on_cpu(
     generate(generator, heights, patches, options, &mut |_| true)
 }
 
+/// Makes a map of the right kind and size that lets no ray go anywhere, at once.
+pub(super) fn without_cones(
+    generator: Generator,
+    heights: &Heights,
+    patches: Patches,
+    options: &Options,
+) -> Result<ConeMap, GenerateError> {
+    let size = if generator.over_cells() {
+        heights.cells(patches)
+    } else {
+        heights.size()
+    };
+    let places = size[0] as usize * size[1] as usize;
+    Ok(ConeMap {
+        kind: generator.kind(),
+        size,
+        wrap: heights.wrap(),
+        ratios: vec![0.0; places * generator.channels()],
+        offset: if generator.over_cells() {
+            options.offset
+        } else {
+            0.0
+        },
+    })
+}
+
 /// Why a heightfield cannot be made ready.
 #[derive(Debug, Error)]
 pub enum PrepareError {

@@ -214,7 +214,7 @@ impl Look {
             Key::new(
                 "flag_unconverged",
                 Switch(&mut self.flag_unconverged),
-                "paint pixels that reached a limit in magenta",
+                "paint pixels that reached a limit in magenta; true for heightfields",
             ),
         ]
     }

@@ -155,8 +155,8 @@ fn measure(
             // The first round warms up: programs without counters are new.
             if run > 0 {
                 wall.push(frame.march_ms);
-                let each = frame.passes.iter().map(|p| p.gpu_ms);
-                gpu.extend(each.sum::<Option<f64>>());
+                let each = frame.passes.iter().filter(|p| p.marches());
+                gpu.extend(each.map(|p| p.gpu_ms).sum::<Option<f64>>());
             }
         }
     }

@@ -158,7 +158,8 @@ fn measure(
     let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); frame.passes.len()];
     for run in 0..=RUNS {
         let warm = executor.render(plan, timed, watch)?;
-        for (pass, [wall, gpu]) in warm.passes.iter().zip(&mut times) {
+        let passes = warm.passes.iter().filter(|p| p.marches());
+        for (pass, [wall, gpu]) in passes.zip(&mut times) {
             if run > 0 {
                 wall.push(pass.wall_ms);
                 gpu.extend(pass.gpu_ms);
@@ -166,7 +167,8 @@ fn measure(
         }
     }
     let mut rows = Vec::new();
-    for (at, (pass, [mut wall, mut gpu])) in frame.passes.iter().zip(times).enumerate() {
+    let passes = frame.passes.iter().filter(|p| p.marches());
+    for (at, (pass, [mut wall, mut gpu])) in passes.zip(times).enumerate() {
         let (work, states, width) = match frame.levels.get(at) {
             Some(level) => (&level.work, &level.state, level.cells[0]),
             None => (&frame.work, &frame.state, frame.size[0]),

@@ -5,7 +5,7 @@ use super::prepared::Prepared;
 use super::quick::Rule;
 use super::reach::Aim;
 use super::relaxed::START;
-use crate::heightfield::heights::{Heights, HeightsError, Patches};
+use crate::heightfield::heights::{Heights, Patches};
 use crate::shader::{Module, Program};
 use crate::wgsl;
 
@@ -76,20 +76,23 @@ pub fn program(prepared: &Prepared<'_>) -> Program {
     Program::new("generate", modules)
 }
 
-/// Every program that a generator can be made of.
+/// The program of a generator, whatever it is used on.
 ///
-/// # Errors
-/// None: a map of one sample can always be made.
-pub fn every_program() -> Result<Vec<Program>, HeightsError> {
-    let heights = Heights::new([1, 1], [false, false], vec![0.0])?;
-    let mut all = vec![
+/// # Panics
+/// Never: a map of one sample can always be made.
+pub fn program_of(generator: Generator) -> Program {
+    let one = Heights::new([1, 1], [false, false], vec![0.0]).expect("one sample is a map");
+    let options = Options::default();
+    let prepared = Prepared::new(generator, &one, Patches::default(), &options);
+    program(&prepared.expect("the default options are in range"))
+}
+
+/// Every program that a generator can be made of.
+pub fn every_program() -> Vec<Program> {
+    let pyramids = [
         super::pyramid::tiles_program(),
         super::pyramid::mips_program(),
     ];
-    for generator in Generator::ALL {
-        let options = Options::default();
-        let prepared = Prepared::new(generator, &heights, Patches::default(), &options);
-        all.extend(prepared.ok().map(|p| program(&p)));
-    }
-    Ok(all)
+    let generators = Generator::ALL.into_iter().map(program_of);
+    pyramids.into_iter().chain(generators).collect()
 }
