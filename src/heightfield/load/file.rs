@@ -137,7 +137,7 @@ fn read_raw(path: &Path, mut opened: Opened, size: Option<[u32; 2]>) -> Result<G
     let size = size.or_else(|| stem.and_then(|s| size_in(&s)));
     let Some([w, h]) = size else {
         return Err(
-            "is raw and does not tell its size; give --size WxH, or put it into the name like heights-512x256.raw"
+            "is raw and does not tell its size; put it into the name like heights-512x256.raw (or give --size WxH where that is an option)"
                 .into(),
         );
     };

@@ -121,7 +121,7 @@ fn into_range(values: &mut [f32], width: usize, normalize: bool) -> Result<(), S
         }
     } else if low < 0.0 || high > 1.0 {
         return Err(format!(
-            "its heights reach from {low} to {high}, and heights are 0 to 1; --normalize brings the lowest to 0 and the highest to 1"
+            "its heights reach from {low} to {high}, and heights are 0 to 1; normalize (--normalize, or normalize = true in a preset) brings the lowest to 0 and the highest to 1"
         ));
     }
     Ok(())
