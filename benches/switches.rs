@@ -33,7 +33,7 @@ const SWITCHES: &[Switch] = &[
 ];
 
 /// Warm runs that a median is taken of.
-const RUNS: usize = 7;
+const RUNS: usize = 21;
 
 fn rotate(plan: &mut Plan, degrees: f64) {
     use conemarch::{formula::Shape, plan::Subject};

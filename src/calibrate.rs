@@ -5,7 +5,9 @@
 //! is a property of the scene (docs/method.md, 2). The probes follow rays through evenly spread
 //! pixels in tiny steps, and then the whole chain of cones above each of them, and propose
 //! the slope that steps should divide by, the smallest shell, and the narrowest cones for
-//! which no more pixels are lost than a budget allows.
+//! which no more pixels are lost than a budget allows: not only of the probes, which are few
+//! and chosen by, but of the picture. So a share that was counted is taken for what it may
+//! well be, and what is told in the end was counted on as many other pixels.
 
 use rayon::prelude::*;
 
@@ -27,6 +29,16 @@ const SHELLS: [f64; 10] = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 const FUDGES: [f64; 14] = [
     0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95,
 ];
+
+/// Standard errors that are added to a counted share: one in forty is larger by more.
+const DOUBT: f64 = 2.0;
+
+/// What a share may well be that was counted on so many probes. None lost is taken for
+/// none: a budget of nothing could not be held otherwise.
+fn at_most(share: f64, probes: usize) -> f64 {
+    let n = probes.max(1) as f64;
+    share + DOUBT * (share * (1.0 - share) / n).sqrt()
+}
 
 /// A pixel and its truth.
 #[derive(Clone, Copy, Debug)]
@@ -52,11 +64,11 @@ pub struct Calibration {
     pub shell: f64,
     /// Factor on the cones of each level, coarse to fine.
     pub fudge: Vec<f64>,
-    /// Share of probes that the proposal loses.
+    /// Share of other probes that the proposal loses.
     pub lost: f64,
-    /// Whether that is within the budget.
+    /// Whether the budget holds, on the probes with their doubt and on the others.
     pub within: bool,
-    /// The probes, to check a picture with.
+    /// The other probes, to check a picture with.
     pub probes: Vec<Probe>,
 }
 
@@ -71,7 +83,8 @@ impl Calibration {
     }
 }
 
-/// Proposes settings that lose at most the share `budget` of pixels, from so many rays.
+/// Proposes settings that lose at most the share `budget` of pixels, from so many rays,
+/// and counts what they lose on as many others.
 /// `None` if `going` says to stop.
 pub fn calibrate(
     plan: &Plan,
@@ -84,7 +97,7 @@ pub fn calibrate(
     truth.march.stride = Some(STRIDE);
     truth.march.clip = Some(true);
     let mut probes = Vec::new();
-    let pixels = spread(plan.size, rays);
+    let pixels = spread(plan.size, 2 * rays);
     // In parts, so that one can stop in between.
     for part in pixels.chunks(256) {
         probes.extend(truth.scene().run(Follow {
@@ -95,16 +108,13 @@ pub fn calibrate(
             return None;
         }
     }
+    let others = probes.split_off(rays.min(probes.len()));
     let (slope, slack) = plan.scene().run(Slopes {
         plan,
         probes: &probes,
     });
-    let lost = |plan: &Plan| {
-        plan.scene().run(Lost {
-            plan,
-            probes: &probes,
-        })
-    };
+    let count = |plan: &Plan, probes: &[Probe]| plan.scene().run(Lost { plan, probes });
+    let lost = |plan: &Plan| at_most(count(plan, &probes), probes.len());
     let mut best = plan.clone();
     best.march.mode = Mode::Calibrated;
     best.march.fudge = vec![1.0];
@@ -137,7 +147,8 @@ pub fn calibrate(
         }
     }
     best.march.fudge = if fudge.is_empty() { vec![1.0] } else { fudge };
-    let lost = lost(&best);
+    let held = lost(&best) <= budget;
+    let lost = count(&best, &others);
     Some(Calibration {
         slope,
         slack,
@@ -146,8 +157,8 @@ pub fn calibrate(
         shell: best.march.shell,
         fudge: best.march.fudge,
         lost,
-        within: lost <= budget,
-        probes,
+        within: held && lost <= budget,
+        probes: others,
     })
 }
 

@@ -3,17 +3,19 @@
 //! Errors are in footprints: `e = (t - t_ref) / footprint(t_ref)`, where a footprint is
 //! half a pixel's width at the reference's distance.
 //!
-//! Fronts of cones are allowed to lie beyond the reference's hit by the hit threshold of
-//! the pixel, `detail` footprints, and by no more. A hit is where the estimate falls under
-//! that threshold, so the reference stops in a skin up to so thick before the surface;
-//! what is proven free may reach into that skin (docs/method.md, 2). A ray that grazes the
-//! surface crosses the skin aslant, over more than its thickness: it gets no more allowance,
-//! so that a few such pixels may count whose proof is right. Roundings are far smaller than
-//! the threshold and get none of their own.
+//! A hit is where the estimate falls under the hit threshold, so the reference stops in a
+//! skin before the surface, and what is proven free may reach into that skin, up to the
+//! share of it that cones keep clear of (docs/method.md, 2); a ray that grazes the surface
+//! stays in the skin for long. Where a front lies beyond the reference's hit by more than the
+//! threshold, the ray is therefore followed on from that hit: the front is a violation if
+//! the ray comes as near to the surface as cones must not, before it is there.
+
+use rayon::prelude::*;
 
 use crate::frame::{Frame, State};
 use crate::plan::Plan;
-use crate::view::View;
+use crate::scene::{Solid, Task};
+use crate::view::{Beam, View, footprint};
 
 /// How far one frame's depth is from another's. Shares are of all pixels.
 #[derive(Clone, Debug, Default)]
@@ -36,8 +38,8 @@ pub struct Report {
     pub unconverged: f64,
     /// Share whose state, hit or not, differs.
     pub mask: f64,
-    /// Per cone level: divisor, and pixels whose front lies beyond the reference's hit by
-    /// more than their hit threshold.
+    /// Per cone level: divisor, and pixels whose ray comes to the surface before the front
+    /// that was proven free.
     pub start_violations: Vec<(u32, u64)>,
 }
 
@@ -99,7 +101,11 @@ pub fn compare(frame: &Frame, reference: &Frame, plan: &Plan) -> Report {
     }
     depths.sort_by(f64::total_cmp);
     report.depth_error = [0.5, 0.95, 0.99, 1.0].map(|q| quantile(&depths, q));
-    report.start_violations = violations(frame, reference, view, plan.march.detail);
+    report.start_violations = plan.scene().run(Violations {
+        frame,
+        reference,
+        plan,
+    });
     report
 }
 
@@ -112,27 +118,67 @@ pub fn quantile(sorted: &[f64], q: f64) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// Per kept cone level, pixels whose cell's front lies beyond their reference hit by more
-/// than the hit threshold there, `detail` footprints.
-fn violations(frame: &Frame, reference: &Frame, view: &View, detail: f64) -> Vec<(u32, u64)> {
-    let width = frame.size[0] as usize;
-    let kept = frame.levels.iter().filter(|l| !l.front.is_empty());
-    kept.map(|level| {
-        let mut count = 0;
-        for (i, (&t, &s)) in reference.depth.iter().zip(&reference.state).enumerate() {
-            if s != State::Hit as u8 {
-                continue;
+/// Share of the skin that cones keep clear of, of which fronts may use so much: f32 decides
+/// a little otherwise than f64.
+const CLEAR: f64 = 0.9;
+/// The least share that is looked for, where cones keep clear of none.
+const LEAST_CLEAR: f64 = 1e-3;
+/// Share of the clearance that the ray is followed on by, small enough to miss no thin part
+/// that the reference would hit.
+const FOLLOW: f64 = 0.1;
+/// Steps after which a ray is no longer followed, and counts.
+const MOST_FOLLOWED: u32 = 20_000;
+
+/// Per kept cone level, pixels whose cell's front lies beyond a place where their ray comes
+/// to the surface.
+struct Violations<'a> {
+    frame: &'a Frame,
+    reference: &'a Frame,
+    plan: &'a Plan,
+}
+
+impl Task for Violations<'_> {
+    type Output = Vec<(u32, u64)>;
+
+    fn run<S: Solid>(self, solid: &S) -> Self::Output {
+        let (plan, reference) = (self.plan, self.reference);
+        let view = plan.view();
+        let width = self.frame.size[0] as usize;
+        let least = (CLEAR * plan.march.shell).max(LEAST_CLEAR) / plan.lipschitz();
+        // Where each ray comes to the surface, as far as a front could ask.
+        let met = |ray: &Beam, hit: f64, front: f64| {
+            let mut t = hit;
+            for _ in 0..MOST_FOLLOWED {
+                let threshold = plan.march.detail * footprint(ray, t);
+                let clear = solid.clearance(ray.at(t));
+                if t >= front {
+                    return false;
+                }
+                if clear <= least * threshold {
+                    return true;
+                }
+                t += FOLLOW * clear;
             }
-            let (x, y) = (i % width, i / width);
-            let d = level.divisor as usize;
-            let front = level.front[(y / d) * level.cells[0] as usize + x / d];
-            let grain = view.view_ray([x as u32, y as u32]).grain;
-            let t = f64::from(t);
-            count += u64::from(f64::from(front) > t + detail * grain * t);
-        }
-        (level.divisor, count)
-    })
-    .collect()
+            true
+        };
+        let kept = self.frame.levels.iter().filter(|l| !l.front.is_empty());
+        let levels = kept.map(|level| {
+            let wrong = |i: &usize| {
+                if reference.state[*i] != State::Hit as u8 {
+                    return false;
+                }
+                let (x, y) = (i % width, i / width);
+                let d = level.divisor as usize;
+                let front = level.front[(y / d) * level.cells[0] as usize + x / d];
+                let (front, hit) = (f64::from(front), f64::from(reference.depth[*i]));
+                let ray = view.view_ray([x as u32, y as u32]);
+                front > hit + plan.march.detail * footprint(&ray, hit) && met(&ray, hit, front)
+            };
+            let all = (0..reference.depth.len()).into_par_iter();
+            (level.divisor, all.filter(wrong).count() as u64)
+        });
+        levels.collect()
+    }
 }
 
 #[cfg(test)]
@@ -149,36 +195,87 @@ mod tests {
         plan
     }
 
+    /// A frame of one level of single pixels, whose fronts lie so far along their rays.
+    fn with_fronts(reference: &Frame, front: Vec<f32>) -> Frame {
+        let level = LevelLayer {
+            divisor: 1,
+            cells: reference.size,
+            front,
+            ..LevelLayer::default()
+        };
+        Frame {
+            levels: vec![level],
+            ..reference.clone()
+        }
+    }
+
+    /// Steep rays onto the slab cross its skin at once; what lies before the surface is
+    /// right, and what lies behind it is not.
     #[test]
     fn a_front_in_the_skin_is_no_violation_and_one_beyond_it_is() {
         let mut plan = row(8);
-        let grain = |plan: &Plan, x: u32| plan.view().view_ray([x, 0]).grain;
-        let reference = Frame {
-            size: plan.size,
-            depth: vec![5.0; 8],
-            state: [1, 1, 1, 1, 1, 1, 0, 2].to_vec(),
-            ..Frame::default()
-        };
-        for detail in [0.5, 1.0, 3.0] {
+        plan.camera.eye = glam::DVec3::new(0.2, 0.1, 9.0);
+        plan.camera.target = glam::DVec3::ZERO;
+        plan.camera.up = glam::DVec3::Y;
+        plan.camera.fov = 1.0;
+        for (detail, shell) in [(1.0, 0.45), (3.0, 0.45), (1.0, 0.0), (0.5, 0.9)] {
             plan.march.detail = detail;
-            // In thresholds beyond the hit; the last two pixels are no hits.
-            let beyond = [-9.0, 0.0, 0.9, 1.1, 1.9, 9.0, 9.0, 9.0];
+            plan.march.shell = shell;
+            let mut reference =
+                crate::cpu::render(&plan, Default::default(), &mut |_| true).expect("rendered");
+            // The last two pixels are no hits.
+            reference.state[6] = State::Sky as u8;
+            reference.state[7] = State::Unconverged as u8;
+            // In thresholds beyond where each ray is as near as cones may come.
+            let beyond = [-9.0, -0.6, -0.02, 0.15, 0.6, 9.0, 9.0, 9.0];
             let front = (0..).zip(beyond).map(|(x, n)| {
-                let threshold = detail * grain(&plan, x) * 5.0;
-                (5.0 + n * threshold) as f32
+                let ray = plan.view().view_ray([x, 0]);
+                let slope = -ray.axis.z;
+                let top = (9.0 - SlabShape::default().half) / slope;
+                let threshold = detail * footprint(&ray, top);
+                (top + (n - shell) * threshold / slope) as f32
             });
-            let level = LevelLayer {
-                divisor: 1,
-                cells: [8, 1],
-                front: front.collect(),
-                ..LevelLayer::default()
-            };
-            let frame = Frame {
-                levels: vec![level],
-                ..reference.clone()
-            };
+            let frame = with_fronts(&reference, front.collect());
             let report = compare(&frame, &reference, &plan);
-            assert_eq!(report.start_violations, [(1, 3)], "detail {detail}");
+            assert_eq!(report.start_violations, [(1, 3)], "{detail} {shell}");
+        }
+    }
+
+    /// A ray that grazes a ball stays in the skin for far longer than that is thick, and
+    /// passes: a front that lies behind all of it is right.
+    #[test]
+    fn a_front_beyond_a_grazed_skin_is_right() {
+        use crate::formula::{Shape, balls::Balls};
+        let mut plan = Plan::new(Subject::Distance {
+            shape: Shape::Balls(Balls::default()),
+            iterations: None,
+        });
+        plan.camera.eye = glam::DVec3::new(0.0, -6.0, 0.3);
+        plan.size = [240, 160];
+        // Over the first ball by three quarters of the threshold, and through its rim.
+        let view = plan.view();
+        let over = |share: f64| {
+            let pixels = (0..plan.size[1]).flat_map(|y| (0..plan.size[0]).map(move |x| [x, y]));
+            let miss = |p: [u32; 2]| {
+                let ray = view.view_ray(p);
+                let near = -plan.camera.eye.dot(ray.axis);
+                let at = plan.camera.eye + near * ray.axis;
+                (at.length() - 1.0) / (plan.march.detail * footprint(&ray, near)) - share
+            };
+            pixels.min_by(|a, b| miss(*a).abs().total_cmp(&miss(*b).abs()))
+        };
+        let reference =
+            crate::cpu::render(&plan, Default::default(), &mut |_| true).expect("rendered");
+        let width = plan.size[0] as usize;
+        for (share, wrong) in [(0.75, 0), (-2.0, 1)] {
+            let p = over(share).expect("a picture has pixels");
+            let i = p[1] as usize * width + p[0] as usize;
+            assert_eq!(reference.state[i], State::Hit as u8, "{p:?}");
+            // As far as the ray's nearest point and on: the skin is far behind.
+            let mut front = vec![0.0; reference.depth.len()];
+            front[i] = reference.depth[i] + 0.5;
+            let report = compare(&with_fronts(&reference, front), &reference, &plan);
+            assert_eq!(report.start_violations, [(1, wrong)], "{share}");
         }
     }
 

@@ -244,12 +244,13 @@ impl View {
         }
     }
 
-    /// World position of each pixel's hit in a frame of this view; infinity for sky.
+    /// World position of each pixel's hit in a frame of this view; zero for sky, as normals
+    /// are: only depth says how far that is.
     pub fn positions(&self, frame: &Frame) -> Vec<[f32; 3]> {
         let width = frame.size[0] as usize;
         let at = |(i, t): (usize, &f32)| {
             if t.is_infinite() {
-                return [f32::INFINITY; 3];
+                return [0.0; 3];
             }
             #[allow(clippy::cast_possible_truncation, reason = "indices of a u32 size")]
             let ray = self.view_ray([(i % width) as u32, (i / width) as u32]);
@@ -282,6 +283,6 @@ mod tests {
             let got = DVec3::from_array(found[x as usize].map(f64::from));
             assert!((got - want).length() < 1e-6, "{got} {want}");
         }
-        assert_eq!(found[2], [f32::INFINITY; 3]);
+        assert_eq!(found[2], [0.0; 3]);
     }
 }

@@ -383,10 +383,12 @@ fn set_error(sets: &[&str]) -> String {
 
 #[test]
 fn errors_of_overrides_name_the_override() {
-    let cases: [(&[&str], &str); 11] = [
+    let cases: [(&[&str], &str); 13] = [
         (&["camera.fov"], "--set camera.fov: there is no `=`"),
         (&["fov=3"], "--set fov=3: `fov` names no section"),
         (&["=3"], "--set =3: `` names no section"),
+        (&[".scale=3"], "--set .scale=3: `.scale` names no section"),
+        (&[".=3"], "--set .=3: `.` names no section"),
         (&["cam.fov=3"], "--set cam.fov=3: unknown section `cam`"),
         (
             &["camera.fow=3"],

@@ -267,6 +267,13 @@ fn a_rotation_by_nothing_is_no_rotation() {
     let whole_turns =
         changed(|m| m.rotation = DVec3::new(360.0, 0.0, -360.0)).explain(Extras::default());
     assert_eq!(none, whole_turns);
+    // Three half turns about three axes bring everything back.
+    for turns in [DVec3::splat(180.0), DVec3::new(-180.0, 540.0, 180.0)] {
+        assert_eq!(
+            none,
+            changed(|m| m.rotation = turns).explain(Extras::default())
+        );
+    }
     assert!(none.contains("wgsl/formula/rotation_none.wgsl"));
     assert!(!none.contains("wgsl/formula/rotation.wgsl"));
     let turned = changed(|m| m.rotation = DVec3::new(0.0, 0.0, 1.0)).explain(Extras::default());

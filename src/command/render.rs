@@ -142,12 +142,12 @@ pub fn run(args: &Render) -> Result<()> {
     let stats = args.stats.as_deref();
     apart(&[("the picture", Some(&output)), ("--stats", stats)])?;
     let extras = extras(args, format);
-    if args.explain {
-        return explain(args, &plan, extras);
-    }
     let per_pixel = bytes_per_pixel(format, args.device == Choice::Cpu);
     if let Some(why) = memory::lacking(plan.size, per_pixel, memory::available()) {
         anyhow::bail!(why);
+    }
+    if args.explain {
+        return explain(args, &plan, extras);
     }
     interrupt::listen();
     let picture = Sink::prepare(&output)?;
@@ -209,7 +209,15 @@ fn explain(args: &Render, plan: &Plan, extras: Extras) -> Result<()> {
         Sink::prepare(path)?;
     }
     Executor::check(&args.device)?;
-    print(plan.explain(extras).as_bytes())
+    let mut text = String::new();
+    if args.device == Choice::Cpu {
+        text += "on the CPU: the same passes in f64, by the twins in Rust of these programs\n";
+    }
+    if args.layer == Layer::Error {
+        text += "compared with: the truth of the same plan, in f64 on the CPU\n";
+    }
+    text += &plan.explain(extras);
+    print(text.as_bytes())
 }
 
 /// The format that a name asks for, if everything else fits it.

@@ -25,6 +25,11 @@ pub struct RotationUniform {
     pub pad2: f32,
 }
 
+/// No entry of a rotation is off by more from the identity's than a few roundings of sines
+/// and cosines: it is the identity. The least angle that is told from none, 6e-14 degrees,
+/// moves nothing by what f32 could hold.
+const IDENTITY: f64 = 1e-15;
+
 /// Rotation about x, then y, then z, by angles in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation(DMat3);
@@ -32,13 +37,13 @@ pub struct Rotation(DMat3);
 impl Rotation {
     /// The rotation of three angles, or `None` where it is the identity.
     pub fn new(degrees: DVec3) -> Option<Self> {
-        if degrees.to_array().iter().all(|a| a % 360.0 == 0.0) {
-            return None;
-        }
-        let [x, y, z] = degrees.to_array().map(f64::to_radians);
-        Some(Self(
-            DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x),
-        ))
+        // Whole turns leave no rounding of pi behind.
+        let [x, y, z] = degrees.to_array().map(|a| (a % 360.0).to_radians());
+        let matrix =
+            DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
+        // Three half turns are none, too.
+        let same = matrix.abs_diff_eq(DMat3::IDENTITY, IDENTITY);
+        (!same).then_some(Self(matrix))
     }
 
     /// The module to join for a rotation, or for none.

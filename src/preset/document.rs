@@ -72,9 +72,9 @@ impl Override {
         };
         let name = name.trim();
         let (section, key) = match name.split_once('.') {
-            Some((section, key)) => (section, key),
+            Some((section, key)) if !section.is_empty() => (section, key),
             None if name == "title" => ("", name),
-            None => return Err(fail(format!("`{}` names no section; {form}", brief(name)))),
+            _ => return Err(fail(format!("`{}` names no section; {form}", brief(name)))),
         };
         let value = value.trim();
         let read = match DeValue::parse(value) {

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::BUILTIN;
+
 /// What can be wrong with a preset, with an override, or with the argument that names
 /// one.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -26,8 +28,9 @@ pub enum PresetError {
     },
     /// No built-in preset and no file has this name.
     #[error(
-        "no preset is called `{name}`{}; `conemarch presets` lists the built-in ones, and the path of a .toml file or of a .png that this program wrote would do as well",
-        perhaps(.nearest)
+        "no preset is called `{name}`{}; there is: {}; the path of a .toml file or of a .png that this program wrote would do as well",
+        perhaps(.nearest),
+        built_in()
     )]
     Unknown {
         /// What was asked for.
@@ -58,6 +61,12 @@ pub(super) fn place(origin: &str, line: Option<usize>) -> String {
         Some(line) => format!("{origin}:{line}"),
         None => origin.to_string(),
     }
+}
+
+/// The names of all built-in presets.
+fn built_in() -> String {
+    let names: Vec<&str> = BUILTIN.iter().map(|(name, _)| *name).collect();
+    names.join(", ")
 }
 
 /// `, perhaps ...` in the middle of a sentence, or nothing.

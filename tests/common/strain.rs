@@ -90,7 +90,7 @@ pub fn faults(plan: &Plan, frame: &Frame) -> Vec<String> {
     let position = plan.view().positions(frame);
     bad(
         "position",
-        count(&|i| !sky(i) && position[i].iter().any(|x| !x.is_finite())),
+        count(&|i| position[i].iter().any(|x| !x.is_finite())),
     );
     let limit = plan.march.ray_steps();
     bad("evaluations", count(&|i| frame.work[i].evaluations > limit));

@@ -8,12 +8,17 @@ use serde::Serialize;
 
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
+use crate::command::memory;
 use crate::command::print::{print, say, tell};
 use crate::command::sink::{Parcel, Sink, apart, is_stdout};
 use crate::command::size;
 use crate::gpu::device::{Choice, DeviceError};
 use crate::plan::Plan;
 use crate::preset;
+
+/// Bytes for every pixel of a measurement: frame, truth, and the pictures that FLIP compares.
+/// Measured on 2 million pixels, and rounded up.
+const BYTES_PER_PIXEL: u64 = 600;
 
 /// Options of every measurement.
 #[derive(Debug, Args)]
@@ -38,7 +43,7 @@ impl Common {
     /// Every preset's name and plan.
     ///
     /// # Errors
-    /// A preset is unknown or wrong, or two have one name.
+    /// A preset is unknown or wrong, two have one name, or one does not fit into memory.
     pub fn plans(&self) -> Result<Vec<(String, Plan)>> {
         let all = || preset::BUILTIN.iter().map(|(name, _)| (*name).to_string());
         let names: Vec<String> = if self.names.is_empty() {
@@ -59,6 +64,11 @@ impl Common {
                 return Err(usage(format!(
                     "two of the presets are called `{name}`, and rows and pictures go by the name; leave one out, or give its file another name"
                 )));
+            }
+        }
+        for (name, plan) in &plans {
+            if let Some(why) = memory::lacking(plan.size, BYTES_PER_PIXEL, memory::available()) {
+                anyhow::bail!("{name}: {why}");
             }
         }
         Ok(plans)

@@ -17,6 +17,14 @@ pub struct Setting {
 }
 
 impl Setting {
+    /// A mode as it is.
+    pub fn of(mode: Mode) -> Self {
+        Self {
+            mode,
+            changes: Vec::new(),
+        }
+    }
+
     fn new(mode: Mode, key: &'static str, value: impl Into<Value>) -> Self {
         Self {
             mode,
@@ -49,11 +57,7 @@ pub fn baselines() -> Vec<Setting> {
     let first = [Mode::Ray, Mode::RayRelaxed, Mode::Safe];
     let rest = MODES.iter().map(|(_, mode)| *mode);
     let rest = rest.filter(|m| !first.contains(m) && *m != Mode::Truth);
-    let of = |mode| Setting {
-        mode,
-        changes: Vec::new(),
-    };
-    first.into_iter().chain(rest).map(of).collect()
+    first.into_iter().chain(rest).map(Setting::of).collect()
 }
 
 /// One key moved at a time.
