@@ -176,7 +176,10 @@ impl Plan {
                 Scene::Distance(Distance::new(shape.clone(), most, eye, stepping))
             }
             Subject::Heightfield(shape) => {
-                let ready = shape.ready().expect("a plan that passes its check");
+                // Pixels are finest in the corners.
+                let grain = self.view().view_ray([0, 0]).grain;
+                let ready = shape.ready(grain);
+                let ready = ready.expect("a plan that passes its check");
                 Scene::Heightfield(Heightfield::new(ready, eye, stepping.rule))
             }
             Subject::Slab(shape) => Scene::Slab(Slab::new(shape, eye, stepping.rule)),

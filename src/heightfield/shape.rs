@@ -249,18 +249,21 @@ impl HeightfieldShape {
         self.cones(&relief, make).map(|_| ())
     }
 
-    /// Everything that a scene needs; on the CPU where it was not prepared.
+    /// Everything that a scene needs; on the CPU where it was not prepared. `grain` is half a
+    /// pixel's width at distance 1, where pixels are finest.
     ///
     /// # Errors
     /// Heights that are none, cones that do not fit.
-    pub fn ready(&self) -> Result<Ready, PrepareError> {
+    pub fn ready(&self, grain: f64) -> Result<Ready, PrepareError> {
         let relief = self.relief()?;
         let cones = self.cones(&relief, &mut on_cpu)?;
         let [w, h] = relief.domain().map(f64::from);
         let sides = DVec2::new(w, h);
+        let placed = Placed::new(sides, self.width, self.depth, self.centre, self.turn);
+        let pixel = placed.texel / (2.0 * grain);
         Ok(Ready {
-            tracer: self.tracing.tracer(&relief, (*cones).clone())?,
-            placed: Placed::new(sides, self.width, self.depth, self.centre, self.turn),
+            tracer: self.tracing.tracer(&relief, (*cones).clone(), pixel)?,
+            placed,
             relief,
             name: self.tracing.tracer,
         })
