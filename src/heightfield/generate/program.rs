@@ -85,6 +85,7 @@ pub fn every_program() -> Result<Vec<Program>, HeightsError> {
     let mut all = vec![
         super::pyramid::tiles_program(),
         super::pyramid::mips_program(),
+        super::nine::nine_program(),
     ];
     for generator in Generator::ALL {
         let options = Options::default();
