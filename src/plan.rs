@@ -184,7 +184,8 @@ impl Plan {
                 Scene::Distance(Distance::new(shape.clone(), most, eye, stepping))
             }
             Subject::Heightfield(shape) => {
-                let ready = shape.ready().expect("a plan that passes its check");
+                let ready = shape.ready(self.corner_grain());
+                let ready = ready.expect("a plan that passes its check");
                 Scene::Heightfield(Heightfield::new(ready, eye, stepping.rule))
             }
             Subject::Slab(shape) => Scene::Slab(Slab::new(shape, eye, stepping.rule)),
@@ -196,9 +197,15 @@ impl Plan {
         let Subject::Heightfield(shape) = &self.subject else {
             return self.scene();
         };
-        let ready = shape.outline().expect("a plan that passes its check");
+        let ready = shape.outline(self.corner_grain());
+        let ready = ready.expect("a plan that passes its check");
         let rule = self.march.stepping().rule;
         Scene::Heightfield(Heightfield::new(ready, self.camera.eye, rule))
+    }
+
+    /// Half a pixel's width per length of way, where pixels are finest: in the corners.
+    fn corner_grain(&self) -> f64 {
+        self.view().view_ray([0, 0]).grain
     }
 
     fn auto_iterations(&self, shape: &Shape) -> u32 {
@@ -212,14 +219,12 @@ impl Plan {
     /// could be hit, seen through the corner of the image.
     fn finest_footprint(&self, shape: &Shape) -> f64 {
         let eye = self.camera.eye;
-        let view = self.view();
-        let corner = view.view_ray([0, 0]);
         let bounds = shape.bounds();
         let (raw, _) = shape.estimate(eye, MOST_ITERATIONS);
         let clear = bounds.distance(eye).max(raw / shape.lipschitz());
         // A camera on the surface would ask for infinitely fine work.
         let least = 1e-7 * bounds.farthest(eye);
-        corner.grain * clear.max(least)
+        self.corner_grain() * clear.max(least)
     }
 
     /// What the scene's steps divide the estimate by.

@@ -21,9 +21,10 @@ use common::maps::{
 };
 use conemarch::heightfield::conemap::{ConeMap, MapKind, WIDEST};
 use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::cpu::{self, least_of_nine};
+use conemarch::heightfield::generate::cpu;
 use conemarch::heightfield::generate::generator::{GenerateError, Generator, Options};
 use conemarch::heightfield::generate::mips::{self, rounded_down};
+use conemarch::heightfield::generate::nine::least_of_nine;
 use conemarch::heightfield::generate::planes::Planes;
 use conemarch::heightfield::generate::prepared::Prepared;
 use conemarch::heightfield::generate::slopes::{dummer_slopes, normals, slopes};

@@ -12,10 +12,12 @@ mod adapter;
 #[allow(dead_code, reason = "other files use the rest")]
 mod common {
     pub mod exact;
+    pub mod overclaims;
     pub mod solved;
 }
 
 use adapter::{render, render_cut};
+use common::overclaims::{brought_near, overclaims};
 use common::solved::{balls, camera, cameras, meet, slab, solved};
 use conemarch::compare::compare;
 use conemarch::cpu;
@@ -42,39 +44,6 @@ const COUNTED: Extras = Extras {
     count: true,
     ..LEVELS
 };
-
-/// Pixels, over all levels, whose cell claims more than is true: a front beyond the
-/// place where the pixel's ray meets the surface, or sky where it meets one.
-fn overclaims(frame: &Frame, t: &[f64]) -> usize {
-    let width = frame.size[0] as usize;
-    let mut count = 0;
-    for level in &frame.levels {
-        let d = level.divisor as usize;
-        for (i, &t) in t.iter().enumerate().filter(|(_, t)| t.is_finite()) {
-            let cell = (i / width / d) * level.cells[0] as usize + (i % width) / d;
-            let beyond = f64::from(level.front[cell]) > t * (1.0 + ROUNDING);
-            count += usize::from(beyond || level.state[cell] == SKY);
-        }
-    }
-    count
-}
-
-/// The proof needs no tolerance; f32 adds some roundings of 6e-8 to positions and
-/// distances.
-const ROUNDING: f64 = 1e-6;
-
-/// Share of the pixels of a surface whose finest cell brings them nine tenths of the way.
-fn brought_near(frame: &Frame, t: &[f64]) -> f64 {
-    let (width, level) = (frame.size[0] as usize, frame.levels.last().unwrap());
-    let hits = t.iter().enumerate().filter(|(_, t)| t.is_finite());
-    let near: Vec<bool> = hits
-        .map(|(i, t)| {
-            let cell = (i / width / 2) * level.cells[0] as usize + (i % width) / 2;
-            f64::from(level.front[cell]) > 0.9 * t
-        })
-        .collect();
-    near.iter().filter(|n| **n).count() as f64 / near.len() as f64
-}
 
 /// Asserts that no cell of a render claims too much; says how near they bring rays.
 fn assert_sound(plan: &Plan, what: &str) -> f64 {

@@ -28,6 +28,7 @@ use conemarch::heightfield::trace::linear::LinearBinary;
 use conemarch::heightfield::trace::max_mip::MaxMipTracer;
 use conemarch::heightfield::trace::relaxed::WalkRelaxed;
 use conemarch::heightfield::trace::walk::Walk;
+use conemarch::heightfield::trace::walk_mip::WalkMip;
 use conemarch::heightfield::trace::{AnyTracer, Tracer};
 use conemarch::plan::{Extras, Pass, Plan, Subject};
 use conemarch::shader::{Module, Program, ShaderError};
@@ -212,9 +213,11 @@ fn heightfield_paths() -> BTreeSet<&'static str> {
     };
     let walk = Walk::new(relief.clone(), map(MapKind::Walk, [1, 1])).unwrap();
     let relaxed = WalkRelaxed::new(relief.clone(), map(MapKind::WalkRelaxed, [1, 1])).unwrap();
+    let distant = WalkMip::new(relief.clone(), map(MapKind::Walk, [1, 1]), 1.0).unwrap();
     let mut tracers = vec![
         AnyTracer::Walk(walk),
         AnyTracer::WalkRelaxed(relaxed),
+        AnyTracer::WalkMip(distant),
         AnyTracer::MaxMip(MaxMipTracer::new(relief.clone())),
         AnyTracer::LinearBinary(LinearBinary::new(relief.clone(), 1, 1)),
     ];

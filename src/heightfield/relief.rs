@@ -66,7 +66,8 @@ pub struct ReliefUniform {
     pub levels: u32,
     /// Steps that a tracer has, 0 for as many as the caller allows.
     pub steps: u32,
-    /// Distance at which a tracer has half of its steps, 0 for never fewer.
+    /// Distance at which a tracer has half of its steps, or a texel is as wide as a pixel to
+    /// it; 0 for never.
     pub lod: f32,
     /// Rounds of refinement.
     pub rounds: u32,
@@ -81,7 +82,8 @@ pub struct Numbers {
     pub scale: f64,
     /// Steps that it has, 0 for no limit of its own.
     pub steps: u32,
-    /// Distance along the ray at which it has half as many, 0 for never fewer.
+    /// Distance along the ray at which it has half as many, or a texel is as wide as a pixel;
+    /// 0 for never.
     pub lod: f64,
     /// Rounds of refinement.
     pub rounds: u32,
@@ -96,6 +98,19 @@ impl Default for Numbers {
             rounds: 0,
         }
     }
+}
+
+/// A node of the pyramid of maxima, over cells of the domain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node {
+    /// Column and row in its level.
+    pub place: [u32; 2],
+    /// The highest point under it.
+    pub maximum: f64,
+    /// Its first cell along each axis.
+    pub low: [i32; 2],
+    /// The cell after its last one.
+    pub high: [i32; 2],
 }
 
 /// A solid block with heights on top.
@@ -167,6 +182,24 @@ impl Relief {
     pub fn apex(&self, cell: [i32; 2]) -> f64 {
         let [x, y] = self.tile_cell(cell);
         f64::from(self.maxima.levels[0].at(x, y))
+    }
+
+    /// The node of a level that a cell of the domain lies under. Each tile begins nodes of
+    /// its own.
+    pub fn node(&self, cell: [i32; 2], level: u32) -> Node {
+        let local = self.tile_cell(cell);
+        let place = local.map(|i| i >> level);
+        let maximum = self.maxima.levels[level as usize].at(place[0], place[1]);
+        let tile = [0, 1].map(|a| cell[a] - local[a] as i32);
+        Node {
+            place,
+            maximum: f64::from(maximum),
+            low: [0, 1].map(|a| tile[a] + (place[a] << level) as i32),
+            high: [0, 1].map(|a| {
+                let end = ((place[a] + 1) << level).min(self.cells[a]);
+                tile[a] + end as i32
+            }),
+        }
     }
 
     /// Corner heights of a cell of the domain: (0, 0), (1, 0), (0, 1), (1, 1).

@@ -251,14 +251,15 @@ impl HeightfieldShape {
         self.cones(&relief, make).map(|_| ())
     }
 
-    /// Everything that a scene needs; on the CPU where it was not prepared.
+    /// Everything that a scene needs; on the CPU where it was not prepared. `grain` is half a
+    /// pixel's width at distance 1, where pixels are finest.
     ///
     /// # Errors
     /// Heights that are none, cones that do not fit.
-    pub fn ready(&self) -> Result<Ready, PrepareError> {
+    pub fn ready(&self, grain: f64) -> Result<Ready, PrepareError> {
         let relief = self.relief()?;
         let cones = self.cones(&relief, &mut on_cpu)?;
-        self.assembled(relief, (*cones).clone())
+        self.assembled(relief, (*cones).clone(), grain)
     }
 
     /// What [`HeightfieldShape::ready`] gives, with maps of no cones in place of those
@@ -266,24 +267,27 @@ impl HeightfieldShape {
     ///
     /// # Errors
     /// As [`HeightfieldShape::ready`].
-    pub fn outline(&self) -> Result<Ready, PrepareError> {
+    pub fn outline(&self, grain: f64) -> Result<Ready, PrepareError> {
         let relief = self.relief()?;
         let cones = self
             .tracing
             .cones(&relief, &self.source.folder, &mut without_cones)?;
-        self.assembled(relief, cones.map(Arc::new))
+        self.assembled(relief, cones.map(Arc::new), grain)
     }
 
     fn assembled(
         &self,
         relief: Arc<Relief>,
         cones: Option<Arc<ConeMap>>,
+        grain: f64,
     ) -> Result<Ready, PrepareError> {
         let [w, h] = relief.domain().map(f64::from);
         let sides = DVec2::new(w, h);
+        let placed = Placed::new(sides, self.width, self.depth, self.centre, self.turn);
+        let pixel = placed.texel / (2.0 * grain);
         Ok(Ready {
-            tracer: self.tracing.tracer(&relief, cones)?,
-            placed: Placed::new(sides, self.width, self.depth, self.centre, self.turn),
+            tracer: self.tracing.tracer(&relief, cones, pixel)?,
+            placed,
             relief,
             name: self.tracing.tracer,
         })

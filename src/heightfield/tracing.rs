@@ -17,6 +17,7 @@ use super::trace::max_mip::MaxMipTracer;
 use super::trace::refine::Refine;
 use super::trace::relaxed::WalkRelaxed;
 use super::trace::walk::Walk;
+use super::trace::walk_mip::WalkMip;
 use super::trace::{AnyTracer, TraceError};
 use crate::key::{AutoCount, AutoNumber, Fault, Key, Number, Text, Word};
 
@@ -89,6 +90,7 @@ impl From<Fault> for PrepareError {
 pub const TRACERS: &[(&str, &str)] = &[
     ("walk", "walk"),
     ("walk-relaxed", "walk-relaxed"),
+    ("walk-mip", "walk-mip"),
     ("max-mip", "max-mip"),
     ("linear-binary", "linear-binary"),
     ("csm-exact", "csm-exact"),
@@ -115,8 +117,10 @@ pub struct Tracing {
     pub rounds: Option<u32>,
     /// Factor on the steps that cones give.
     pub stretch: Option<f64>,
-    /// Distance at which `csm-loop` has half as many steps; 0 for never fewer.
-    pub lod: f64,
+    /// Distance at which `csm-loop` has half as many steps, and a texel is as wide as a pixel
+    /// to `walk-mip`; 0 for never. Where none is given `csm-loop` never has fewer, and
+    /// `walk-mip` goes by the camera.
+    pub lod: Option<f64>,
     /// Room that the walks' cones leave, in texels.
     pub offset: f64,
 }
@@ -130,7 +134,7 @@ impl Default for Tracing {
             steps: None,
             rounds: None,
             stretch: None,
-            lod: 0.0,
+            lod: None,
             offset: Options::default().offset,
         }
     }
@@ -143,7 +147,7 @@ impl Tracing {
             Key::new(
                 "tracer",
                 Word(&mut self.tracer, TRACERS),
-                "how rays find the surface: walk, walk-relaxed and max-mip miss nothing",
+                "how rays find the surface: walk, walk-relaxed and max-mip miss nothing, walk-mip is off by a pixel at most",
             ),
             Key::new(
                 "map",
@@ -175,8 +179,8 @@ impl Tracing {
             ),
             Key::new(
                 "lod",
-                Number(&mut self.lod, 0.0, 1e6),
-                "distance at which csm-loop has half its steps; 0 for never fewer",
+                AutoNumber(&mut self.lod, 0.0, 1e6),
+                "distance at which a texel is as wide as a pixel to walk-mip, and csm-loop has half its steps; 0 for never; auto goes by the camera for walk-mip and is never for csm-loop",
             ),
             Key::new(
                 "offset",
@@ -194,7 +198,7 @@ impl Tracing {
         manner.budget = match (manner.budget, self.steps) {
             (Budget::View { steps, .. }, own) => Budget::View {
                 steps: own.unwrap_or(steps),
-                lod: self.lod,
+                lod: self.lod.unwrap_or(0.0),
             },
             (_, Some(steps)) => Budget::Fixed(steps),
             (budget, None) => budget,
@@ -211,7 +215,7 @@ impl Tracing {
     /// tracer without cones.
     fn kinds(&self) -> &'static [MapKind] {
         match self.tracer {
-            "walk" => &[MapKind::Walk],
+            "walk" | "walk-mip" => &[MapKind::Walk],
             "walk-relaxed" => &[MapKind::WalkRelaxed],
             _ => self.manner().map_or(&[], |m| m.kinds()),
         }
@@ -292,11 +296,13 @@ impl Tracing {
         Ok(Some(file.map))
     }
 
-    /// The tracer itself.
+    /// The tracer itself. `pixel` is the distance from the eye at which a texel is as wide as
+    /// a pixel.
     pub fn tracer(
         &self,
         relief: &Arc<Relief>,
         cones: Option<Arc<ConeMap>>,
+        pixel: f64,
     ) -> Result<AnyTracer, Fault> {
         let relief = relief.clone();
         let Some(map) = cones else {
@@ -309,10 +315,14 @@ impl Tracing {
                 _ => AnyTracer::MaxMip(MaxMipTracer::new(relief)),
             });
         };
-        let made = match self.manner() {
-            Some(manner) => Cones::new(relief, map, manner).map(AnyTracer::Cones),
-            None if self.tracer == "walk" => Walk::new(relief, map).map(AnyTracer::Walk),
-            None => WalkRelaxed::new(relief, map).map(AnyTracer::WalkRelaxed),
+        let made = match (self.manner(), self.tracer) {
+            (Some(manner), _) => Cones::new(relief, map, manner).map(AnyTracer::Cones),
+            (None, "walk") => Walk::new(relief, map).map(AnyTracer::Walk),
+            (None, "walk-mip") => {
+                let lod = self.lod.unwrap_or(pixel);
+                WalkMip::new(relief, map, lod).map(AnyTracer::WalkMip)
+            }
+            (None, _) => WalkRelaxed::new(relief, map).map(AnyTracer::WalkRelaxed),
         };
         made.map_err(|e: TraceError| fault(e.to_string()))
     }

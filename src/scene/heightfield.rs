@@ -13,9 +13,11 @@ use glam::{DVec2, DVec3, Vec3};
 use super::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::cone::ConeRule;
 use crate::frame::Work;
+use crate::heightfield::heights::Patches;
 use crate::heightfield::placed::Placed;
 use crate::heightfield::relief::Relief;
 use crate::heightfield::shape::Ready;
+use crate::heightfield::trace::course::{FAR, FLAT};
 use crate::heightfield::trace::{self, AnyTracer, LocalRay, Trace, TraceHit, Tracer};
 use crate::heightfield::under::{self, under_highest};
 use crate::shader::Module;
@@ -133,6 +135,25 @@ impl Heightfield {
         let sides = self.placed.sides.extend(1.0);
         5e-7 * (eye + sides + self.far / self.units())
     }
+}
+
+/// The normal that faces out of the side by which a ray came into a box: that of the line
+/// which it crossed last on its way to a place in the box.
+fn box_side(axis: DVec3, uv: [f64; 2]) -> DVec3 {
+    let since = |a: usize| {
+        let way = if axis[a] > 0.0 { uv[a] } else { 1.0 - uv[a] };
+        if axis[a].abs() < FLAT {
+            FAR
+        } else {
+            way / axis[a].abs()
+        }
+    };
+    let side = if since(0) <= since(1) {
+        DVec3::X
+    } else {
+        DVec3::Y
+    };
+    if side.dot(axis) > 0.0 { -side } else { side }
 }
 
 impl Twin for Heightfield {
@@ -272,7 +293,7 @@ impl Solid for Heightfield {
         proven + HEIGHTFIELD_GUESS * (gap - proven)
     }
 
-    fn surface(&self, _ray: &Beam, hit: &Hit) -> Surface {
+    fn surface(&self, ray: &Beam, hit: &Hit) -> Surface {
         let hit = TraceHit {
             s: hit.t,
             id: hit.id,
@@ -295,6 +316,15 @@ impl Solid for Heightfield {
         let (cell, width) = (hit.cell(), self.relief.cells()[0]);
         let cell = [cell % width, cell / width].map(|n| n as i32);
         let [a, b, c, d] = self.relief.corners(cell);
+        let ray = self.local(ray);
+        let z = ray.height(hit.s);
+        // Under the top of its box by more than a rounding: on a side.
+        if self.relief.patches() == Patches::Boxes && z < a - self.slack().z {
+            return Surface {
+                normal: self.placed.side(box_side(ray.axis, hit.uv)),
+                pigment: DVec3::new(z, 0.0, 0.5),
+            };
+        }
         let [u, v] = hit.uv;
         let slope = DVec2::new(
             (b - a) + v * ((d - c) - (b - a)),

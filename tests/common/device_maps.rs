@@ -1,12 +1,14 @@
 //! Cone maps from a device: the CPU's, however the work is cut, or an error.
 
-use super::maps::{PATCHES, assert_same, field, large, make, plain, small};
+use super::maps::{PATCHES, WRAPS, assert_same, field, large, make, plain, small};
 use crate::adapter;
 use conemarch::gpu::device::Device;
+use conemarch::heightfield::conemap::{ConeMap, WIDEST};
 use conemarch::heightfield::field::Field;
 use conemarch::heightfield::generate::device::{Cutting, Maker};
 use conemarch::heightfield::generate::generator::{GenerateError, Generator, Options};
 use conemarch::heightfield::generate::mips::{self, rounded_down};
+use conemarch::heightfield::generate::nine::least_of_nine;
 use conemarch::heightfield::generate::program::every_program;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::maxmip::MaxMip;
@@ -20,7 +22,7 @@ fn device() -> Device {
 #[test]
 fn every_generators_program_is_valid() {
     let all = every_program();
-    assert_eq!(all.len(), 2 + Generator::ALL.len());
+    assert_eq!(all.len(), 3 + Generator::ALL.len());
     for program in all {
         let result = program.validate(Capabilities::default());
         assert!(
@@ -120,6 +122,53 @@ fn near_ties_are_settled() {
             let name = format!("{steps} {generator:?}");
             assert_same(&name, &there.unwrap().ratios, &here.ratios);
             assert!(generator != Generator::Exact || maker.settled > 100);
+        }
+    }
+}
+
+#[test]
+fn the_devices_least_of_nine_is_the_cpus() {
+    let device = device();
+    let mut maker = Maker::new(&device);
+    let options = Options {
+        least_of_nine: true,
+        ..Options::default()
+    };
+    for (i, (name, heights)) in small().into_iter().step_by(3).enumerate() {
+        // Whole maps, and a row at a time.
+        maker.cutting.band = [1 << 16, 1][i % 2];
+        for generator in [Generator::Exact, Generator::Quad, Generator::Walk] {
+            let (patches, name) = (Patches::default(), format!("{name} {generator:?}"));
+            let here = make(generator, &heights, patches, &options);
+            let there = maker.generate(generator, &heights, patches, &options, &mut |_| true);
+            assert_same(&name, &there.unwrap().ratios, &here.ratios);
+        }
+    }
+    // Ratios that f32 cannot tell apart, none at all, the least of all and the widest.
+    for wrap in WRAPS {
+        let odd = [
+            0.0,
+            f64::from_bits(1),
+            f64::MIN_POSITIVE,
+            1e-300,
+            1.0,
+            WIDEST,
+        ];
+        let ratio = |i: u32| match i * 7919 % 100 {
+            n @ 0..6 => odd[n as usize],
+            n => 1.0 + f64::EPSILON * f64::from(n),
+        };
+        let map = ConeMap {
+            ratios: (0..31 * 23).map(ratio).collect(),
+            size: [31, 23],
+            wrap,
+            ..plain(Generator::Exact, &field(Field::Sine, [2, 2], wrap))
+        };
+        for band in [1 << 16, 100] {
+            maker.cutting.band = band;
+            let there = maker.least_of_nine(&map).unwrap();
+            let what = format!("{wrap:?}, bands of {band}");
+            assert_same(&what, &there.ratios, &least_of_nine(&map).ratios);
         }
     }
 }

@@ -10,7 +10,7 @@ use conemarch::formula::balls::BallsUniform;
 use conemarch::formula::mandelbox::MandelboxUniform;
 use conemarch::formula::rotation::RotationUniform;
 use conemarch::heightfield::generate::uniform::{
-    GenerateUniform, MipUniform, PyramidUniform, Search,
+    GenerateUniform, MipUniform, NineUniform, PyramidUniform, Search,
 };
 use conemarch::heightfield::relief::ReliefUniform;
 use conemarch::pass::look::LookUniform;
@@ -159,6 +159,12 @@ fn layouts() -> Vec<(&'static str, Layout)> {
             at,
             pad0,
             pad1
+        }),
+        layout!(NineUniform {
+            width,
+            rows,
+            wrap,
+            channels
         }),
         layout!(LevelUniform {
             divisor,

@@ -16,7 +16,7 @@ struct ReliefUniform {
     scale: f32,
     levels: u32,
     /// Steps that a tracer has, 0 for as many as the caller allows; the distance at which
-    /// it has half of them; rounds of refinement.
+    /// it has half of them, or a texel is as wide as a pixel to it; rounds of refinement.
     steps: u32,
     lod: f32,
     rounds: u32,

@@ -12,8 +12,25 @@ fn maxima_width(level: u32) -> u32 {
     return (u32(relief.cells.x) + (1u << level) - 1u) >> level;
 }
 
-/// The largest apex under a node.
-fn maxima_at(level: u32, node: vec2<u32>) -> f32 {
+/// Where the buffers of a pyramid hold a node.
+fn maxima_place(level: u32, node: vec2<u32>) -> u32 {
     let start = relief.starts[level >> 2u][level & 3u];
-    return maxima[start + node.y * maxima_width(level) + node.x];
+    return start + node.y * maxima_width(level) + node.x;
+}
+
+/// A node over cells of the domain: its place in the buffers, and its cells low..high.
+struct MaximaNode {
+    at: u32,
+    low: vec2<i32>,
+    high: vec2<i32>,
+}
+
+/// The node of a level that a cell lies under. Each tile begins nodes of its own.
+fn maxima_node(cell: vec2<i32>, level: u32) -> MaximaNode {
+    let own = relief_tile_cell(cell);
+    let tile = cell - own;
+    let node = vec2<u32>(own) >> vec2<u32>(level);
+    let low = vec2<i32>(node << vec2<u32>(level));
+    let high = min(vec2<i32>((node + 1u) << vec2<u32>(level)), relief.cells);
+    return MaximaNode(maxima_place(level, node), tile + low, tile + high);
 }

@@ -169,6 +169,17 @@ fn to_world(v: vec3<f32>) -> vec3<f32> {
         + heightfield.depth * v.z * heightfield.row_z;
 }
 
+/// The normal that faces out of the side by which a ray came into a box: that of the line
+/// which it crossed last on its way to a place in the box.
+fn box_side(d: vec3<f32>, uv: vec2<f32>) -> vec3<f32> {
+    let flat = abs(d.xy) < vec2<f32>(COURSE_FLAT);
+    let slope = select(abs(d.xy), vec2<f32>(1.0), flat);
+    let way = select(1.0 - uv, uv, d.xy > vec2<f32>(0.0));
+    let since = select(way / slope, vec2<f32>(COURSE_FAR), flat);
+    let out = select(vec2<f32>(1.0), vec2<f32>(-1.0), d.xy > vec2<f32>(0.0));
+    return select(vec3<f32>(0.0, out.y, 0.0), vec3<f32>(out.x, 0.0, 0.0), since.x <= since.y);
+}
+
 fn surface(ray: Beam, hit: Hit) -> Surface {
     let face = hit.id >> FACE_BITS;
     if face != 0u {
@@ -183,6 +194,14 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
     let index = i32(hit.id & 0x0fffffffu);
     let cell = vec2<i32>(index % relief.cells.x, index / relief.cells.x);
     let c = relief_corners(cell);
+    if RELIEF_BOXES {
+        let d = to_local(ray.axis);
+        let height = heightfield.eye.z + to_local(ray.origin).z + hit.t * d.z;
+        // Under the top of its box by more than a rounding: on a side.
+        if height < c.x - heightfield.slack.z {
+            return Surface(to_world(box_side(d, hit.uv)), vec3<f32>(height, 0.0, 0.5));
+        }
+    }
     let slope = vec2<f32>(
         mix(c.y - c.x, c.w - c.z, hit.uv.y), mix(c.z - c.x, c.w - c.y, hit.uv.x),
     );

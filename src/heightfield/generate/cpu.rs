@@ -5,6 +5,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::generator::{GenerateError, Generator, Options, Watch, Work};
+use super::nine::least_of_nine;
 use super::prepared::{Found, Prepared};
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::heights::{Heights, Patches};
@@ -71,51 +72,21 @@ pub fn generate_counted(
             length *= 2;
         }
     }
-    let map = map_of(&prepared, ratios);
+    let mut map = map_of(&prepared, ratios);
+    if options.least_of_nine {
+        map = least_of_nine(&map);
+    }
     Ok((map, work))
 }
 
-/// The map of a generator's ratios, with what is to be done to it afterwards.
+/// The map of a generator's ratios.
 pub fn map_of(prepared: &Prepared<'_>, ratios: Vec<f64>) -> ConeMap {
     let walk = prepared.generator.over_cells();
-    let map = ConeMap {
+    ConeMap {
         kind: prepared.generator.kind(),
         size: prepared.size,
         wrap: prepared.heights.wrap(),
         offset: if walk { prepared.options.offset } else { 0.0 },
         ratios,
-    };
-    if prepared.options.least_of_nine {
-        least_of_nine(&map)
-    } else {
-        map
-    }
-}
-
-/// A map whose cones are as narrow as the narrowest among each place and its eight
-/// neighbours, channel by channel (the 3 x 3 minimum of Robust Cone Step Mapping, 2024).
-pub fn least_of_nine(map: &ConeMap) -> ConeMap {
-    let [width, height] = map.size.map(i64::from);
-    let channels = map.ratios.len() / (width * height) as usize;
-    let beside = |axis: usize, i: i64| {
-        let n = i64::from(map.size[axis]);
-        if map.wrap[axis] {
-            i.rem_euclid(n)
-        } else {
-            i.clamp(0, n - 1)
-        }
-    };
-    let least = |i: usize| {
-        let (place, channel) = ((i / channels) as i64, i % channels);
-        let (x, y) = (place % width, place / width);
-        let nine = (0..9).map(|k| {
-            let (x, y) = (beside(0, x + k % 3 - 1), beside(1, y + k / 3 - 1));
-            map.ratios[(y * width + x) as usize * channels + channel]
-        });
-        nine.fold(f64::INFINITY, f64::min)
-    };
-    ConeMap {
-        ratios: (0..map.ratios.len()).into_par_iter().map(least).collect(),
-        ..map.clone()
     }
 }

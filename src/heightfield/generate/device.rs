@@ -55,7 +55,7 @@ impl Default for Cutting {
 
 /// Makes maps on one device; keeps what it compiles.
 pub struct Maker<'a> {
-    device: &'a Device,
+    pub(super) device: &'a Device,
     /// How work is cut.
     pub cutting: Cutting,
     /// Places of the last map that were settled on the CPU.
@@ -81,7 +81,7 @@ impl<'a> Maker<'a> {
         }
     }
 
-    fn kernel(&mut self, program: &Program) -> Result<Rc<Kernel>, KernelError> {
+    pub(super) fn kernel(&mut self, program: &Program) -> Result<Rc<Kernel>, KernelError> {
         if let Some((_, kernel)) = self.kernels.iter().find(|(p, _)| p == program) {
             return Ok(kernel.clone());
         }
@@ -92,7 +92,12 @@ impl<'a> Maker<'a> {
 
     /// Runs a kernel over so many workgroups. What a device complains of is told when
     /// its results are read.
-    fn run(&self, kernel: &Kernel, bound: &Bound<'_>, groups: [u32; 2]) -> Result<(), KernelError> {
+    pub(super) fn run(
+        &self,
+        kernel: &Kernel,
+        bound: &Bound<'_>,
+        groups: [u32; 2],
+    ) -> Result<(), KernelError> {
         let named = |name: &str| bound.iter().find(|b| b.0 == name).map(|b| b.1);
         let bind = kernel.bind(self.device, named)?;
         let mut encoder = self
@@ -107,7 +112,7 @@ impl<'a> Maker<'a> {
     }
 
     /// A buffer of values, if the device can bind it.
-    fn storage<T: Pod>(
+    pub(super) fn storage<T: Pod>(
         &self,
         name: &str,
         size: [u32; 2],
@@ -221,7 +226,11 @@ impl<'a> Maker<'a> {
                 return Err(GenerateError::Cancelled);
             }
         }
-        Ok(map_of(&prepared, ratios))
+        let map = map_of(&prepared, ratios);
+        if options.least_of_nine {
+            return self.least_of_nine(&map);
+        }
+        Ok(map)
     }
 
     /// Searches from all places of some rows.

@@ -7,6 +7,7 @@ pub mod device;
 pub mod falling;
 pub mod generator;
 pub mod mips;
+pub mod nine;
 pub mod planes;
 pub mod prepared;
 pub mod program;

@@ -92,6 +92,7 @@ pub fn every_program() -> Vec<Program> {
     let pyramids = [
         super::pyramid::tiles_program(),
         super::pyramid::mips_program(),
+        super::nine::nine_program(),
     ];
     let generators = Generator::ALL.into_iter().map(program_of);
     pyramids.into_iter().chain(generators).collect()

@@ -1,5 +1,5 @@
 //! What the kernels are told, laid out as they read it. Twins:
-//! `wgsl/heightfield/generate/{shared,pyramid,mips}.wgsl`.
+//! `wgsl/heightfield/generate/{shared,pyramid,mips,nine}.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -100,4 +100,18 @@ pub struct MipUniform {
     pub pad0: u32,
     /// Nothing.
     pub pad1: u32,
+}
+
+/// Parameters of a band of the 3 x 3 minimum.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct NineUniform {
+    /// Places of a row.
+    pub width: u32,
+    /// Rows of the band.
+    pub rows: u32,
+    /// 1 if rows come round to their start.
+    pub wrap: u32,
+    /// Ratios to a place.
+    pub channels: u32,
 }

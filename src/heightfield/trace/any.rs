@@ -8,6 +8,7 @@ use super::max_mip::MaxMipTracer;
 use super::oracle::Oracle;
 use super::relaxed::WalkRelaxed;
 use super::walk::Walk;
+use super::walk_mip::WalkMip;
 use crate::frame::Work;
 use crate::shader::Module;
 
@@ -20,6 +21,8 @@ pub enum AnyTracer {
     Walk(Walk),
     /// The walk with relaxed cones.
     WalkRelaxed(WalkRelaxed),
+    /// The walk over nodes as wide as a pixel.
+    WalkMip(WalkMip),
     /// The pyramid of maxima.
     MaxMip(MaxMipTracer),
     /// Equal steps and halvings.
@@ -35,6 +38,7 @@ macro_rules! each {
             AnyTracer::Oracle($tracer) => $answer,
             AnyTracer::Walk($tracer) => $answer,
             AnyTracer::WalkRelaxed($tracer) => $answer,
+            AnyTracer::WalkMip($tracer) => $answer,
             AnyTracer::MaxMip($tracer) => $answer,
             AnyTracer::LinearBinary($tracer) => $answer,
             AnyTracer::Cones($tracer) => $answer,

@@ -32,21 +32,6 @@ impl MaxMipTracer {
     }
 }
 
-/// The node of a level that a cell lies under: its maximum, and the cells `low..high` of
-/// the domain that it covers.
-fn node(relief: &Relief, cell: [i32; 2], level: u32) -> (f64, [i32; 2], [i32; 2]) {
-    let local = relief.tile_cell(cell);
-    let place = local.map(|i| i >> level);
-    let maximum = relief.maxima().levels[level as usize].at(place[0], place[1]);
-    let tile = [0, 1].map(|a| cell[a] - local[a] as i32);
-    let low = [0, 1].map(|a| tile[a] + (place[a] << level) as i32);
-    let high = [0, 1].map(|a| {
-        let end = ((place[a] + 1) << level).min(relief.cells()[a]);
-        tile[a] + end as i32
-    });
-    (f64::from(maximum), low, high)
-}
-
 /// Whether the parents of two neighbouring nodes' levels part at a line, too: it ends a
 /// node of the next level, or a tile.
 fn parts(relief: &Relief, axis: usize, line: i32, level: u32) -> bool {
@@ -70,15 +55,15 @@ impl Tracer for MaxMipTracer {
         work.evaluations += 1;
         let relief = &*self.relief;
         let level = trace.level;
-        let (maximum, low, high) = node(relief, trace.cell, level);
-        let (exit, axis) = course_exit(ray, low, high);
+        let node = relief.node(trace.cell, level);
+        let (exit, axis) = course_exit(ray, node.low, node.high);
         let to = exit.min(trace.end);
-        trace.gap = ray.height(trace.s).min(ray.height(to)) - maximum;
+        trace.gap = ray.height(trace.s).min(ray.height(to)) - node.maximum;
         if trace.gap <= 0.0 {
             if level > 0 {
                 trace.level -= 1;
                 // Down to the maximum nothing can be met.
-                let over = ray.height(trace.s) - maximum;
+                let over = ray.height(trace.s) - node.maximum;
                 if over > 0.0 && ray.axis.z < 0.0 {
                     let next = trace.s + over / -ray.axis.z * WALK_TRUST;
                     if next < to {
@@ -94,7 +79,11 @@ impl Tracer for MaxMipTracer {
         if exit >= trace.end {
             return course_end(relief, ray, trace);
         }
-        let line = if ray.axis[axis] > 0.0 { high } else { low }[axis];
+        let line = if ray.axis[axis] > 0.0 {
+            node.high[axis]
+        } else {
+            node.low[axis]
+        };
         course_pass(relief, ray, trace, exit, axis, line);
         let top = relief.maxima().levels.len() as u32 - 1;
         if level < top && parts(relief, axis, line, level) {

@@ -10,6 +10,7 @@ pub mod oracle;
 pub mod refine;
 pub mod relaxed;
 pub mod walk;
+pub mod walk_mip;
 
 pub use any::AnyTracer;
 pub use contract::{

@@ -19,17 +19,14 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
         return (*trace).state;
     }
     count_evaluation();
-    // The node over the cell, and the cells of the domain under it.
     let level = (*trace).level;
-    let own = relief_tile_cell((*trace).cell);
-    let tile = (*trace).cell - own;
-    let node = vec2<u32>(own) >> vec2<u32>(level);
-    let low = tile + vec2<i32>(node << vec2<u32>(level));
-    let high = tile + min(vec2<i32>((node + 1u) << vec2<u32>(level)), relief.cells);
+    let node = maxima_node((*trace).cell, level);
+    let low = node.low;
+    let high = node.high;
     let exit = course_exit(o, d, low, high);
     let to = min(exit.x, (*trace).end);
     let z = o.z + (*trace).s * d.z;
-    let maximum = maxima_at(level, node);
+    let maximum = maxima[node.at];
     (*trace).gap = min(z, o.z + to * d.z) - maximum;
     if (*trace).gap <= 0.0 {
         if level > 0u {

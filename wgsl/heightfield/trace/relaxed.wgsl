@@ -15,7 +15,7 @@ fn relaxed_way(d: vec3<f32>, cell: vec2<i32>, z: f32, apex: f32) -> f32 {
         return cone_way(d, ratio, z - apex, relief.offset);
     }
     // The one node of the last level.
-    let top = maxima_at(relief.levels - 1u, vec2<u32>(0u));
+    let top = maxima[maxima_place(relief.levels - 1u, vec2<u32>(0u))];
     return select(0.0, COURSE_FAR, z > top);
 }
 

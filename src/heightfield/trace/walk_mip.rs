@@ -1,0 +1,162 @@
+//! The cone walk for distant views: over nodes of a pyramid that are about as wide as a
+//! pixel. Twin: `wgsl/heightfield/trace/walk_mip.wgsl`.
+//!
+//! A node has the highest apex and the narrowest cone of the cells under it
+//! ([`mips`]): its cone lies inside each of theirs, and lets a ray go on as far as theirs at
+//! the most. A step looks at the node of a level that follows the ray's parameter: cells as
+//! long as a texel is wider than a pixel, then nodes of as many texels as a pixel is wide,
+//! rounded down to a power of two. Over cells it is the walk.
+//!
+//! Over a larger node a ray that comes down to its maximum has hit it. That is never behind
+//! the first hit of the surface, as no surface lies higher; and the surface does reach the
+//! ray's height somewhere under the node, so the hit is off by a node sideways at most,
+//! which is no more than a pixel. Rays that pass closer than that to a summit may hit it. A
+//! shadow's ray counts its own way: near where it starts it looks at cells.
+
+use std::sync::Arc;
+
+use super::super::conemap::{ConeMap, MapKind};
+use super::super::generate::mips::{ConeLevel, mips};
+use super::super::relief::{Node, Numbers, Relief};
+use super::contract::{LocalRay, Step, Trace, TraceError, TraceHit, Tracer};
+use super::course::{
+    course_begin, course_cross, course_end, course_exit, course_hit, course_land, course_pass,
+    course_solve, trace_hit,
+};
+use super::walk::{WALK_TRUST, check_map, cone_way};
+use crate::frame::Work;
+use crate::shader::Module;
+use crate::wgsl;
+
+/// Cone walk over nodes of a relief.
+#[derive(Clone, Debug)]
+pub struct WalkMip {
+    relief: Arc<Relief>,
+    map: Arc<ConeMap>,
+    levels: Arc<Vec<ConeLevel>>,
+    lod: f64,
+}
+
+impl WalkMip {
+    /// A walk with the cones of a map. `lod` is the parameter of the ray at which a texel is
+    /// as wide as a pixel; 0 for cells at any distance.
+    ///
+    /// # Errors
+    /// The map is of another kind, or of another relief.
+    pub fn new(relief: Arc<Relief>, map: Arc<ConeMap>, lod: f64) -> Result<Self, TraceError> {
+        check_map("walk-mip", &[MapKind::Walk], &relief, &map)?;
+        let apexes = &relief.maxima().levels[0].max;
+        let levels = mips(apexes, &map).ok_or(TraceError::Count {
+            wanted: apexes.len(),
+            found: map.ratios.len(),
+        })?;
+        Ok(Self {
+            relief,
+            map,
+            levels: Arc::new(levels),
+            lod,
+        })
+    }
+
+    /// The level whose nodes are as wide as a pixel at a parameter of the ray, or narrower by
+    /// less than half.
+    pub fn level(&self, s: f64) -> u32 {
+        if self.lod <= 0.0 {
+            return 0;
+        }
+        // The conversion takes what is negative or no number for 0.
+        let texels = (s / self.lod) as u32;
+        texels.max(1).ilog2().min(self.levels.len() as u32 - 1)
+    }
+}
+
+/// The hit of a node, over whose maximum the ray is by so much: where it comes down to that,
+/// up to a parameter, or at once.
+fn meet(relief: &Relief, ray: &LocalRay, trace: &mut Trace, node: &Node, over: f64, to: f64) {
+    let mut s = trace.s;
+    if over > 0.0 && ray.axis.z < 0.0 {
+        s = (s + over / -ray.axis.z * WALK_TRUST).min(to);
+        course_land(relief, ray, trace, s);
+        // The line by which it leaves the node belongs to it.
+        trace.cell = [0, 1].map(|a| trace.cell[a].clamp(node.low[a], node.high[a] - 1));
+    }
+    course_hit(relief, ray, trace, s);
+}
+
+impl Tracer for WalkMip {
+    type Walk = Trace;
+
+    fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
+        course_begin(&self.relief, ray, from, to)
+    }
+
+    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+        if trace.state != Step::Moving {
+            return trace.state;
+        }
+        work.evaluations += 1;
+        let relief = &*self.relief;
+        let level = self.level(trace.s);
+        trace.level = level;
+        let node = relief.node(trace.cell, level);
+        let (exit, axis) = course_exit(ray, node.low, node.high);
+        let to = exit.min(trace.end);
+        let z = ray.height(trace.s);
+        trace.gap = z.min(ray.height(to)) - node.maximum;
+        if trace.gap <= 0.0 {
+            if level > 0 {
+                meet(relief, ray, trace, &node, z - node.maximum, to);
+                return Step::Hit;
+            }
+            if course_solve(relief, ray, trace, to) {
+                return Step::Hit;
+            }
+        }
+        let cones = &self.levels[level as usize];
+        let at = node.place[1] * cones.size[0] + node.place[0];
+        let ratio = cones.ratios[at as usize] * WALK_TRUST;
+        let way = cone_way(ray, ratio, z - node.maximum, self.map.offset);
+        let next = trace.s + way * WALK_TRUST;
+        if next.max(exit) >= trace.end {
+            return course_end(relief, ray, trace);
+        }
+        if next > exit {
+            course_land(relief, ray, trace, next);
+        } else if level == 0 {
+            course_cross(ray, trace, exit, axis);
+        } else {
+            let forward = ray.axis[axis] > 0.0;
+            let line = if forward { node.high } else { node.low }[axis];
+            course_pass(relief, ray, trace, exit, axis, line);
+        }
+        Step::Moving
+    }
+
+    fn hit(&self, trace: &Trace) -> TraceHit {
+        trace_hit(trace)
+    }
+
+    fn gap(&self, trace: &Trace) -> f64 {
+        trace.gap
+    }
+
+    fn modules(&self) -> Vec<Module> {
+        let mut all = self.relief.modules();
+        all.push(wgsl!("heightfield/trace/cone.wgsl"));
+        all.push(wgsl!("heightfield/trace/walk_mip.wgsl"));
+        all
+    }
+
+    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
+        let ratios = self.levels.iter().flat_map(|level| &level.ratios);
+        let all = ConeMap {
+            ratios: ratios.copied().collect(),
+            ..*self.map
+        };
+        let numbers = Numbers {
+            lod: self.lod,
+            ..Numbers::default()
+        };
+        self.relief.buffers(Some(&all), numbers)
+    }
+}

@@ -1,0 +1,347 @@
+//! Heightfields as scenes, on both executors: cones never start behind a surface at any size
+//! and angle of view, empty balls are empty, and boxes face the way that they are seen from.
+#![allow(
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "a test may panic, and is read by its name"
+)]
+
+mod adapter;
+#[allow(dead_code, reason = "other files use the rest")]
+mod common {
+    pub mod overclaims;
+    pub mod random;
+}
+
+use common::overclaims::{brought_near, overclaims};
+use common::random::Random;
+use conemarch::cpu;
+use conemarch::frame::{Frame, State};
+use conemarch::heightfield::heights::Patches;
+use conemarch::heightfield::placed::Placed;
+use conemarch::heightfield::relief::Relief;
+use conemarch::heightfield::shape::{HeightfieldShape, Ready, Wrap};
+use conemarch::heightfield::trace::oracle::Oracle;
+use conemarch::heightfield::trace::{LocalRay, Step, Tracer};
+use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::scene::{Scene, Solid};
+use conemarch::view::{Beam, Camera};
+use glam::DVec3;
+use rayon::prelude::*;
+
+const HIT: u8 = State::Hit as u8;
+
+/// Heightfields of every kind: rough and smooth, ended, wrapped and tiled, as they lie and
+/// turned, patches and boxes.
+fn shapes() -> Vec<(&'static str, HeightfieldShape)> {
+    let of = |field: &str, wrap, tiles, patches, depth, turn: [f64; 3]| {
+        let mut shape = HeightfieldShape::default();
+        shape.source.field = field.into();
+        shape.source.wrap = wrap;
+        shape.tiles = tiles;
+        shape.patches = patches;
+        shape.depth = depth;
+        shape.turn = turn.into();
+        shape
+    };
+    use Patches::{Bilinear, Boxes};
+    let flat = [0.0; 3];
+    let turned = [25.0, -40.0, 60.0];
+    let once = [1, 1];
+    vec![
+        (
+            "terrain",
+            of(
+                "fbm:65x48,seed=5,power=3",
+                Wrap::None,
+                once,
+                Bilinear,
+                2.6,
+                flat,
+            ),
+        ),
+        (
+            "turned",
+            of("ridges:33x40", Wrap::None, once, Bilinear, 3.0, turned),
+        ),
+        (
+            "spikes",
+            of("spikes:40x40", Wrap::None, once, Bilinear, 4.0, flat),
+        ),
+        (
+            "boxes",
+            of("spikes:24x17", Wrap::None, once, Boxes, 4.0, flat),
+        ),
+        (
+            "wrapped",
+            of("fbm:31x24", Wrap::Y, once, Bilinear, 2.0, turned),
+        ),
+        (
+            "tiled",
+            of("stones:16x11", Wrap::Both, [2, 3], Bilinear, 1.5, flat),
+        ),
+        (
+            "tiled boxes",
+            of("noise:7x5", Wrap::X, [3, 1], Boxes, 2.0, turned),
+        ),
+    ]
+}
+
+/// A shape made ready; how wide pixels are matters to none of these tests.
+fn ready(shape: &HeightfieldShape) -> Ready {
+    shape.ready(1e-3).unwrap()
+}
+
+fn local(placed: &Placed, eye: DVec3, ray: &Beam) -> LocalRay {
+    LocalRay {
+        origin: placed.position(eye + ray.origin),
+        axis: placed.direction(ray.axis),
+    }
+}
+
+/// Where every pixel's ray first meets the block, cell by cell; infinity for nowhere.
+fn truths(plan: &Plan, ready: &Ready) -> Vec<f64> {
+    let oracle = Oracle::new(ready.relief.clone());
+    let view = plan.view();
+    let [w, h] = plan.size;
+    let one = |i: u32| {
+        let ray = local(&ready.placed, view.eye, &view.view_ray([i % w, i / w]));
+        let mut work = Default::default();
+        let mut walk = oracle.begin(&ray, 0.0, 1e9, &mut work);
+        let mut step = Step::Moving;
+        while step == Step::Moving {
+            step = oracle.step(&ray, &mut walk, &mut work);
+        }
+        if step == Step::Hit {
+            walk.s
+        } else {
+            f64::INFINITY
+        }
+    };
+    (0..w * h).into_par_iter().map(one).collect()
+}
+
+/// From above, along the ground beside it, and from next to the surface in the middle.
+fn cameras(fov: f64) -> [Camera; 3] {
+    let from = |eye: [f64; 3], target: [f64; 3]| Camera {
+        eye: eye.into(),
+        target: target.into(),
+        up: DVec3::Z,
+        fov,
+    };
+    [
+        from([5.0, -9.0, 7.0], [0.0, 0.3, 0.5]),
+        from([-13.0, 2.0, 1.1], [0.0, 0.0, 0.8]),
+        from([0.3, 0.2, 3.4], [4.0, 3.0, 1.0]),
+    ]
+}
+
+const LEVELS: Extras = Extras {
+    count: false,
+    normals: false,
+    levels: true,
+    depth_only: true,
+    time: false,
+};
+
+#[test]
+fn no_cell_starts_behind_a_relief_at_any_size_and_angle() {
+    let mut nearest = 0.0_f64;
+    for (name, shape) in shapes() {
+        let ready = ready(&shape);
+        let mut plan = Plan::new(Subject::Heightfield(shape));
+        plan.march.coarsest = 32;
+        plan.march.steps = 2048;
+        for fov in [1.0, 48.5, 170.0] {
+            for (n, camera) in cameras(fov).into_iter().enumerate() {
+                plan.camera = camera;
+                for size in [[1, 1], [97, 61], [33, 17], [1, 210], [200, 1]] {
+                    plan.size = size;
+                    let t = truths(&plan, &ready);
+                    let here = cpu::render(&plan, LEVELS, &mut |_| true).unwrap();
+                    for frame in [here, adapter::render(&plan, LEVELS)] {
+                        let what = format!("{name}, camera {n}, fov {fov}, {size:?}");
+                        assert_eq!(frame.levels.len(), 5, "{what}");
+                        assert_eq!(overclaims(&frame, &t), 0, "{what}");
+                        nearest = nearest.max(brought_near(&frame, &t));
+                    }
+                }
+            }
+        }
+    }
+    // Nor do cells keep to the truth by claiming next to nothing.
+    assert!(nearest > 0.8, "{nearest}");
+}
+
+/// Points all over what the block shows: its top, with the sides of boxes, its walls and
+/// its base, so close together that none of the surface is farther off than `1 / fine`
+/// texels or heights.
+fn shell(relief: &Relief, fine: i32) -> Vec<DVec3> {
+    let [w, h] = relief.domain();
+    let part = |i: i32| f64::from(i) / f64::from(fine);
+    let mut all = Vec::new();
+    for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
+        let corner = DVec3::new(f64::from(x), f64::from(y), 0.0);
+        for (i, j) in (0..=fine).flat_map(|j| (0..=fine).map(move |i| (i, j))) {
+            let (u, v) = (part(i), part(j));
+            let top = relief.height([x, y], u, v);
+            let base = corner + DVec3::new(u, v, 0.0);
+            all.push(base + top * DVec3::Z);
+            all.push(base);
+            // Every cell's own four sides: those inside the block are no surface, unless
+            // boxes are beside a lower one.
+            let rim = [
+                x == 0 && i == 0,
+                x + 1 == w && i == fine,
+                y == 0 && j == 0,
+                y + 1 == h && j == fine,
+            ];
+            let edge = [[-1, 0], [1, 0], [0, -1], [0, 1]];
+            let on = [i == 0, i == fine, j == 0, j == fine];
+            for side in 0..4 {
+                let beside = [x + edge[side][0], y + edge[side][1]];
+                let boxes = relief.patches() == Patches::Boxes;
+                let from = if rim[side] {
+                    0.0
+                } else if boxes && on[side] {
+                    relief.apex(beside)
+                } else {
+                    top
+                };
+                let steps = (0..fine).map(|k| from + part(k) * (top - from));
+                all.extend(steps.take_while(|z| *z < top).map(|z| base + z * DVec3::Z));
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn empty_balls_hold_nothing_of_a_relief() {
+    let mut random = Random::new(41);
+    for (name, shape) in shapes() {
+        let Ready { relief, placed, .. } = ready(&shape);
+        let eye = DVec3::new(5.0, -9.0, 7.0);
+        let mut plan = Plan::new(Subject::Heightfield(shape));
+        plan.camera.eye = eye;
+        let Scene::Heightfield(scene) = plan.scene() else {
+            unreachable!("a heightfield");
+        };
+        let world =
+            |p: DVec3| placed.side(p * DVec3::new(placed.texel, placed.texel, placed.depth));
+        let shell: Vec<DVec3> = shell(&relief, 6).into_iter().map(world).collect();
+        let corner = eye - world(placed.position(eye));
+        let [w, h] = relief.domain().map(f64::from);
+        let points: Vec<DVec3> = (0..1500)
+            .map(|i| {
+                let n = [0; 3].map(|_| random.between(-0.15, 1.15));
+                let p = DVec3::new(n[0] * w, n[1] * h, n[2]);
+                // Every third from next to the surface on.
+                let near = i % 3 == 0 && n[..2].iter().all(|n| (0.0..1.0).contains(n));
+                let cell = [p.x as i32, p.y as i32];
+                let top = if near {
+                    relief.height(cell, p.x.fract(), p.y.fract())
+                } else {
+                    0.0
+                };
+                p.with_z(if near {
+                    top + 0.2 * n[2] * n[2]
+                } else {
+                    2.0 * p.z
+                })
+            })
+            .collect();
+        let found: Vec<(f64, f64)> = points
+            .par_iter()
+            .map(|p| {
+                let q = world(*p);
+                let nearest = shell.iter().map(|s| s.distance_squared(q));
+                let nearest = nearest.fold(f64::INFINITY, f64::min).sqrt();
+                (scene.clearance(corner + q - eye), nearest)
+            })
+            .collect();
+        for (p, (clear, nearest)) in points.iter().zip(&found) {
+            assert!(
+                *clear <= nearest + 1e-9,
+                "{name}: {clear} for {nearest} at {p}"
+            );
+        }
+        let large = found
+            .iter()
+            .filter(|(clear, nearest)| *clear > 0.3 * nearest);
+        let large = large.count();
+        assert!(large > 300, "{name}: only {large} balls of any size");
+    }
+}
+
+/// The first of all boxes of a relief that a ray meets, and the normal of the side, in
+/// local directions; each box is met by its three pairs of planes.
+fn met(relief: &Relief, ray: &LocalRay) -> Option<(f64, DVec3)> {
+    let [w, h] = relief.domain();
+    let mut first: Option<(f64, DVec3)> = None;
+    for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
+        let low = DVec3::new(f64::from(x), f64::from(y), 0.0);
+        let high = low + DVec3::new(1.0, 1.0, relief.apex([x, y]));
+        let [a, b] = [
+            (low - ray.origin) / ray.axis,
+            (high - ray.origin) / ray.axis,
+        ];
+        let (near, far) = (a.min(b), a.max(b).min_element());
+        let enter = near.max_element();
+        if enter > 0.0 && enter < far && first.is_none_or(|(s, _)| enter < s) {
+            let side = DVec3::AXES.into_iter().find(|n| near.dot(*n) == enter)?;
+            first = Some((enter, -side * ray.axis.dot(side).signum()));
+        }
+    }
+    first
+}
+
+#[test]
+fn the_sides_of_boxes_face_sideways() {
+    const NORMALS: Extras = Extras {
+        count: false,
+        normals: true,
+        levels: false,
+        depth_only: false,
+        time: false,
+    };
+    let shapes = shapes().into_iter();
+    for (name, mut shape) in shapes.filter(|(_, s)| s.patches == Patches::Boxes) {
+        for tracer in ["walk", "walk-relaxed", "max-mip", "walk-mip"] {
+            shape.tracing.tracer = tracer;
+            let ready = ready(&shape);
+            let mut plan = Plan::new(Subject::Heightfield(shape.clone()));
+            [plan.camera, ..] = cameras(40.0);
+            plan.size = [120, 80];
+            let view = plan.view();
+            let here = cpu::render(&plan, NORMALS, &mut |_| true).unwrap();
+            for frame in [here, adapter::render(&plan, NORMALS)] {
+                check_normals(&format!("{name}, {tracer}"), &frame, |pixel| {
+                    let ray = local(&ready.placed, view.eye, &view.view_ray(pixel));
+                    let (_, normal) = met(&ready.relief, &ray)?;
+                    Some(ready.placed.side(normal))
+                });
+            }
+        }
+    }
+}
+
+/// Compares the normals of a frame with those of its rays, and sees that sides and tops
+/// are among them.
+fn check_normals(what: &str, frame: &Frame, normal: impl Fn([u32; 2]) -> Option<DVec3>) {
+    let width = frame.size[0];
+    let (mut wrong, mut seen) = (0, Vec::<(DVec3, u32)>::new());
+    for i in (0..frame.state.len()).filter(|i| frame.state[*i] == HIT) {
+        let own = DVec3::from_array(frame.normal[i].map(f64::from));
+        let truth = normal([i as u32 % width, i as u32 / width]);
+        wrong += u32::from(truth.is_none_or(|n| n.distance(own) > 1e-5));
+        match seen.iter_mut().find(|(n, _)| n.distance(own) < 1e-5) {
+            Some((_, count)) => *count += 1,
+            None => seen.push((own, 1)),
+        }
+    }
+    // Rays that meet an edge within a rounding: f32 takes either side.
+    assert!(wrong <= 8, "{what}: {wrong} wrong, {seen:?}");
+    let often = seen.iter().filter(|(_, count)| *count > 100).count();
+    assert!(often >= 3, "{what}: {seen:?}");
+}
