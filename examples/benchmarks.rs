@@ -8,7 +8,10 @@ use anyhow::{Context, Result};
 use conemarch::command::bench::row::Row;
 use conemarch::command::bench::steps::StepsRow;
 use conemarch::command::bench::table;
-use serde::de::DeserializeOwned;
+
+#[path = "common/page.rs"]
+mod page;
+use page::{read, replace};
 
 fn main() -> Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -33,11 +36,6 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
-    let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    serde_json::from_str(&text).with_context(|| path.display().to_string())
-}
-
 fn error(rows: &[Row]) -> String {
     let mut text = String::new();
     for group in rows.chunk_by(|a, b| a.preset == b.preset) {
@@ -49,13 +47,4 @@ fn error(rows: &[Row]) -> String {
 fn levels(rows: &[StepsRow]) -> String {
     let groups = rows.chunk_by(|a, b| a.preset == b.preset && a.mode == b.mode);
     groups.map(table::levels).collect()
-}
-
-/// Puts text between the two lines that mark a section.
-fn replace(text: &mut String, section: &str, content: &str) -> Result<()> {
-    let [open, close] = ["", "/"].map(|s| format!("<!-- {s}{section} -->\n"));
-    let start = text.find(&open).with_context(|| open.clone())? + open.len();
-    let end = text.find(&close).with_context(|| close.clone())?;
-    text.replace_range(start..end, &format!("\n{}\n\n", content.trim()));
-    Ok(())
 }

@@ -3,9 +3,11 @@
 //! Prints, as tables, how many nodes a place takes by field and size, how long each
 //! generator takes on the CPU and on the device that `auto` chooses, and how the maps
 //! compare with the exact one. `generators nodes`, `generators quality` and `generators
-//! device 1024 exact improved` print one of them. A generator that is not done within a minute
+//! device 1024 exact improved` print one of them; the first and the last write their rows
+//! as JSON, too, where `--json FILE` follows. A generator that is not done within a minute
 //! is given as an estimate, with a tilde.
 
+use std::fs;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
@@ -15,7 +17,12 @@ use conemarch::heightfield::field::Field;
 use conemarch::heightfield::generate::cpu;
 use conemarch::heightfield::generate::device::Maker;
 use conemarch::heightfield::generate::generator::{GenerateError, Generator, Options};
+use conemarch::heightfield::generate::pyramid::Tiles;
 use conemarch::heightfield::heights::{Heights, Patches};
+
+#[path = "common/rows.rs"]
+mod rows;
+use rows::{NodesRow, TimesRow};
 
 /// Rough terrain.
 const POWER: f64 = 2.6;
@@ -24,15 +31,21 @@ const PATIENCE: f64 = 60.0;
 
 fn main() -> Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let mut args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let mut json = None;
+    if let [.., "--json", file] = args[..] {
+        json = Some(file);
+        args.truncate(args.len() - 2);
+    }
     match args[..] {
-        [] => {
+        [] if json.is_none() => {
             nodes()?;
             quality()?;
-            device(1024, &Generator::ALL)
+            device(1024, &Generator::ALL)?;
+            Ok(())
         }
-        ["nodes"] => nodes(),
-        ["quality"] => quality(),
+        ["nodes"] => write(json, &nodes()?),
+        ["quality"] if json.is_none() => quality(),
         ["device", size, ref names @ ..] => {
             let named = |name: &&str| Generator::named(name).context("a generator's name");
             let chosen: Vec<Generator> = names.iter().map(named).collect::<Result<_>>()?;
@@ -41,10 +54,20 @@ fn main() -> Result<()> {
             } else {
                 &chosen
             };
-            device(size.parse().context("a size")?, all)
+            write(json, &device(size.parse().context("a size")?, all)?)
         }
-        _ => anyhow::bail!("usage: generators [nodes | quality | device SIZE [GENERATOR]...]"),
+        _ => anyhow::bail!(
+            "usage: generators [nodes | quality | device SIZE [GENERATOR]...] [--json FILE]"
+        ),
     }
+}
+
+/// Writes rows where a file is named.
+fn write<T: serde::Serialize>(file: Option<&str>, rows: &[T]) -> Result<()> {
+    if let Some(file) = file {
+        fs::write(file, serde_json::to_string_pretty(rows)?).with_context(|| file.to_string())?;
+    }
+    Ok(())
 }
 
 fn field(field: Field, size: u32) -> Result<Heights> {
@@ -54,7 +77,8 @@ fn field(field: Field, size: u32) -> Result<Heights> {
 }
 
 /// Nodes per place, mean and worst, of the searches.
-fn nodes() -> Result<()> {
+fn nodes() -> Result<Vec<NodesRow>> {
+    let mut rows = Vec::new();
     let searches = [
         Generator::Exact,
         Generator::RelaxedExact,
@@ -77,11 +101,18 @@ fn nodes() -> Result<()> {
                 let (map, work) = made?;
                 let mean = work.nodes as f64 / map.ratios.len() as f64;
                 row += &format!(" {mean:.1} ({}) |", work.most);
+                rows.push(NodesRow {
+                    generator: generator.name().into(),
+                    field: f.name().into(),
+                    size,
+                    mean,
+                    worst: work.most,
+                });
             }
             println!("{row}");
         }
     }
-    Ok(())
+    Ok(rows)
 }
 
 /// Mean ratios of the maps over that of the exact one, and the share of places that are
@@ -123,7 +154,7 @@ fn quality() -> Result<()> {
 }
 
 /// Times of one map of `fbm`, whole and of the dispatches alone, warm.
-fn device(size: u32, generators: &[Generator]) -> Result<()> {
+fn device(size: u32, generators: &[Generator]) -> Result<Vec<TimesRow>> {
     let adapters = Adapters::find();
     let found = adapters.choose(&Choice::Auto)?;
     let (adapter, _) = found.context("there is no adapter")?;
@@ -143,38 +174,77 @@ fn device(size: u32, generators: &[Generator]) -> Result<()> {
     let here = conemarch::heightfield::maxmip::MaxMip::new(heights.size(), heights.data().to_vec());
     println!("| max-mip | {there:.0} | | | {:.0} |", ms(start));
     drop(here);
+    let mut rows = Vec::new();
     for &generator in generators {
-        let options = Options::default();
-        // The first run compiles; an estimate needs no second.
-        let mut row = format!("| {} |", generator.name());
-        let mut best = [f64::INFINITY; 2];
-        let mut estimate = false;
-        for _ in 0..3 {
-            let start = Instant::now();
-            let part = watched(start, |watch| {
-                maker.generate(generator, &heights, Patches::default(), &options, watch)
-            })?;
-            estimate = part < 1.0;
-            let now = [ms(start) / part, maker.device_ms / part];
-            best = [best[0].min(now[0]), best[1].min(now[1])];
-            if estimate || ms(start) > 10e3 {
-                break;
-            }
-        }
-        let tilde = if estimate { "~" } else { "" };
-        let settled = 100.0 * maker.settled as f64 / f64::from(size * size);
-        row += &format!(
-            " {tilde}{:.0} | {tilde}{:.0} | {settled:.3} % |",
-            best[0], best[1]
+        let row = times(&mut maker, generator, &heights, &device.info.name)?;
+        let tilde = |is: bool| if is { "~" } else { "" };
+        let (own, cpu) = (tilde(row.estimated), tilde(row.cpu_estimated));
+        println!(
+            "| {} | {own}{:.0} | {own}{:.0} | {:.3} % | {cpu}{:.0} |",
+            row.generator,
+            row.ms,
+            row.dispatches_ms,
+            100.0 * row.settled,
+            row.cpu_ms
         );
+        rows.push(row);
+    }
+    Ok(rows)
+}
+
+/// One generator: the least of up to three runs on the device, one on the CPU.
+fn times(
+    maker: &mut Maker<'_>,
+    generator: Generator,
+    heights: &Heights,
+    device: &str,
+) -> Result<TimesRow> {
+    let size = heights.size();
+    let (patches, options) = (Patches::default(), Options::default());
+    // The first run compiles; an estimate needs no second.
+    let mut best = [f64::INFINITY; 2];
+    let mut estimated = false;
+    // From here on: making the heights takes memory, too. Nothing is lost where a system
+    // has no such file.
+    let _ = fs::write("/proc/self/clear_refs", "5");
+    for _ in 0..3 {
         let start = Instant::now();
         let part = watched(start, |watch| {
-            cpu::generate(generator, &heights, Patches::default(), &options, watch)
+            maker.generate(generator, heights, patches, &options, watch)
         })?;
-        let tilde = if part < 1.0 { "~" } else { "" };
-        println!("{row} {tilde}{:.0} |", ms(start) / part);
+        estimated = part < 1.0;
+        let now = [ms(start) / part, maker.device_ms / part];
+        best = [best[0].min(now[0]), best[1].min(now[1])];
+        if estimated || ms(start) > 10e3 {
+            break;
+        }
     }
-    Ok(())
+    let peak = peak();
+    let start = Instant::now();
+    let part = watched(start, |watch| {
+        cpu::generate(generator, heights, patches, &options, watch)
+    })?;
+    Ok(TimesRow {
+        generator: generator.name().into(),
+        size: size[0],
+        device: device.into(),
+        ms: best[0],
+        dispatches_ms: best[1],
+        estimated,
+        settled: maker.settled as f64 / heights.data().len() as f64,
+        cpu_ms: ms(start) / part,
+        cpu_estimated: part < 1.0,
+        largest_binding: u64::from(Tiles::new(size).count) * size_of::<[f32; 4]>() as u64,
+        peak,
+    })
+}
+
+/// The most memory that this process has had, in bytes, where the system tells.
+fn peak() -> Option<u64> {
+    let text = fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kib.checked_mul(1024)
 }
 
 fn ms(start: Instant) -> f64 {

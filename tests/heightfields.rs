@@ -326,6 +326,45 @@ fn cones_are_not_wider_than_they_may_be() {
     assert!(bad(&AnyTracer::WalkRelaxed(relaxed)) > 0);
 }
 
+/// Straight down at a position of the domain.
+fn down(at: DVec2) -> LocalRay {
+    LocalRay {
+        origin: at.extend(1.0),
+        axis: -DVec3::Z,
+    }
+}
+
+#[test]
+fn a_cell_beyond_both_borders_joins_all_four_corners_of_the_map() {
+    // The corners of the map are 1/2, 1/8, 1/4 and 0; nothing between them is as high.
+    let mut z = vec![0.0; 12];
+    (z[0], z[3], z[8]) = (0.5, 0.125, 0.25);
+    let relief = block([4, 3], [true; 2], [2, 2], Patches::Bilinear, z.clone());
+    // From the last sample on to the first ones, in the middle of the block and at its end.
+    for cell in [DVec2::new(3.0, 2.0), DVec2::new(7.0, 5.0)] {
+        for (at, height) in [
+            ([0.5, 0.5], 0.21875),
+            ([0.25, 0.75], 0.1796875),
+            ([0.75, 0.75], 0.3515625),
+        ] {
+            let ray = down(cell + DVec2::from_array(at));
+            for (name, tracer) in exact(&relief) {
+                let hit = hit_of(&tracer, &ray).unwrap();
+                let own = ray.height(hit.s);
+                assert!((own - height).abs() < 1e-12, "{name} {ray:?}: {own}");
+            }
+        }
+    }
+    // On an axis that ends there is no such cell: the last one ends at the last sample.
+    let relief = block([4, 3], [true, false], [2, 1], Patches::Bilinear, z);
+    for (name, tracer) in exact(&relief) {
+        let inside = hit_of(&tracer, &down(DVec2::new(3.5, 1.5))).unwrap();
+        assert!((inside.s - 0.9375).abs() < 1e-12, "{name}: {inside:?}");
+        let ray = down(DVec2::new(3.5, 2.5));
+        assert_eq!(hit_of(&tracer, &ray), None, "{name}");
+    }
+}
+
 #[test]
 fn the_block_has_walls_and_a_floor() {
     let relief = block([3, 3], [false; 2], [1, 1], Patches::Bilinear, vec![0.5; 9]);

@@ -1,0 +1,147 @@
+//! Times of whole frames by the map that rays step with, at 32 and 200 steps: the tables
+//! of section 4.1 of Valasek and Ban (2022).
+
+use anyhow::{Context, Result, ensure};
+use conemarch::command::executor::Executor;
+use conemarch::frame::{Frame, State};
+use conemarch::gpu::device::Choice;
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset::{self, Override};
+use serde::{Deserialize, Serialize};
+
+/// Warm runs that a median is taken of.
+const RUNS: usize = 9;
+/// Steps of a ray, as in the paper.
+const STEPS: [u32; 2] = [32, 200];
+/// Length of the block's side in the preset, over which texels are spread.
+const WIDTH: f64 = 12.0;
+const TEXELS: f64 = 255.0;
+
+/// One kind of map with one refinement, at one number of steps.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct FrameRow {
+    /// What the paper calls it; empty for what it does not have.
+    pub paper: String,
+    /// Who traces, with which map.
+    pub tracer: String,
+    /// Generator of the map; `none` for none.
+    pub map: String,
+    /// Steps that a ray has.
+    pub steps: u32,
+    /// Median time of trace and colour, in milliseconds.
+    pub ms: f64,
+    /// The median, run by run, of its time over that of the first kind at as many steps.
+    pub of_first: f64,
+    /// Share of the pixels that ran out of steps.
+    pub unconverged: f64,
+    /// Share of the pixels that show a hit over a texel behind that of the walk, or sky
+    /// where the walk has a hit.
+    pub skipped: f64,
+}
+
+/// What the paper calls it, the tracer, its map, and rounds of refinement: one of false
+/// positions, five halvings.
+const KINDS: [(&str, &str, &str, &str); 7] = [
+    ("BFCM", "secant", "exact", "1"),
+    ("RCMs", "secant", "relaxed-search", "1"),
+    ("RCMb", "rcs-binary", "relaxed-search", "5"),
+    ("QI", "secant", "improved", "1"),
+    ("QC", "secant", "center", "1"),
+    ("", "max-mip", "none", "auto"),
+    ("", "walk", "walk", "auto"),
+];
+
+/// The plan of a kind: rays alone from the eye, unshadowed, as the papers' shaders are.
+fn plan(field: &str, relaxed: &str, kind: (&str, &str, &str, &str), steps: u32) -> Result<Plan> {
+    let (_, tracer, map, rounds) = kind;
+    let map = match map {
+        "none" => "auto",
+        "relaxed-search" => relaxed,
+        own => own,
+    };
+    let set = [
+        format!("scene.field={field:?}"),
+        format!("scene.width={WIDTH}"),
+        format!("scene.tracer={tracer}"),
+        format!("scene.map={map:?}"),
+        format!("scene.tracer_rounds={rounds}"),
+        format!("scene.tracer_steps={steps}"),
+        // Tracers without steps of their own stop there.
+        format!("march.steps={steps}"),
+        "march.mode=ray".into(),
+        "look.shadow=false".into(),
+        "look.occlusion=0".into(),
+        "image.size=[640, 360]".into(),
+    ];
+    let set: Vec<Override> = set
+        .iter()
+        .map(|s| Override::read(s))
+        .collect::<Result<_, _>>()?;
+    Ok(preset::load("terrain", &set)?.plan)
+}
+
+fn frame_ms(frame: &Frame) -> f64 {
+    frame.passes.iter().map(|p| p.wall_ms).sum()
+}
+
+/// Share of the pixels that are skipped, the walk's frame being the truth.
+fn skipped(frame: &Frame, truth: &Frame) -> f64 {
+    let state = |f: &Frame, i: usize| State::from_code(f.state[i].into());
+    let behind = |i: &usize| {
+        let past = f64::from(frame.depth[*i] - truth.depth[*i]) > WIDTH / TEXELS;
+        let own = state(frame, *i);
+        let lost = own == Some(State::Sky) || own == Some(State::Hit) && past;
+        lost && state(truth, *i) == Some(State::Hit)
+    };
+    let count = (0..frame.state.len()).filter(behind).count();
+    count as f64 / frame.state.len().max(1) as f64
+}
+
+/// Renders every kind in turn, so that a busy machine slows all alike.
+pub fn measure(field: &str, relaxed: &str) -> Result<Vec<FrameRow>> {
+    let (mut executor, _) = Executor::open(&Choice::Auto)?;
+    let mut render = |plan: &Plan| executor.render(plan, Extras::default(), &mut |_| true);
+    let truth = render(&plan(field, relaxed, KINDS[KINDS.len() - 1], 1024)?)?;
+    ensure!(truth.census()[2] == 0, "the walk did not converge");
+    let mut rows = Vec::new();
+    for steps in STEPS {
+        let plans: Vec<Plan> = KINDS
+            .iter()
+            .map(|kind| plan(field, relaxed, *kind, steps))
+            .collect::<Result<_>>()?;
+        let mut times = vec![Vec::new(); KINDS.len()];
+        let mut frames = Vec::new();
+        for run in 0..=RUNS {
+            frames = plans.iter().map(&mut render).collect::<Result<_, _>>()?;
+            // The first run makes maps and compiles.
+            if run > 0 {
+                for (times, frame) in times.iter_mut().zip(&frames) {
+                    times.push(frame_ms(frame));
+                }
+            }
+        }
+        for (i, (paper, tracer, map, _)) in KINDS.into_iter().enumerate() {
+            let ratios = times[i]
+                .iter()
+                .zip(&times[0])
+                .map(|(own, first)| own / first);
+            let frame: &Frame = frames.get(i).context("a frame")?;
+            rows.push(FrameRow {
+                paper: paper.into(),
+                tracer: tracer.into(),
+                map: map.into(),
+                steps,
+                ms: median(times[i].clone()),
+                of_first: median(ratios.collect()),
+                unconverged: frame.census()[2] as f64 / frame.state.len().max(1) as f64,
+                skipped: skipped(frame, &truth),
+            });
+        }
+    }
+    Ok(rows)
+}
+
+fn median(mut all: Vec<f64>) -> f64 {
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
+}
