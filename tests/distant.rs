@@ -154,7 +154,7 @@ fn distant_views_take_fewer_steps_than_with_the_walk() {
     let relief = &case.relief;
     let map = made(Generator::Walk, relief, 2.0);
     let oracle = Oracle::new(relief.clone());
-    for degrees in [60.0, 80.0] {
+    for degrees in [60.0] {
         // As many heights away as texels are to be as wide as a pixel.
         let mut rays = view_rays(relief, degrees, 10_000);
         for ray in &mut rays {
@@ -171,8 +171,9 @@ fn distant_views_take_fewer_steps_than_with_the_walk() {
             let own = survey(&own, &rays, &truths);
             println!("{degrees}: {texels} texels to a pixel: {own:?}, walk {walk:?}");
             assert_eq!((own.skipped, own.unconverged), (0.0, 0.0));
-            assert!(own.steps_mean < 0.9 * walk.steps_mean, "{own:?}");
-            assert!(own.steps_p99 < walk.steps_p99, "{own:?}");
+            let most = if texels < 8.0 { 0.9 } else { 0.65 };
+            assert!(own.steps_mean < most * walk.steps_mean, "{own:?} {walk:?}");
+            assert!(own.steps_p99 < walk.steps_p99, "{own:?} {walk:?}");
         }
     }
 }
