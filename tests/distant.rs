@@ -154,7 +154,7 @@ fn distant_views_take_fewer_steps_than_with_the_walk() {
     let relief = &case.relief;
     let map = made(Generator::Walk, relief, 2.0);
     let oracle = Oracle::new(relief.clone());
-    for degrees in [60.0] {
+    for degrees in [60.0, 80.0] {
         // As many heights away as texels are to be as wide as a pixel.
         let mut rays = view_rays(relief, degrees, 10_000);
         for ray in &mut rays {
