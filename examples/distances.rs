@@ -15,7 +15,7 @@ use conemarch::mode::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{Override, load};
 
-const FIELD: &str = "scene.field=fbm:1024x1024,seed=5,power=2.6";
+const FIELD: &str = "scene.field=\"fbm:1024x1024,seed=5,power=2.6\"";
 /// The length of a texel, 1023 of which are the preset's block.
 const TEXEL: f64 = 12.0 / 1023.0;
 const SIZE: [u32; 2] = [640, 360];

@@ -171,8 +171,9 @@ fn distant_views_take_fewer_steps_than_with_the_walk() {
             let own = survey(&own, &rays, &truths);
             println!("{degrees}: {texels} texels to a pixel: {own:?}, walk {walk:?}");
             assert_eq!((own.skipped, own.unconverged), (0.0, 0.0));
-            assert!(own.steps_mean < 0.9 * walk.steps_mean, "{own:?}");
-            assert!(own.steps_p99 < walk.steps_p99, "{own:?}");
+            let most = if texels < 8.0 { 0.9 } else { 0.65 };
+            assert!(own.steps_mean < most * walk.steps_mean, "{own:?} {walk:?}");
+            assert!(own.steps_p99 < walk.steps_p99, "{own:?} {walk:?}");
         }
     }
 }

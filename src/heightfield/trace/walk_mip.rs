@@ -1,11 +1,12 @@
 //! The cone walk for distant views: over nodes of a pyramid that are about as wide as a
 //! pixel. Twin: `wgsl/heightfield/trace/walk_mip.wgsl`.
 //!
-//! A node has the highest apex and the narrowest cone of the cells under it
-//! ([`mips`]): its cone lies inside each of theirs, and lets a ray go on as far as theirs at
-//! the most. A step looks at the node of a level that follows the ray's parameter: cells as
-//! long as a texel is wider than a pixel, then nodes of as many texels as a pixel is wide,
-//! rounded down to a power of two. Over cells it is the walk.
+//! A step looks at the node of a level that follows the ray's parameter: cells as long as a
+//! texel is wider than a pixel, then nodes of as many texels as a pixel is wide, rounded
+//! down to a power of two. A ray above the node's maximum goes on to its exit at least, or as
+//! far as the cone of the cell that it stands over lets it. Over cells it is the walk. (A
+//! node has a cone, too, with the highest apex and the least ratio under it; but that lies
+//! inside the cell's, and over flat ground takes back more than wide nodes give.)
 //!
 //! Over a larger node a ray that comes down to its maximum has hit it. That is never behind
 //! the first hit of the surface, as no surface lies higher; and the surface does reach the
@@ -16,7 +17,6 @@
 use std::sync::Arc;
 
 use super::super::conemap::{ConeMap, MapKind};
-use super::super::generate::mips::{ConeLevel, mips};
 use super::super::relief::{Node, Numbers, Relief};
 use super::contract::{LocalRay, Step, Trace, TraceError, TraceHit, Tracer};
 use super::course::{
@@ -33,7 +33,6 @@ use crate::wgsl;
 pub struct WalkMip {
     relief: Arc<Relief>,
     map: Arc<ConeMap>,
-    levels: Arc<Vec<ConeLevel>>,
     lod: f64,
 }
 
@@ -45,17 +44,7 @@ impl WalkMip {
     /// The map is of another kind, or of another relief.
     pub fn new(relief: Arc<Relief>, map: Arc<ConeMap>, lod: f64) -> Result<Self, TraceError> {
         check_map("walk-mip", &[MapKind::Walk], &relief, &map)?;
-        let apexes = &relief.maxima().levels[0].max;
-        let levels = mips(apexes, &map).ok_or(TraceError::Count {
-            wanted: apexes.len(),
-            found: map.ratios.len(),
-        })?;
-        Ok(Self {
-            relief,
-            map,
-            levels: Arc::new(levels),
-            lod,
-        })
+        Ok(Self { relief, map, lod })
     }
 
     /// The level whose nodes are as wide as a pixel at a parameter of the ray, or narrower by
@@ -66,7 +55,8 @@ impl WalkMip {
         }
         // The conversion takes what is negative or no number for 0.
         let texels = (s / self.lod) as u32;
-        texels.max(1).ilog2().min(self.levels.len() as u32 - 1)
+        let top = self.relief.maxima().levels.len() as u32 - 1;
+        texels.max(1).ilog2().min(top)
     }
 }
 
@@ -112,10 +102,8 @@ impl Tracer for WalkMip {
                 return Step::Hit;
             }
         }
-        let cones = &self.levels[level as usize];
-        let at = node.place[1] * cones.size[0] + node.place[0];
-        let ratio = cones.ratios[at as usize] * WALK_TRUST;
-        let way = cone_way(ray, ratio, z - node.maximum, self.map.offset);
+        let ratio = self.map.ratios[relief.number(trace.cell) as usize] * WALK_TRUST;
+        let way = cone_way(ray, ratio, z - relief.apex(trace.cell), self.map.offset);
         let next = trace.s + way * WALK_TRUST;
         if next.max(exit) >= trace.end {
             return course_end(relief, ray, trace);
@@ -148,15 +136,10 @@ impl Tracer for WalkMip {
     }
 
     fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
-        let ratios = self.levels.iter().flat_map(|level| &level.ratios);
-        let all = ConeMap {
-            ratios: ratios.copied().collect(),
-            ..*self.map
-        };
         let numbers = Numbers {
             lod: self.lod,
             ..Numbers::default()
         };
-        self.relief.buffers(Some(&all), numbers)
+        self.relief.buffers(Some(&self.map), numbers)
     }
 }

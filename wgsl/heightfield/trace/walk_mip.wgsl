@@ -1,9 +1,8 @@
 // The cone walk for distant views: over nodes of a pyramid that are about as wide as a
-// pixel. A node has the highest apex and the narrowest cone of the cells under it, so that
-// its cone lies inside each of theirs. Over cells, as long as a texel is wider than a pixel,
-// this is the walk. Over larger nodes a ray that comes down to the maximum has hit: never
-// behind the first hit of the surface, and off by a node sideways at most. `ratios` holds
-// all levels, as `maxima` does.
+// pixel. A ray above a node's maximum goes on to its exit at least, or as far as the cone of
+// the cell under it lets it. Over cells, as long as a texel is wider than a pixel, this is
+// the walk. Over larger nodes a ray that comes down to the maximum has hit: never behind
+// the first hit of the surface, and off by a node sideways at most.
 
 /// More than the nodes of any level are wide, in texels.
 const WALK_MIP_WIDEST = 65536.0;
@@ -59,8 +58,10 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
             return STATE_HIT;
         }
     }
-    let ratio = ratios[node.at] * WALK_TRUST_RATIO;
-    let next = (*trace).s + cone_way(d, ratio, over, relief.offset) * WALK_TRUST_WAY;
+    let cell = (*trace).cell;
+    let ratio = ratios[relief_number(cell)] * WALK_TRUST_RATIO;
+    let apex = relief_apex(cell);
+    let next = (*trace).s + cone_way(d, ratio, z - apex, relief.offset) * WALK_TRUST_WAY;
     if max(next, exit.x) >= (*trace).end {
         return course_end(o, d, trace);
     }
