@@ -6,9 +6,9 @@
 //! A hit is where the estimate falls under the hit threshold, so the reference stops in a
 //! skin before the surface, and what is proven free may reach into that skin, up to the
 //! share of it that cones keep clear of (docs/method.md, 2); a ray that grazes the surface
-//! stays in the skin for long. Where a front lies beyond the reference's hit by more than the
-//! threshold, the ray is therefore followed on from that hit: the front is a violation if
-//! the ray comes as near to the surface as cones must not, before it is there.
+//! stays in the skin for long. Where a front lies beyond the reference's hit, the ray is
+//! therefore followed on from that hit: the front is a violation if the ray comes as near to
+//! the surface as cones must not, before it is there.
 
 use rayon::prelude::*;
 
@@ -172,7 +172,7 @@ impl Task for Violations<'_> {
                 let front = level.front[(y / d) * level.cells[0] as usize + x / d];
                 let (front, hit) = (f64::from(front), f64::from(reference.depth[*i]));
                 let ray = view.view_ray([x as u32, y as u32]);
-                front > hit + plan.march.detail * footprint(&ray, hit) && met(&ray, hit, front)
+                front > hit && met(&ray, hit, front)
             };
             let all = (0..reference.depth.len()).into_par_iter();
             (level.divisor, all.filter(wrong).count() as u64)
@@ -187,6 +187,7 @@ mod tests {
     use crate::frame::LevelLayer;
     use crate::plan::Subject;
     use crate::scene::slab::SlabShape;
+    use glam::DVec3;
 
     /// A plan of so many pixels in a row.
     fn row(pixels: u32) -> Plan {
@@ -209,14 +210,24 @@ mod tests {
         }
     }
 
-    /// Steep rays onto the slab cross its skin at once; what lies before the surface is
-    /// right, and what lies behind it is not.
+    /// The unit ball at the origin, among others, seen from six lengths away.
+    fn ball(size: [u32; 2]) -> Plan {
+        use crate::formula::{Shape, balls::Balls};
+        let mut plan = Plan::new(Subject::Distance {
+            shape: Shape::Balls(Balls::default()),
+            iterations: None,
+        });
+        plan.camera.eye = DVec3::new(0.0, -6.0, 0.3);
+        plan.camera.target = DVec3::ZERO;
+        plan.size = size;
+        plan
+    }
+
+    /// Steep rays cross the skin at once: a front in the part of it that cones need not
+    /// keep clear of is right, one beyond is not.
     #[test]
     fn a_front_in_the_skin_is_no_violation_and_one_beyond_it_is() {
-        let mut plan = row(8);
-        plan.camera.eye = glam::DVec3::new(0.2, 0.1, 9.0);
-        plan.camera.target = glam::DVec3::ZERO;
-        plan.camera.up = glam::DVec3::Y;
+        let mut plan = ball([8, 1]);
         plan.camera.fov = 1.0;
         for (detail, shell) in [(1.0, 0.45), (3.0, 0.45), (1.0, 0.0), (0.5, 0.9)] {
             plan.march.detail = detail;
@@ -230,10 +241,11 @@ mod tests {
             let beyond = [-9.0, -0.6, -0.02, 0.15, 0.6, 9.0, 9.0, 9.0];
             let front = (0..).zip(beyond).map(|(x, n)| {
                 let ray = plan.view().view_ray([x, 0]);
-                let slope = -ray.axis.z;
-                let top = (9.0 - SlabShape::default().half) / slope;
+                let near = -plan.camera.eye.dot(ray.axis);
+                let off = plan.camera.eye.length_squared() - near * near;
+                let top = near - (1.0 - off).sqrt();
                 let threshold = detail * footprint(&ray, top);
-                (top + (n - shell) * threshold / slope) as f32
+                (top + (n - shell) * threshold) as f32
             });
             let frame = with_fronts(&reference, front.collect());
             let report = compare(&frame, &reference, &plan);
@@ -245,16 +257,10 @@ mod tests {
     /// passes: a front that lies behind all of it is right.
     #[test]
     fn a_front_beyond_a_grazed_skin_is_right() {
-        use crate::formula::{Shape, balls::Balls};
-        let mut plan = Plan::new(Subject::Distance {
-            shape: Shape::Balls(Balls::default()),
-            iterations: None,
-        });
-        plan.camera.eye = glam::DVec3::new(0.0, -6.0, 0.3);
-        plan.size = [240, 160];
-        // Over the first ball by three quarters of the threshold, and through its rim.
+        let plan = ball([240, 160]);
+        // Past the ball by a share of the threshold, or through its rim.
         let view = plan.view();
-        let over = |share: f64| {
+        let past = |share: f64| {
             let pixels = (0..plan.size[1]).flat_map(|y| (0..plan.size[0]).map(move |x| [x, y]));
             let miss = |p: [u32; 2]| {
                 let ray = view.view_ray(p);
@@ -268,10 +274,10 @@ mod tests {
             crate::cpu::render(&plan, Default::default(), &mut |_| true).expect("rendered");
         let width = plan.size[0] as usize;
         for (share, wrong) in [(0.75, 0), (-2.0, 1)] {
-            let p = over(share).expect("a picture has pixels");
+            let p = past(share).expect("a picture has pixels");
             let i = p[1] as usize * width + p[0] as usize;
             assert_eq!(reference.state[i], State::Hit as u8, "{p:?}");
-            // As far as the ray's nearest point and on: the skin is far behind.
+            // Half a length on: far behind the skin.
             let mut front = vec![0.0; reference.depth.len()];
             front[i] = reference.depth[i] + 0.5;
             let report = compare(&with_fronts(&reference, front), &reference, &plan);

@@ -356,6 +356,10 @@ fn cones_are_measured_map_by_map_and_view_by_view() {
 #[test]
 fn bad_input_is_one_sentence() {
     let folder = Folder::new();
+    for verb in ["error", "steps", "calibrate"] {
+        let huge = ["bench", verb, "bench-far", "--size", "65536x65536"];
+        folder.fails(&huge, 1, &["bench-far", "bytes of memory", "would fit"]);
+    }
     folder.write("file", "of nothing");
     std::fs::create_dir(folder.0.join("a")).expect("a folder");
     let preset = text(&folder.done(&["presets", "bench-far"]));

@@ -440,7 +440,12 @@ fn wrong_usage_is_exit_code_2() {
     folder.fails(
         &tiny("mandlebox", &[]),
         2,
-        &["`mandlebox`", "perhaps `mandelbox`", "conemarch presets"],
+        &[
+            "`mandlebox`",
+            "perhaps `mandelbox`",
+            "bench-far, ",
+            "terrain",
+        ],
     );
     folder.fails(&tiny("", &[]), 2, &["no preset is called ``"]);
     folder.fails(&tiny("-", &[]), 2, &["no preset is called `-`"]);
