@@ -6,9 +6,10 @@
 //! A hit is where the estimate falls under the hit threshold, so the reference stops in a
 //! skin before the surface, and what is proven free may reach into that skin, up to the
 //! share of it that cones keep clear of (docs/method.md, 2); a ray that grazes the surface
-//! stays in the skin for long. Where a front lies beyond the reference's hit, the ray is
-//! therefore followed on from that hit: the front is a violation if the ray comes as near to
-//! the surface as cones must not, before it is there.
+//! stays in the skin for long. Where a front lies beyond the reference's hit by more than
+//! the threshold, the ray is therefore followed on from that hit: the front is a violation if
+//! the ray comes as near to the surface as cones must not, before it is there. (Less is left to
+//! fronts that start where rays enter the bounds, which may lie in the skin.)
 
 use rayon::prelude::*;
 
@@ -126,8 +127,11 @@ const LEAST_CLEAR: f64 = 1e-3;
 /// Share of the clearance that the ray is followed on by, small enough to miss no thin part
 /// that the reference would hit.
 const FOLLOW: f64 = 0.1;
+/// Share of the hit threshold that it is followed on by at least: a ray that creeps along
+/// the surface within that is decided soon.
+const LEAST_FOLLOW: f64 = 0.01;
 /// Steps after which a ray is no longer followed, and counts.
-const MOST_FOLLOWED: u32 = 20_000;
+const MOST_FOLLOWED: u32 = 4_000;
 
 /// Per kept cone level, pixels whose cell's front lies beyond a place where their ray comes
 /// to the surface.
@@ -157,7 +161,7 @@ impl Task for Violations<'_> {
                 if clear <= least * threshold {
                     return true;
                 }
-                t += FOLLOW * clear;
+                t += (FOLLOW * clear).max(LEAST_FOLLOW * threshold);
             }
             true
         };
@@ -172,7 +176,7 @@ impl Task for Violations<'_> {
                 let front = level.front[(y / d) * level.cells[0] as usize + x / d];
                 let (front, hit) = (f64::from(front), f64::from(reference.depth[*i]));
                 let ray = view.view_ray([x as u32, y as u32]);
-                front > hit && met(&ray, hit, front)
+                front > hit + plan.march.detail * footprint(&ray, hit) && met(&ray, hit, front)
             };
             let all = (0..reference.depth.len()).into_par_iter();
             (level.divisor, all.filter(wrong).count() as u64)
@@ -238,7 +242,7 @@ mod tests {
             reference.state[6] = State::Sky as u8;
             reference.state[7] = State::Unconverged as u8;
             // In thresholds beyond where each ray is as near as cones may come.
-            let beyond = [-9.0, -0.6, -0.02, 0.15, 0.6, 9.0, 9.0, 9.0];
+            let beyond = [-9.0, -0.6, -0.02, 2.0, 3.0, 9.0, 9.0, 9.0];
             let front = (0..).zip(beyond).map(|(x, n)| {
                 let ray = plan.view().view_ray([x, 0]);
                 let near = -plan.camera.eye.dot(ray.axis);
