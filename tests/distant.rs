@@ -81,7 +81,7 @@ fn levels_double_with_the_distance_and_end_with_the_pyramid() {
 /// What is wrong with where a ray ended, the truth being a parameter, or none for no hit.
 fn wrong(own: &WalkMip, relief: &Relief, ray: &LocalRay, truth: Option<f64>) -> Option<String> {
     let end = traced(own, ray);
-    let hit = own.hit(&end);
+    let hit = end.hit();
     if let Some(truth) = truth {
         let behind = (hit.s - truth) * ray.axis.length();
         if end.state != Step::Hit || behind > 1e-7 {

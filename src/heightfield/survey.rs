@@ -70,7 +70,7 @@ fn trace(tracer: &impl Tracer, ray: &LocalRay) -> (Step, f64, u32) {
             break;
         }
     }
-    (step, tracer.hit(&walk).s, work.evaluations)
+    (step, walk.s, work.evaluations)
 }
 
 /// The parameter of each ray's first hit, as a tracer known to be exact finds it.

@@ -255,7 +255,7 @@ impl Solid for Heightfield {
     }
 
     fn walk_hit(&self, walk: &Trace) -> Hit {
-        let hit = self.tracer.hit(walk);
+        let hit = walk.hit();
         Hit {
             t: hit.s,
             id: hit.id,
@@ -264,7 +264,7 @@ impl Solid for Heightfield {
     }
 
     fn walk_radius(&self, ray: &Beam, walk: &Trace) -> f64 {
-        let t = self.tracer.hit(walk).s;
+        let t = walk.hit().s;
         self.surface_gap(self.local(ray).at(t))
     }
 

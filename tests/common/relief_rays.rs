@@ -221,7 +221,7 @@ pub fn run<T: Tracer>(tracer: &T, ray: &LocalRay, to: f64) -> Option<(Step, Trac
     for _ in 0..100_000 {
         let step = tracer.step(ray, &mut walk, &mut work);
         if step != Step::Moving {
-            return Some((step, tracer.hit(&walk), work.evaluations));
+            return Some((step, walk.hit(), work.evaluations));
         }
     }
     None

@@ -2,7 +2,7 @@
 //! apart.
 
 use super::cones::Cones;
-use super::contract::{LocalRay, Step, Trace, TraceHit, Tracer};
+use super::contract::{LocalRay, Step, Trace, Tracer};
 use super::linear::LinearBinary;
 use super::max_mip::MaxMipTracer;
 use super::oracle::Oracle;
@@ -47,22 +47,12 @@ macro_rules! each {
 }
 
 impl Tracer for AnyTracer {
-    type Walk = Trace;
-
     fn begin(&self, ray: &LocalRay, from: f64, to: f64, work: &mut Work) -> Trace {
         each!(self, t => t.begin(ray, from, to, work))
     }
 
-    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        each!(self, t => t.step(ray, trace, work))
-    }
-
-    fn hit(&self, trace: &Trace) -> TraceHit {
-        each!(self, t => t.hit(trace))
-    }
-
-    fn gap(&self, trace: &Trace) -> f64 {
-        each!(self, t => t.gap(trace))
+    fn look(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+        each!(self, t => t.look(ray, trace, work))
     }
 
     fn modules(&self) -> Vec<Module> {

@@ -19,10 +19,10 @@ use glam::DVec3;
 use super::super::conemap::{ConeMap, MapKind};
 use super::super::heights::Patches;
 use super::super::relief::{Numbers, Relief};
-use super::contract::{LocalRay, Step, Trace, TraceError, TraceHit, Tracer};
+use super::contract::{LocalRay, Step, Trace, TraceError, Tracer};
 use super::course::{
     course_begin, course_cross, course_end, course_exit, course_hit, course_land, course_solve,
-    course_uv, trace_hit,
+    course_uv,
 };
 use super::refine::{Refine, refine, refine_over};
 use super::walk::{check_map, cone_way};
@@ -257,19 +257,13 @@ impl Cones {
 }
 
 impl Tracer for Cones {
-    type Walk = Trace;
-
     fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
         let mut trace = course_begin(&self.relief, ray, from, to);
         trace.left = self.budget(ray, trace.s);
         trace
     }
 
-    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        if trace.state != Step::Moving {
-            return trace.state;
-        }
-        work.evaluations += 1;
+    fn look(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
         let relief = &*self.relief;
         let (exit, axis) = course_exit(ray, trace.cell, trace.cell.map(|i| i + 1));
         let to = exit.min(trace.end);
@@ -305,14 +299,6 @@ impl Tracer for Cones {
         }
         trace.left = trace.left.saturating_sub(1);
         trace.state
-    }
-
-    fn hit(&self, trace: &Trace) -> TraceHit {
-        trace_hit(trace)
-    }
-
-    fn gap(&self, trace: &Trace) -> f64 {
-        trace.gap
     }
 
     fn modules(&self) -> Vec<Module> {

@@ -116,24 +116,34 @@ pub struct Trace {
     pub uv: [f64; 2],
 }
 
+impl Trace {
+    /// Where the ray stands: its hit, once it has one.
+    pub fn hit(&self) -> TraceHit {
+        TraceHit {
+            s: self.s,
+            id: self.id,
+            uv: self.uv,
+        }
+    }
+}
+
 /// A way of finding the first hit.
 pub trait Tracer {
-    /// A ray on its way.
-    type Walk: Copy + Send + Sync;
-
     /// Starts a ray; nothing before `from` or beyond `to` counts.
-    fn begin(&self, ray: &LocalRay, from: f64, to: f64, work: &mut Work) -> Self::Walk;
+    fn begin(&self, ray: &LocalRay, from: f64, to: f64, work: &mut Work) -> Trace;
 
-    /// One step, of bounded work. `work` gains an evaluation for it, and an iteration for
-    /// each round of refinement.
-    fn step(&self, ray: &LocalRay, walk: &mut Self::Walk, work: &mut Work) -> Step;
+    /// What a step does with a ray that moves.
+    fn look(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step;
 
-    /// Where the walk stands: its hit, once it has one.
-    fn hit(&self, walk: &Self::Walk) -> TraceHit;
-
-    /// A lower bound of the ray's height above the apex of the cell that the last step
-    /// was over; not positive where the step had to look closer.
-    fn gap(&self, walk: &Self::Walk) -> f64;
+    /// One step, of bounded work; none of a ray that has ended. `work` gains an evaluation
+    /// for it, and an iteration for each round of refinement.
+    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+        if trace.state != Step::Moving {
+            return trace.state;
+        }
+        work.evaluations += 1;
+        self.look(ray, trace, work)
+    }
 
     /// The modules of WGSL to join for it, those of its relief among them.
     fn modules(&self) -> Vec<Module>;

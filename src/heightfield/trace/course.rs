@@ -9,9 +9,7 @@
 
 use super::super::patch::{CellRay, patch_hit};
 use super::super::relief::Relief;
-use super::contract::{
-    BASE, FACE_BITS, LocalRay, SURFACE, Step, Trace, TraceHit, WALL_X_LOW, WALL_Y_LOW,
-};
+use super::contract::{BASE, FACE_BITS, LocalRay, SURFACE, Step, Trace, WALL_X_LOW, WALL_Y_LOW};
 
 /// A parameter beyond every other, and still finite.
 pub const FAR: f64 = 1e30;
@@ -235,13 +233,4 @@ pub fn course_end(relief: &Relief, ray: &LocalRay, trace: &mut Trace) -> Step {
         trace.state = Step::Out;
     }
     trace.state
-}
-
-/// What a trace has to tell, as [`super::Tracer::hit`] wants it.
-pub fn trace_hit(trace: &Trace) -> TraceHit {
-    TraceHit {
-        s: trace.s,
-        id: trace.id,
-        uv: trace.uv,
-    }
 }

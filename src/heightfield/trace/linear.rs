@@ -7,8 +7,8 @@
 use std::sync::Arc;
 
 use super::super::relief::{Numbers, Relief};
-use super::contract::{LocalRay, Step, Trace, TraceHit, Tracer};
-use super::course::{course_begin, course_end, course_hit, course_land, trace_hit};
+use super::contract::{LocalRay, Step, Trace, Tracer};
+use super::course::{course_begin, course_end, course_hit, course_land};
 use super::refine::{Refine, refine, refine_over};
 use crate::frame::Work;
 use crate::shader::Module;
@@ -39,19 +39,13 @@ impl LinearBinary {
 }
 
 impl Tracer for LinearBinary {
-    type Walk = Trace;
-
     fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
         let mut trace = course_begin(&self.relief, ray, from, to);
         trace.left = self.steps;
         trace
     }
 
-    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        if trace.state != Step::Moving {
-            return trace.state;
-        }
-        work.evaluations += 1;
+    fn look(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
         let relief = &*self.relief;
         trace.gap = ray.height(trace.s) - relief.apex(trace.cell);
         // Only the first step can begin under the surface.
@@ -83,14 +77,6 @@ impl Tracer for LinearBinary {
         trace.left -= 1;
         course_land(relief, ray, trace, next);
         Step::Moving
-    }
-
-    fn hit(&self, trace: &Trace) -> TraceHit {
-        trace_hit(trace)
-    }
-
-    fn gap(&self, trace: &Trace) -> f64 {
-        trace.gap
     }
 
     fn modules(&self) -> Vec<Module> {

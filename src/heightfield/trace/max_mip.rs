@@ -10,9 +10,9 @@
 use std::sync::Arc;
 
 use super::super::relief::{Numbers, Relief};
-use super::contract::{LocalRay, Step, Trace, TraceHit, Tracer};
+use super::contract::{LocalRay, Step, Trace, Tracer};
 use super::course::{
-    course_begin, course_end, course_exit, course_land, course_pass, course_solve, trace_hit,
+    course_begin, course_end, course_exit, course_land, course_pass, course_solve,
 };
 use super::walk::WALK_TRUST;
 use crate::frame::Work;
@@ -40,19 +40,13 @@ fn parts(relief: &Relief, axis: usize, line: i32, level: u32) -> bool {
 }
 
 impl Tracer for MaxMipTracer {
-    type Walk = Trace;
-
     fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
         let mut trace = course_begin(&self.relief, ray, from, to);
         trace.level = self.relief.maxima().levels.len() as u32 - 1;
         trace
     }
 
-    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        if trace.state != Step::Moving {
-            return trace.state;
-        }
-        work.evaluations += 1;
+    fn look(&self, ray: &LocalRay, trace: &mut Trace, _work: &mut Work) -> Step {
         let relief = &*self.relief;
         let level = trace.level;
         let node = relief.node(trace.cell, level);
@@ -90,14 +84,6 @@ impl Tracer for MaxMipTracer {
             trace.level += 1;
         }
         Step::Moving
-    }
-
-    fn hit(&self, trace: &Trace) -> TraceHit {
-        trace_hit(trace)
-    }
-
-    fn gap(&self, trace: &Trace) -> f64 {
-        trace.gap
     }
 
     fn modules(&self) -> Vec<Module> {

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use super::super::conemap::{ConeMap, MapKind};
 use super::super::relief::{Numbers, Relief};
-use super::contract::{LocalRay, Step, Trace, TraceHit, Tracer};
-use super::course::{course_begin, course_cross, course_end, course_exit, course_solve, trace_hit};
+use super::contract::{LocalRay, Step, Trace, Tracer};
+use super::course::{course_begin, course_cross, course_end, course_exit, course_solve};
 use crate::frame::Work;
 use crate::shader::Module;
 use crate::wgsl;
@@ -28,17 +28,11 @@ impl Oracle {
 }
 
 impl Tracer for Oracle {
-    type Walk = Trace;
-
     fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
         course_begin(&self.relief, ray, from, to)
     }
 
-    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        if trace.state != Step::Moving {
-            return trace.state;
-        }
-        work.evaluations += 1;
+    fn look(&self, ray: &LocalRay, trace: &mut Trace, _work: &mut Work) -> Step {
         let relief = &*self.relief;
         let (exit, axis) = course_exit(ray, trace.cell, trace.cell.map(|i| i + 1));
         let to = exit.min(trace.end);
@@ -51,14 +45,6 @@ impl Tracer for Oracle {
         }
         course_cross(ray, trace, exit, axis);
         Step::Moving
-    }
-
-    fn hit(&self, trace: &Trace) -> TraceHit {
-        trace_hit(trace)
-    }
-
-    fn gap(&self, trace: &Trace) -> f64 {
-        trace.gap
     }
 
     fn modules(&self) -> Vec<Module> {

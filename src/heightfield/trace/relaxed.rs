@@ -13,9 +13,9 @@ use std::sync::Arc;
 
 use super::super::conemap::{ConeMap, MapKind};
 use super::super::relief::{Numbers, Relief};
-use super::contract::{LocalRay, Step, Trace, TraceError, TraceHit, Tracer};
+use super::contract::{LocalRay, Step, Trace, TraceError, Tracer};
 use super::course::{
-    FAR, course_begin, course_cross, course_end, course_exit, course_land, course_solve, trace_hit,
+    FAR, course_begin, course_cross, course_end, course_exit, course_land, course_solve,
 };
 use super::refine::{Refine, refine, refine_over};
 use super::walk::{WALK_TRUST, check_map, cone_way};
@@ -42,17 +42,11 @@ impl WalkRelaxed {
 }
 
 impl Tracer for WalkRelaxed {
-    type Walk = Trace;
-
     fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
         course_begin(&self.relief, ray, from, to)
     }
 
-    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        if trace.state != Step::Moving {
-            return trace.state;
-        }
-        work.evaluations += 1;
+    fn look(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
         let relief = &*self.relief;
         let apex = relief.apex(trace.cell);
         let (exit, axis) = course_exit(ray, trace.cell, trace.cell.map(|i| i + 1));
@@ -90,14 +84,6 @@ impl Tracer for WalkRelaxed {
         }
         course_land(relief, ray, trace, next);
         Step::Moving
-    }
-
-    fn hit(&self, trace: &Trace) -> TraceHit {
-        trace_hit(trace)
-    }
-
-    fn gap(&self, trace: &Trace) -> f64 {
-        trace.gap
     }
 
     fn modules(&self) -> Vec<Module> {

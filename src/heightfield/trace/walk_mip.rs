@@ -18,10 +18,10 @@ use std::sync::Arc;
 
 use super::super::conemap::{ConeMap, MapKind};
 use super::super::relief::{Node, Numbers, Relief};
-use super::contract::{LocalRay, Step, Trace, TraceError, TraceHit, Tracer};
+use super::contract::{LocalRay, Step, Trace, TraceError, Tracer};
 use super::course::{
     course_begin, course_cross, course_end, course_exit, course_hit, course_land, course_pass,
-    course_solve, trace_hit,
+    course_solve,
 };
 use super::walk::{WALK_TRUST, check_map, cone_way};
 use crate::frame::Work;
@@ -74,17 +74,11 @@ fn meet(relief: &Relief, ray: &LocalRay, trace: &mut Trace, node: &Node, over: f
 }
 
 impl Tracer for WalkMip {
-    type Walk = Trace;
-
     fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
         course_begin(&self.relief, ray, from, to)
     }
 
-    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        if trace.state != Step::Moving {
-            return trace.state;
-        }
-        work.evaluations += 1;
+    fn look(&self, ray: &LocalRay, trace: &mut Trace, _work: &mut Work) -> Step {
         let relief = &*self.relief;
         let level = self.level(trace.s);
         trace.level = level;
@@ -118,14 +112,6 @@ impl Tracer for WalkMip {
             course_pass(relief, ray, trace, exit, axis, line);
         }
         Step::Moving
-    }
-
-    fn hit(&self, trace: &Trace) -> TraceHit {
-        trace_hit(trace)
-    }
-
-    fn gap(&self, trace: &Trace) -> f64 {
-        trace.gap
     }
 
     fn modules(&self) -> Vec<Module> {
