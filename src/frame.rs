@@ -99,7 +99,7 @@ pub struct Frame {
 
 impl Frame {
     /// Puts the figures of what was prepared before everything else.
-    pub(crate) fn lead(&mut self, prepared: Option<PassFigures>) {
+    pub(crate) fn lead(&mut self, prepared: Vec<PassFigures>) {
         self.passes.splice(0..0, prepared);
     }
 

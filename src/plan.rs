@@ -266,14 +266,16 @@ impl Plan {
         levels.chain([Pass::Trace, Pass::Color]).collect()
     }
 
-    /// What is made before them, if the scene needs a cone map made.
-    pub fn preparation(&self) -> Option<Preparation> {
+    /// What is made before them: the cone maps that the scene needs.
+    pub fn preparations(&self) -> Vec<Preparation> {
         let Subject::Heightfield(shape) = &self.subject else {
-            return None;
+            return Vec::new();
         };
-        let generator = shape.tracing.generator()?;
-        let places = shape.places(generator)?;
-        Some(Preparation { generator, places })
+        let one = |generator| {
+            let places = shape.places(generator)?;
+            Some(Preparation { generator, places })
+        };
+        shape.generators().into_iter().filter_map(one).collect()
     }
 
     /// Numbers that decide the picture beside the plan's text: those of the files that it
@@ -299,7 +301,7 @@ impl Plan {
         let mut line = |name: &str, [w, h]: [u32; 2], limit: &str| {
             let _ = writeln!(text, "  {name:<12} {w:>6} x {h:<6} steps {limit}");
         };
-        if let Some(Preparation { generator, places }) = self.preparation() {
+        for Preparation { generator, places } in self.preparations() {
             line(PREPARE, places, "-");
             programs.push(program_of(generator));
         }

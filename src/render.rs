@@ -16,9 +16,10 @@ use crate::gpu::buffer::{Buffer, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::kernel::{Kernel, KernelError};
 use crate::heightfield::generate::device::Maker;
+use crate::heightfield::generate::generator::Generator;
 use crate::heightfield::tracing::Make;
 use crate::pass::queue::{COUNT_AT, Turn};
-use crate::plan::{Extras, PREPARE, Pass, Plan};
+use crate::plan::{Extras, PREPARE, Pass, Plan, Preparation};
 use crate::pyramid::Block;
 use crate::scene::Scene;
 use crate::shader::Program;
@@ -74,17 +75,26 @@ pub(crate) fn preparing(share: f64) -> Progress {
     }
 }
 
-/// Makes what a plan needs beforehand; what that took, where something is made.
-pub(crate) fn prepare(plan: &Plan, make: Make<'_>) -> Result<Option<PassFigures>, RenderError> {
-    let start = Instant::now();
-    plan.prepare(make)?;
-    let wall_ms = start.elapsed().as_secs_f64() * 1e3;
-    Ok(plan.preparation().map(|made| PassFigures {
-        name: PREPARE.into(),
-        cells: made.places.map(u64::from).iter().product(),
-        wall_ms,
-        ..PassFigures::default()
-    }))
+/// Makes what a plan needs beforehand; what that took, map by map. One that is kept from an
+/// earlier picture takes nothing.
+pub(crate) fn prepare(plan: &Plan, make: Make<'_>) -> Result<Vec<PassFigures>, RenderError> {
+    let mut taken = Vec::new();
+    plan.prepare(&mut |generator, heights, patches, options| {
+        let start = Instant::now();
+        let made = make(generator, heights, patches, options);
+        taken.push((generator, start.elapsed().as_secs_f64() * 1e3));
+        made
+    })?;
+    let figures = |made: Preparation| {
+        let of = |(by, _): &&(Generator, f64)| *by == made.generator;
+        PassFigures {
+            name: PREPARE.into(),
+            cells: made.places.map(u64::from).iter().product(),
+            wall_ms: taken.iter().find(of).map_or(0.0, |(_, ms)| *ms),
+            ..PassFigures::default()
+        }
+    };
+    Ok(plan.preparations().into_iter().map(figures).collect())
 }
 
 /// Told after every pass over a block (on the CPU, a band of rows); `false` cancels the

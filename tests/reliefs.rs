@@ -17,6 +17,8 @@ use common::overclaims::{brought_near, overclaims};
 use common::random::Random;
 use conemarch::cpu;
 use conemarch::frame::{Frame, State};
+use conemarch::heightfield::generate::cpu::generate;
+use conemarch::heightfield::generate::generator::{Generator, Options};
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::placed::Placed;
 use conemarch::heightfield::relief::Relief;
@@ -24,7 +26,7 @@ use conemarch::heightfield::shape::{HeightfieldShape, Ready, Wrap};
 use conemarch::heightfield::trace::oracle::Oracle;
 use conemarch::heightfield::trace::{LocalRay, Step, Tracer};
 use conemarch::plan::{Extras, Plan, Subject};
-use conemarch::scene::{Scene, Solid};
+use conemarch::scene::{self, Scene, Solid};
 use conemarch::view::{Beam, Camera};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -344,4 +346,89 @@ fn check_normals(what: &str, frame: &Frame, normal: impl Fn([u32; 2]) -> Option<
     assert!(wrong <= 8, "{what}: {wrong} wrong, {seen:?}");
     let often = seen.iter().filter(|(_, count)| *count > 100).count();
     assert!(often >= 3, "{what}: {seen:?}");
+}
+
+/// A small map of noise that wraps along x, twice, painted by the cones of a generator.
+fn painted(by: Generator, patches: Patches) -> HeightfieldShape {
+    let mut shape = HeightfieldShape::default();
+    shape.source.field = "noise:7x5,seed=3".into();
+    shape.source.wrap = Wrap::X;
+    shape.tiles = [2, 1];
+    shape.patches = patches;
+    shape.paint = Some(by);
+    shape
+}
+
+/// Generators whose places are samples, four cones at each, or cells; and boxes.
+const PAINTED: [(Generator, Patches); 4] = [
+    (Generator::Exact, Patches::Bilinear),
+    (Generator::Quad, Patches::Bilinear),
+    (Generator::Walk, Patches::Bilinear),
+    (Generator::Exact, Patches::Boxes),
+];
+
+#[test]
+fn paint_is_how_wide_the_cones_are() {
+    for (by, patches) in PAINTED {
+        let shape = painted(by, patches);
+        let Ready { relief, placed, .. } = ready(&shape);
+        let heights = relief.heights();
+        let map = generate(by, heights, patches, &Options::default(), &mut |_| true).unwrap();
+        let plan = Plan::new(Subject::Heightfield(shape));
+        let Scene::Heightfield(scene) = plan.scene() else {
+            unreachable!("a heightfield");
+        };
+        let eye = placed.position(plan.camera.eye);
+        let units = DVec3::new(placed.texel, placed.texel, placed.depth);
+        let [w, h] = relief.domain();
+        let mut hues = Vec::new();
+        // A quarter and three quarters into each cell, from above.
+        for (i, j) in (0..2 * h).flat_map(|j| (0..2 * w).map(move |i| (i, j))) {
+            let place = [i, j].map(|n| 0.25 + 0.5 * f64::from(n));
+            let from = DVec3::new(place[0], place[1], 2.0);
+            let ray = Beam {
+                origin: placed.side((from - eye) * units),
+                axis: -placed.side(DVec3::Z),
+                r0: 0.0,
+                k: 0.0,
+                grain0: 0.0,
+                grain: 0.0,
+            };
+            let mut work = Default::default();
+            let mut walk = scene.begin(&ray, 0.0, f64::INFINITY, &mut work);
+            while scene.walk_step(&ray, &mut walk, &mut work) == scene::Step::Moving {}
+            let hue = scene.surface(&ray, &scene.walk_hit(&walk)).pigment.x;
+            let round = by.over_cells() || patches == Patches::Boxes;
+            let near = place.map(|n| if round { n.floor() } else { n.round() } as usize);
+            let number = near[1] * map.size[0] as usize + near[0] % map.size[0] as usize;
+            let cones = &map.ratios[number * by.channels()..][..by.channels()];
+            let mean = cones.iter().sum::<f64>() / cones.len() as f64;
+            let wanted = (mean / 7.0).min(1.0).sqrt();
+            assert!(
+                (hue - wanted).abs() < 1e-6,
+                "{by:?}, {place:?}: {hue} for {wanted}"
+            );
+            hues.push((1e6 * hue) as u32);
+        }
+        hues.sort_unstable();
+        hues.dedup();
+        assert!(hues.len() > 5, "{by:?}: {} hues", hues.len());
+    }
+}
+
+#[test]
+fn both_executors_paint_alike() {
+    for (by, patches) in PAINTED {
+        let mut plan = Plan::new(Subject::Heightfield(painted(by, patches)));
+        [plan.camera, ..] = cameras(40.0);
+        plan.size = [120, 80];
+        plan.look.palette_cycles = 1.0;
+        let here = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
+        let there = adapter::render(&plan, Extras::default());
+        let apart = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.02);
+        let pairs = here.radiance.iter().zip(&there.radiance);
+        let wrong = pairs.filter(|(a, b)| apart((a, b))).count();
+        // Rays that meet the line between two places within a rounding take either.
+        assert!(wrong <= 40, "{by:?}: {wrong} pixels apart");
+    }
 }

@@ -20,6 +20,7 @@ use common::plans::{distance, every_program, preset, programs_of};
 use conemarch::formula::Shape;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
+use conemarch::heightfield::generate::generator::Generator;
 use conemarch::heightfield::generate::program as generate;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::relief::Relief;
@@ -384,6 +385,23 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
         !text.contains("prepare") && !text.contains("generate"),
         "{text}"
     );
+    assert!(text.contains("paint_height.wgsl") && !text.contains("/paint.wgsl"));
+    // A paint is a map of its own, but for that of the tracer.
+    for (tracer, paint, maps) in [
+        ("max-mip", Generator::Exact, 1),
+        ("walk", Generator::Exact, 2),
+        ("walk", Generator::Walk, 1),
+    ] {
+        let Subject::Heightfield(shape) = &mut plan.subject else {
+            unreachable!("the terrain");
+        };
+        shape.tracing.tracer = tracer;
+        shape.paint = Some(paint);
+        let text = plan.explain(Extras::default());
+        let lines = text.lines().filter(|l| l.starts_with("  prepare"));
+        assert_eq!(lines.count(), maps, "{tracer}, {paint:?}: {text}");
+        assert!(text.contains("/paint.wgsl") && !text.contains("paint_height.wgsl"));
+    }
 }
 
 #[test]

@@ -325,7 +325,20 @@ fn summary(output: &Path, frame: &Frame) -> String {
     let [w, h] = frame.size;
     let time = |name: &str| Some(frame.passes.iter().find(|p| p.name == name)?.wall_ms);
     let color = time("color").map_or(String::new(), |ms| format!(", colour {ms:.0} ms"));
-    let cones = time(PREPARE).map_or(String::new(), |ms| format!("cone map {ms:.0} ms, "));
+    let made: Vec<f64> = frame
+        .passes
+        .iter()
+        .filter(|p| p.name == PREPARE)
+        .map(|p| p.wall_ms)
+        .collect();
+    let cones = match made.len() {
+        0 => String::new(),
+        n => format!(
+            "cone map{} {:.0} ms, ",
+            if n > 1 { "s" } else { "" },
+            made.iter().sum::<f64>()
+        ),
+    };
     let [sky, hit, unconverged] = shares(frame).map(|s| 100.0 * s);
     let name = match output.to_str() {
         Some("-") => "standard output".into(),

@@ -8,6 +8,7 @@ pub mod kept;
 pub mod load;
 pub mod mapfile;
 pub mod maxmip;
+pub mod paint;
 pub mod patch;
 pub mod placed;
 pub mod raster;

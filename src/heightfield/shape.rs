@@ -12,6 +12,7 @@ use super::generate::generator::Generator;
 use super::heights::Patches;
 use super::kept::Kept;
 use super::load::{LoadOptions, Loaded, Named, load};
+use super::paint::{PAINTS, Paint};
 use super::placed::Placed;
 use super::relief::Relief;
 use super::trace::AnyTracer;
@@ -92,6 +93,8 @@ impl Source {
 type ReliefKey = (Source, Patches, [u32; 2]);
 /// What a cone map is made from, beside: tracer, map and offset.
 type MapKey = (ReliefKey, &'static str, String, f64);
+/// What a paint is made from: a generator's map, with an offset.
+type PaintKey = (ReliefKey, Generator, f64);
 
 /// A heightfield: heights, their place in the world, and how they are traced.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,8 +115,11 @@ pub struct HeightfieldShape {
     pub turn: DVec3,
     /// How rays are traced.
     pub tracing: Tracing,
+    /// Whose cones it is painted by; `None` by its height.
+    pub paint: Option<Generator>,
     reliefs: Kept<ReliefKey, Relief>,
     maps: Kept<MapKey, Option<Arc<ConeMap>>>,
+    paints: Kept<PaintKey, Paint>,
 }
 
 impl Default for HeightfieldShape {
@@ -133,8 +139,10 @@ impl Default for HeightfieldShape {
             centre: DVec3::ZERO,
             turn: DVec3::ZERO,
             tracing: Tracing::default(),
+            paint: None,
             reliefs: Kept::default(),
             maps: Kept::default(),
+            paints: Kept::default(),
         }
     }
 }
@@ -146,6 +154,8 @@ pub struct Ready {
     pub relief: Arc<Relief>,
     /// What traces rays, with its cones.
     pub tracer: AnyTracer,
+    /// What it is painted by, if not by its height.
+    pub paint: Option<Arc<Paint>>,
     /// Where it stands.
     pub placed: Placed,
     /// The tracer's name.
@@ -211,6 +221,11 @@ impl HeightfieldShape {
                 "degrees that the block is turned by about x, then y, then z",
             ),
         ];
+        keys.push(Key::new(
+            "paint",
+            Word(&mut self.paint, PAINTS),
+            "what picks the hue: the height, or how wide the cones of a generator's map are",
+        ));
         keys.extend(self.tracing.keys());
         keys
     }
@@ -248,7 +263,8 @@ impl HeightfieldShape {
     /// Heights that are none, cones that do not fit, and what `make` fails with.
     pub fn prepare(&self, make: Make<'_>) -> Result<(), PrepareError> {
         let relief = self.relief()?;
-        self.cones(&relief, make).map(|_| ())
+        self.cones(&relief, make)?;
+        self.painted(&relief, make).map(|_| ())
     }
 
     /// Everything that a scene needs; on the CPU where it was not prepared. `grain` is half a
@@ -259,7 +275,8 @@ impl HeightfieldShape {
     pub fn ready(&self, grain: f64) -> Result<Ready, PrepareError> {
         let relief = self.relief()?;
         let cones = self.cones(&relief, &mut on_cpu)?;
-        self.assembled(relief, (*cones).clone(), grain)
+        let paint = self.painted(&relief, &mut on_cpu)?;
+        self.assembled(relief, (*cones).clone(), paint, grain)
     }
 
     /// What [`HeightfieldShape::ready`] gives, with maps of no cones in place of those
@@ -272,13 +289,19 @@ impl HeightfieldShape {
         let cones = self
             .tracing
             .cones(&relief, &self.source.folder, &mut without_cones)?;
-        self.assembled(relief, cones.map(Arc::new), grain)
+        let paint = |by| -> Result<_, PrepareError> {
+            let map = self.tracing.made(by, &relief, &mut without_cones)?;
+            Ok(Arc::new(Paint::new(&map)))
+        };
+        let paint = self.paint.map(paint).transpose()?;
+        self.assembled(relief, cones.map(Arc::new), paint, grain)
     }
 
     fn assembled(
         &self,
         relief: Arc<Relief>,
         cones: Option<Arc<ConeMap>>,
+        paint: Option<Arc<Paint>>,
         grain: f64,
     ) -> Result<Ready, PrepareError> {
         let [w, h] = relief.domain().map(f64::from);
@@ -287,10 +310,18 @@ impl HeightfieldShape {
         let pixel = placed.texel / (2.0 * grain);
         Ok(Ready {
             tracer: self.tracing.tracer(&relief, cones, pixel)?,
+            paint,
             placed,
             relief,
             name: self.tracing.tracer,
         })
+    }
+
+    /// Whose maps it needs: its tracer's, and the one that it is painted by.
+    pub fn generators(&self) -> Vec<Generator> {
+        let traced = self.tracing.generator();
+        let painted = self.paint.filter(|by| traced != Some(*by));
+        traced.into_iter().chain(painted).collect()
     }
 
     /// Places of a generator's map along each axis; `None` where there are no heights.
@@ -318,6 +349,7 @@ impl HeightfieldShape {
         let mut exact = self.clone();
         exact.tracing = Tracing {
             tracer: "max-mip",
+            offset: self.tracing.offset,
             ..Tracing::default()
         };
         exact
@@ -347,5 +379,21 @@ impl HeightfieldShape {
             let made = t.cones(relief, &self.source.folder, make)?;
             Ok(made.map(Arc::new))
         })
+    }
+
+    fn painted(&self, relief: &Relief, make: Make<'_>) -> Result<Option<Arc<Paint>>, PrepareError> {
+        let Some(by) = self.paint else {
+            return Ok(None);
+        };
+        let key = (self.relief_key(), by, self.tracing.offset);
+        let made = self.paints.get(key, |_| -> Result<_, PrepareError> {
+            if self.tracing.generator() == Some(by)
+                && let Some(map) = &*self.cones(relief, make)?
+            {
+                return Ok(Paint::new(map));
+            }
+            Ok(Paint::new(&self.tracing.made(by, relief, make)?))
+        });
+        made.map(Some)
     }
 }

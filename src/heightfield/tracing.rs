@@ -278,11 +278,7 @@ impl Tracing {
         }
         let (heights, patches) = (relief.heights(), relief.patches());
         if let Some(generator) = self.generator() {
-            let options = Options {
-                offset: self.offset,
-                ..Options::default()
-            };
-            return Ok(Some(make(generator, heights, patches, &options)?));
+            return Ok(Some(self.made(generator, relief, make)?));
         }
         let path = folder.join(&self.map);
         let file = read_map(&path).map_err(|e| fault(e.to_string()))?;
@@ -294,6 +290,23 @@ impl Tracing {
         };
         file.fit(&path, &wanted).map_err(|e| fault(e.to_string()))?;
         Ok(Some(file.map))
+    }
+
+    /// The cones of a generator.
+    ///
+    /// # Errors
+    /// What `make` fails with.
+    pub fn made(
+        &self,
+        generator: Generator,
+        relief: &Relief,
+        make: Make<'_>,
+    ) -> Result<ConeMap, GenerateError> {
+        let options = Options {
+            offset: self.offset,
+            ..Options::default()
+        };
+        make(generator, relief.heights(), relief.patches(), &options)
     }
 
     /// The tracer itself. `pixel` is the distance from the eye at which a texel is as wide as

@@ -24,6 +24,7 @@ presets![
     "mandelbox-lattice",
     "mandelbox-shell",
     "mandelbox-vortex",
+    "map-kinds",
     "spikes",
     "stones",
     "terrain",

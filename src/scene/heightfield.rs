@@ -14,6 +14,7 @@ use super::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::cone::ConeRule;
 use crate::frame::Work;
 use crate::heightfield::heights::Patches;
+use crate::heightfield::paint::{self, Paint};
 use crate::heightfield::placed::Placed;
 use crate::heightfield::relief::Relief;
 use crate::heightfield::shape::Ready;
@@ -64,6 +65,7 @@ pub struct HeightfieldUniform {
 pub struct Heightfield {
     relief: Arc<Relief>,
     tracer: AnyTracer,
+    paint: Option<Arc<Paint>>,
     name: &'static str,
     placed: Placed,
     eye: DVec3,
@@ -77,12 +79,14 @@ impl Heightfield {
         let Ready {
             relief,
             tracer,
+            paint,
             placed,
             name,
         } = ready;
         Self {
             relief,
             tracer,
+            paint,
             name,
             far: placed.farthest(eye),
             placed,
@@ -96,6 +100,12 @@ impl Heightfield {
             origin: self.placed.position(self.eye + ray.origin),
             axis: self.placed.direction(ray.axis),
         }
+    }
+
+    /// What picks the hue at a place of a cell, of a surface so high.
+    fn hue(&self, cell: [i32; 2], uv: [f64; 2], height: f64) -> f64 {
+        let paint = self.paint.as_ref();
+        paint.map_or(height, |paint| paint.at(&self.relief, cell, uv))
     }
 
     fn units(&self) -> DVec3 {
@@ -168,6 +178,7 @@ impl Twin for Heightfield {
                 "HIT_CARRIES_MARK" = 1.0
             ),
         ];
+        all.push(paint::module(self.paint.as_deref()));
         all.extend(self.tracer.modules());
         all
     }
@@ -190,6 +201,7 @@ impl Twin for Heightfield {
         };
         let mut all = vec![("heightfield_parameters", bytes_of(&scene).to_vec())];
         all.extend(self.tracer.buffers());
+        all.extend(self.paint.as_ref().map(|paint| paint.buffer()));
         all
     }
 
@@ -322,7 +334,7 @@ impl Solid for Heightfield {
         if self.relief.patches() == Patches::Boxes && z < a - self.slack().z {
             return Surface {
                 normal: self.placed.side(box_side(ray.axis, hit.uv)),
-                pigment: DVec3::new(z, 0.0, 0.5),
+                pigment: DVec3::new(self.hue(cell, hit.uv, z), 0.0, 0.5),
             };
         }
         let [u, v] = hit.uv;
@@ -335,9 +347,9 @@ impl Solid for Heightfield {
         let steep = slope * (self.placed.depth / self.placed.texel);
         Surface {
             normal: self.placed.normal(slope),
-            // Height picks the hue; steep ground is darker.
+            // Steep ground is darker.
             pigment: DVec3::new(
-                low + v * (high - low),
+                self.hue(cell, hit.uv, low + v * (high - low)),
                 steep.extend(1.0).length().recip(),
                 0.5,
             ),

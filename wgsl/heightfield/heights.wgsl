@@ -43,12 +43,17 @@ fn relief_tile_cell(cell: vec2<i32>) -> vec2<i32> {
     return max(cell, vec2<i32>(0)) % relief.cells;
 }
 
-/// The sample that indices from 0 to the size name: the one past the last is the first
-/// again, or on an axis that ends the last.
-fn relief_sample(at: vec2<i32>) -> f32 {
+/// The number of the sample that indices from 0 to the size name: the one past the last is
+/// the first again, or on an axis that ends the last.
+fn relief_place(at: vec2<i32>) -> i32 {
     let round = select(relief.samples - 1, vec2<i32>(0), relief.wrap == vec2<u32>(1u));
     let i = select(at, round, at >= relief.samples);
-    return heights[i.y * relief.samples.x + i.x];
+    return i.y * relief.samples.x + i.x;
+}
+
+/// Its height.
+fn relief_sample(at: vec2<i32>) -> f32 {
+    return heights[relief_place(at)];
 }
 
 /// Corner heights of a cell of the domain: (0, 0), (1, 0), (0, 1), (1, 1).

@@ -199,7 +199,8 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
         let height = heightfield.eye.z + to_local(ray.origin).z + hit.t * d.z;
         // Under the top of its box by more than a rounding: on a side.
         if height < c.x - heightfield.slack.z {
-            return Surface(to_world(box_side(d, hit.uv)), vec3<f32>(height, 0.0, 0.5));
+            let hue = relief_paint(cell, hit.uv, height);
+            return Surface(to_world(box_side(d, hit.uv)), vec3<f32>(hue, 0.0, 0.5));
         }
     }
     let slope = vec2<f32>(
@@ -208,6 +209,6 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
     let steep = slope * (heightfield.depth / heightfield.texel);
     let n = normalize(vec3<f32>(-steep, 1.0));
     let z = mix(mix(c.x, c.y, hit.uv.x), mix(c.z, c.w, hit.uv.x), hit.uv.y);
-    // Height picks the hue; steep ground is darker.
-    return Surface(to_world(n), vec3<f32>(z, n.z, 0.5));
+    // Steep ground is darker.
+    return Surface(to_world(n), vec3<f32>(relief_paint(cell, hit.uv, z), n.z, 0.5));
 }

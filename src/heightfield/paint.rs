@@ -1,0 +1,79 @@
+//! What picks the hue of a relief: its height, or how wide the cones of a map are.
+//! Twins: `wgsl/heightfield/paint.wgsl`, `paint_height.wgsl`.
+
+use super::conemap::{ConeMap, MapKind};
+use super::generate::generator::Generator;
+use super::heights::Patches;
+use super::relief::Relief;
+use crate::shader::Module;
+use crate::wgsl;
+
+/// What a preset may paint a relief by. `brute` is missing: its map is that of `exact`.
+pub const PAINTS: &[(&str, Option<Generator>)] = &[
+    ("height", None),
+    ("naive", Some(Generator::Naive)),
+    ("improved", Some(Generator::Improved)),
+    ("center", Some(Generator::Center)),
+    ("exact", Some(Generator::Exact)),
+    ("quad", Some(Generator::Quad)),
+    ("relaxed-search", Some(Generator::RelaxedSearch)),
+    ("relaxed-exact", Some(Generator::RelaxedExact)),
+    ("walk", Some(Generator::Walk)),
+    ("walk-relaxed", Some(Generator::WalkRelaxed)),
+];
+
+/// A number from 0 to 1 for each place of a cone map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Paint {
+    size: [u32; 2],
+    over_cells: bool,
+    values: Vec<f32>,
+}
+
+impl Paint {
+    /// The roots of a map's ratios, of four cones of their mean; 1 is a cone that is as wide
+    /// as the map is long over the whole height, or wider.
+    pub fn new(map: &ConeMap) -> Self {
+        let places = map.size[0] as usize * map.size[1] as usize;
+        let channels = map.ratios.len() / places;
+        let widest = f64::from(map.size[0].max(map.size[1]));
+        let value = |cones: &[f64]| {
+            let mean = cones.iter().sum::<f64>() / cones.len() as f64;
+            (mean / widest).min(1.0).sqrt() as f32
+        };
+        Self {
+            size: map.size,
+            over_cells: matches!(map.kind, MapKind::Walk | MapKind::WalkRelaxed),
+            values: map.ratios.chunks(channels).map(value).collect(),
+        }
+    }
+
+    /// The number at (u, v) in 0..=1 of a cell of the domain: its own, or that of the sample
+    /// which is nearest.
+    pub fn at(&self, relief: &Relief, cell: [i32; 2], uv: [f64; 2]) -> f64 {
+        if self.over_cells {
+            return f64::from(self.values[relief.number(cell) as usize]);
+        }
+        let own = relief.tile_cell(cell);
+        // A box has one sample, a patch one in each corner.
+        let near = |a: usize| u32::from(relief.patches() == Patches::Bilinear && uv[a] >= 0.5);
+        let [x, y] = [0, 1].map(|a| relief.heights().index(a, i64::from(own[a] + near(a))));
+        f64::from(self.values[(y * self.size[0] + x) as usize])
+    }
+
+    /// Bytes to bind.
+    pub fn buffer(&self) -> (&'static str, Vec<u8>) {
+        ("paint", bytemuck::cast_slice(&self.values).to_vec())
+    }
+}
+
+/// The module to join for a paint, or for none.
+pub fn module(paint: Option<&Paint>) -> Module {
+    match paint {
+        Some(paint) => wgsl!(
+            "heightfield/paint.wgsl",
+            "PAINT_OVER_CELLS" = f64::from(u8::from(paint.over_cells)),
+        ),
+        None => wgsl!("heightfield/paint_height.wgsl"),
+    }
+}
