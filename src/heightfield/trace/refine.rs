@@ -5,8 +5,11 @@
 //! rounds, as the papers do; settling halves until few cells are left and solves those
 //! exactly. All keep the bracket: the end of one that holds no crossing is never taken
 //! for a hit (Policarpo and Oliveira's listing 18-3 starts at the ray's origin instead, and
-//! ends somewhere in any case). Where there are several crossings, any may be found.
+//! ends somewhere in any case). Where there are several crossings, any may be found. A place
+//! near the surface of a box may be deep under its top or far from its side, and says nothing
+//! of which of them the ray meets: over boxes every bracket is settled after its rounds.
 
+use super::super::heights::Patches;
 use super::super::relief::Relief;
 use super::contract::{LocalRay, Trace};
 use super::course::{
@@ -48,16 +51,28 @@ pub fn refine(
     how: Refine,
     work: &mut Work,
 ) {
-    let at = match how {
-        Refine::Settle => return settle(relief, ray, trace, bracket, work),
+    let (left, at) = match how {
+        Refine::Settle => (bracket, bracket[1]),
         Refine::Binary(rounds) => binary(relief, ray, bracket, rounds, work),
         Refine::Secant(rounds) => secant(relief, ray, bracket, rounds, work),
     };
+    if how == Refine::Settle || relief.patches() == Patches::Boxes {
+        return settle(relief, ray, trace, left, work);
+    }
     trace.cell = course_cell(relief, ray, at);
     course_hit(relief, ray, trace, at);
 }
 
-fn binary(relief: &Relief, ray: &LocalRay, bracket: [f64; 2], rounds: u32, work: &mut Work) -> f64 {
+/// The bracket that is left, and the place to take for the hit.
+type Refined = ([f64; 2], f64);
+
+fn binary(
+    relief: &Relief,
+    ray: &LocalRay,
+    bracket: [f64; 2],
+    rounds: u32,
+    work: &mut Work,
+) -> Refined {
     let [mut low, mut high] = bracket;
     for _ in 0..rounds {
         work.iterations += 1;
@@ -68,10 +83,16 @@ fn binary(relief: &Relief, ray: &LocalRay, bracket: [f64; 2], rounds: u32, work:
             low = middle;
         }
     }
-    0.5 * (low + high)
+    ([low, high], 0.5 * (low + high))
 }
 
-fn secant(relief: &Relief, ray: &LocalRay, bracket: [f64; 2], rounds: u32, work: &mut Work) -> f64 {
+fn secant(
+    relief: &Relief,
+    ray: &LocalRay,
+    bracket: [f64; 2],
+    rounds: u32,
+    work: &mut Work,
+) -> Refined {
     let [mut low, mut high] = bracket;
     let mut above = refine_over(relief, ray, low).max(0.0);
     let mut under = refine_over(relief, ray, high).min(0.0);
@@ -92,7 +113,7 @@ fn secant(relief: &Relief, ray: &LocalRay, bracket: [f64; 2], rounds: u32, work:
             (low, above) = (at, over);
         }
     }
-    at
+    ([low, high], at)
 }
 
 fn settle(relief: &Relief, ray: &LocalRay, trace: &mut Trace, bracket: [f64; 2], work: &mut Work) {

@@ -1,7 +1,8 @@
 // From a place above the surface and a later one under it to the hit between them: by
 // halvings, by false positions, or by settling, which halves until few cells are left and
 // solves those exactly. All keep the bracket. Where there are several crossings, any may
-// be found.
+// be found. Over boxes every bracket is settled after its rounds: a place near a box says
+// nothing of whether its top is met or a side.
 
 /// Halvings of a settling bracket, and cells that are solved then: what is left of 2^16
 /// cells is a small part of one, which three share at most, around a corner.
@@ -33,6 +34,10 @@ fn refine_binary(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
             low = middle;
         }
     }
+    if RELIEF_BOXES {
+        refine_settle(o, d, trace, vec2<f32>(low, high));
+        return;
+    }
     refine_mark(o, d, trace, 0.5 * (low + high));
 }
 
@@ -59,6 +64,10 @@ fn refine_secant(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
             low = at;
             above = over;
         }
+    }
+    if RELIEF_BOXES {
+        refine_settle(o, d, trace, vec2<f32>(low, high));
+        return;
     }
     refine_mark(o, d, trace, at);
 }
