@@ -6,8 +6,8 @@
 //! ends; so a jump crosses the surface once at most, and the height at its end says
 //! whether it did (Policarpo and Oliveira's idea, with the rule of falling edges of Bán,
 //! Valasek, Bálint, Vad, Robust Cone Step Mapping, EGSR 2024, on cells and with the offset
-//! of the walk). A rising ray may come out again anywhere: it goes cell by cell, until it
-//! is above everything.
+//! of the walk). A rising ray may come out again anywhere: it goes from cell to cell, and
+//! over nodes of the maxima that lie under it.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use super::super::conemap::{ConeMap, MapKind};
 use super::super::relief::{Numbers, Relief};
 use super::contract::{LocalRay, Step, Trace, TraceError, Tracer};
 use super::course::{
-    FAR, course_begin, course_cross, course_end, course_exit, course_land, course_solve,
+    course_begin, course_cross, course_end, course_exit, course_land, course_pass, course_solve,
 };
 use super::refine::{Refine, refine, refine_over};
 use super::walk::{WALK_TRUST, check_map, cone_way};
@@ -41,6 +41,33 @@ impl WalkRelaxed {
     }
 }
 
+/// A step of a rising ray at height z, which meets nothing in its cell: to the exit of the
+/// largest node that lies under it, or to the end where all of them do.
+fn rise(relief: &Relief, ray: &LocalRay, trace: &mut Trace, z: f64) -> Step {
+    let mut node = relief.node(trace.cell, 0);
+    let mut level = 0;
+    let levels = relief.maxima().levels.len() as u32;
+    while level + 1 < levels {
+        let wider = relief.node(trace.cell, level + 1);
+        if wider.maximum >= z {
+            break;
+        }
+        (node, level) = (wider, level + 1);
+    }
+    let (exit, axis) = course_exit(ray, node.low, node.high);
+    if exit >= trace.end || z > f64::from(relief.maxima().top()) {
+        return course_end(relief, ray, trace);
+    }
+    if level == 0 {
+        course_cross(ray, trace, exit, axis);
+        return Step::Moving;
+    }
+    let forward = ray.axis[axis] > 0.0;
+    let line = if forward { node.high } else { node.low }[axis];
+    course_pass(relief, ray, trace, exit, axis, line);
+    Step::Moving
+}
+
 impl Tracer for WalkRelaxed {
     fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
         course_begin(&self.relief, ray, from, to)
@@ -56,17 +83,12 @@ impl Tracer for WalkRelaxed {
         if trace.gap <= 0.0 && course_solve(relief, ray, trace, to) {
             return Step::Hit;
         }
-        let rising = ray.axis.z > 0.0;
-        let way = if !rising {
-            let ratio = self.map.ratios[relief.number(trace.cell) as usize] * WALK_TRUST;
-            cone_way(ray, ratio, z - apex, self.map.offset)
-        } else if z > f64::from(relief.maxima().top()) {
-            FAR
-        } else {
-            0.0
-        };
-        let next = trace.s + way * WALK_TRUST;
-        if exit >= trace.end || (rising && next >= trace.end) {
+        if ray.axis.z > 0.0 {
+            return rise(relief, ray, trace, z);
+        }
+        let ratio = self.map.ratios[relief.number(trace.cell) as usize] * WALK_TRUST;
+        let next = trace.s + cone_way(ray, ratio, z - apex, self.map.offset) * WALK_TRUST;
+        if exit >= trace.end {
             return course_end(relief, ray, trace);
         }
         if next <= exit {
