@@ -257,6 +257,14 @@ impl Device {
         })
     }
 
+    /// Bytes of the largest buffer that a program can use.
+    pub fn most_bound(&self) -> u64 {
+        let limits = self.device.limits();
+        limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size)
+    }
+
     /// Waits until everything submitted has run, and reports a device that was lost or
     /// complained meanwhile.
     pub fn wait(&self) -> Result<(), DeviceError> {

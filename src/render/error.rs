@@ -19,6 +19,20 @@ pub enum RenderError {
     /// What the scene needs could not be made.
     #[error(transparent)]
     Prepare(PrepareError),
+    /// Something that the scene brings has no room in a buffer of the device.
+    #[error(
+        "the device `{device}` binds at most {most} bytes at once, and `{what}` of the scene needs {needed}; a smaller height map, another --device, or --device cpu would do"
+    )]
+    TooLarge {
+        /// Its name.
+        device: String,
+        /// What is too large.
+        what: &'static str,
+        /// Its bytes.
+        needed: u64,
+        /// Bytes that the device allows.
+        most: u64,
+    },
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

@@ -119,10 +119,7 @@ impl<'a> Maker<'a> {
         len: usize,
     ) -> Result<Buffer<T>, GenerateError> {
         let needed = (len * size_of::<T>()) as u64;
-        let limits = self.device.device.limits();
-        let most = limits
-            .max_storage_buffer_binding_size
-            .min(limits.max_buffer_size);
+        let most = self.device.most_bound();
         if needed > most {
             let device = self.device.info.name.clone();
             return Err(GenerateError::TooLarge {

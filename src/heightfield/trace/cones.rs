@@ -14,6 +14,7 @@
 
 use std::sync::Arc;
 
+use bytemuck::cast_slice;
 use glam::DVec3;
 
 use super::super::conemap::{ConeMap, MapKind};
@@ -333,6 +334,26 @@ impl Tracer for Cones {
                 Refine::Settle => 0,
             },
         };
-        self.relief.buffers(Some(&self.map), numbers)
+        if self.map.kind != MapKind::Quad {
+            let mut all = self.relief.buffers(Some(&self.map), numbers);
+            all.push(("ratios_y", cast_slice(&[0.0_f32]).to_vec()));
+            return all;
+        }
+        // Four cones of a map of 4096 x 4096 are more than a binding must hold: two, and two.
+        let half = |side: usize| ConeMap {
+            ratios: self
+                .map
+                .ratios
+                .chunks(4)
+                .flat_map(|four| &four[side..side + 2])
+                .copied()
+                .collect(),
+            ..*self.map
+        };
+        let mut all = self.relief.buffers(Some(&half(0)), numbers);
+        let other = self.relief.buffers(Some(&half(2)), numbers);
+        let other = other.into_iter().find(|(name, _)| *name == "ratios");
+        all.extend(other.map(|(_, bytes)| ("ratios_y", bytes)));
+        all
     }
 }

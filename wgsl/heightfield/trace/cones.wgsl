@@ -9,12 +9,14 @@
 override CONES_NEAREST: bool;
 /// Each cell's patch is solved on the way.
 override CONES_SOLVE: bool;
-/// One cone for each side: +x, -x, +y, -y.
+/// One cone for each side: +x, -x in `ratios`, +y, -y in `ratios_y`.
 override CONES_QUAD: bool;
 /// The number of steps follows the view.
 override CONES_VIEW: bool;
 /// Brackets are refined by false positions, else by halvings; solved ones settle.
 override CONES_SECANT: bool;
+
+@group(0) @binding(9) var<storage, read> ratios_y: array<f32>;
 
 /// A sample's place in its tile, for indices from -1 to the size.
 fn cones_place(at: vec2<i32>) -> i32 {
@@ -30,9 +32,10 @@ fn cones_ratio(d: vec3<f32>, at: vec2<i32>) -> f32 {
     if !CONES_QUAD {
         return ratios[place];
     }
-    let x = select(0, 1, d.x < 0.0);
-    let y = select(2, 3, d.y < 0.0);
-    return ratios[4 * place + select(y, x, abs(d.x) >= abs(d.y))];
+    if abs(d.x) >= abs(d.y) {
+        return ratios[2 * place + select(0, 1, d.x < 0.0)];
+    }
+    return ratios_y[2 * place + select(0, 1, d.y < 0.0)];
 }
 
 /// Height and ratio of the cone over the ray at s, in a cell.
