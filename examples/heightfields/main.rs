@@ -49,6 +49,7 @@ fn main() -> Result<()> {
 /// Fills the marked places of the page.
 fn write(folder: &Path, document: &str, date: &str) -> Result<()> {
     let cones: Vec<tables::ConesRow> = page::read(&folder.join("cones.json"))?;
+    let boxes: Vec<tables::ConesRow> = page::read(&folder.join("boxes.json"))?;
     let nodes: Vec<rows::NodesRow> = page::read(&folder.join("nodes.json"))?;
     let times: Vec<rows::TimesRow> = page::read(&folder.join("times.json"))?;
     let large: Vec<rows::TimesRow> = page::read(&folder.join("large.json"))?;
@@ -58,6 +59,7 @@ fn write(folder: &Path, document: &str, date: &str) -> Result<()> {
     let measured = [
         ("device", format!("Measured {date} on {device}.\n")),
         ("tracers", tables::tracers(&cones)),
+        ("boxes", tables::means(&boxes, tables::SMALL)),
         ("generators", tables::generators(&cones)),
         ("nodes", tables::nodes(&nodes)),
         ("times", tables::times(&times) + &tables::large(&large)),

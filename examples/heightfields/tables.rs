@@ -19,7 +19,7 @@ pub enum ConesRow {
 /// Size at which tracers are shown field by field, and nodes; and another at which all
 /// maps are done in time, for the mean.
 const SHOWN: u32 = 256;
-const SMALL: u32 = 128;
+pub const SMALL: u32 = 128;
 /// Angles of view of `bench cones`, in degrees.
 const VIEWS: [u32; 3] = [30, 60, 80];
 /// Most nodes per place that a search of a rough field should take.
@@ -95,7 +95,7 @@ fn joined(views: &[&TracerRow], show: impl Fn(&TracerRow) -> String) -> String {
 }
 
 /// Tracers in the mean of the fields at a size.
-fn means(rows: &[ConesRow], size: u32) -> String {
+pub fn means(rows: &[ConesRow], size: u32) -> String {
     let rows = tracer_rows(rows, size);
     let pairs = once(rows.iter().map(|r| (r.tracer.as_str(), r.map.as_str())));
     let fields = once(rows.iter().map(|r| r.field.as_str()));

@@ -48,6 +48,16 @@ pub enum Patches {
     Boxes,
 }
 
+impl Patches {
+    /// The word for it in presets and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bilinear => "bilinear",
+            Self::Boxes => "boxes",
+        }
+    }
+}
+
 /// A grid of heights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heights {

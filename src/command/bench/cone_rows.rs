@@ -9,6 +9,8 @@ pub struct GeneratorRow {
     pub field: String,
     /// Samples along each axis.
     pub size: [u32; 2],
+    /// `bilinear` patches between the samples, or `boxes`.
+    pub surface: String,
     /// Who makes it.
     pub generator: String,
     /// On what.
@@ -33,6 +35,8 @@ pub struct TracerRow {
     pub field: String,
     /// Samples along each axis.
     pub size: [u32; 2],
+    /// `bilinear` patches between the samples, or `boxes`.
+    pub surface: String,
     /// Angle from the vertical.
     pub view_deg: u32,
     /// Who traces.

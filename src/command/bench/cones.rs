@@ -36,7 +36,7 @@ use crate::heightfield::trace::walk::Walk;
 use crate::heightfield::trace::{AnyTracer, TraceError};
 use crate::render::RenderError;
 
-/// Fields where none is named; the sixth, white noise, is no relief that anybody has.
+/// Fields where none is named.
 const FIELDS: [Field; 5] = [
     Field::Fbm,
     Field::Ridges,
@@ -59,12 +59,16 @@ const POWER: f64 = 2.6;
 /// Options of `bench cones`.
 #[derive(Debug, Args)]
 pub struct ConesBench {
-    /// Fields: fbm, ridges, spikes, checker, sine, noise; the first five where none is named
+    /// Fields: fbm, ridges, spikes, checker, sine, noise, stones, bricks; the first five where
+    /// none is named
     #[arg(value_name = "FIELD")]
     names: Vec<String>,
     /// Samples, instead of 128x128 and 256x256
     #[arg(long, value_name = "WxH", value_parser = size::read)]
     size: Option<[u32; 2]>,
+    /// Take each sample for a flat box instead of joining four by a patch
+    #[arg(long)]
+    boxes: bool,
     /// Who makes the maps: cpu, auto, gpu, software, an index or a part of a name
     #[arg(long, value_name = "DEVICE", default_value = "cpu", value_parser = device)]
     device: Choice,
@@ -106,6 +110,11 @@ pub fn run(args: &ConesBench) -> Result<()> {
         Heights::new(*size, [false; 2], vec![0.0; area(*size)])
             .map_err(|e| usage(e.to_string()))?;
     }
+    let patches = if args.boxes {
+        Patches::Boxes
+    } else {
+        Patches::Bilinear
+    };
     let files = common.files(None)?;
     let executor = common.executor()?;
     let mut generators = Vec::new();
@@ -113,7 +122,7 @@ pub fn run(args: &ConesBench) -> Result<()> {
     for size in sizes {
         for field in &fields {
             let heights = Heights::new(size, [false; 2], field.heights(size, SEED, POWER))?;
-            let relief = Arc::new(Relief::new(heights, Patches::Bilinear, [1, 1])?);
+            let relief = Arc::new(Relief::new(heights, patches, [1, 1])?);
             let (rows, maps) = generate(&executor, *field, &relief)?;
             files.show(&table::generators(&rows))?;
             generators.extend(rows);
@@ -183,6 +192,7 @@ fn generate(
         let mut row = GeneratorRow {
             field: field.name().into(),
             size: relief.heights().size(),
+            surface: relief.patches().name().into(),
             generator: generator.name().into(),
             device: executor.name(),
             ms: None,
@@ -276,6 +286,7 @@ fn pyramid(
     Ok(GeneratorRow {
         field: field.name().into(),
         size: relief.heights().size(),
+        surface: relief.patches().name().into(),
         generator: "max-mip".into(),
         device: executor.name(),
         ms: Some(start.elapsed().as_secs_f64() * 1e3),
@@ -357,6 +368,7 @@ fn trace(field: Field, relief: &Arc<Relief>, maps: &Maps) -> Result<Vec<TracerRo
             rows.push(TracerRow {
                 field: field.name().into(),
                 size: relief.heights().size(),
+                surface: relief.patches().name().into(),
                 view_deg,
                 tracer: name.into(),
                 map: generator.map_or("none", Generator::name).into(),

@@ -214,7 +214,10 @@ pub fn generators(rows: &[GeneratorRow]) -> String {
         return String::new();
     };
     let [w, h] = first.size;
-    let mut text = format!("\n### Maps of {}, {w} x {h}\n\n", first.field);
+    let mut text = format!(
+        "\n### Maps of {}, {w} x {h}, {}\n\n",
+        first.field, first.surface
+    );
     text += "| generator      |       ms | mean ratio | of exact | wider than exact % |\n";
     text += "|:---------------|----:|----:|----:|----:|\n";
     for row in rows {
@@ -241,7 +244,10 @@ pub fn tracers(rows: &[TracerRow]) -> String {
         return String::new();
     };
     let [w, h] = first.size;
-    let mut text = format!("\n### Tracers over {}, {w} x {h}\n\n", first.field);
+    let mut text = format!(
+        "\n### Tracers over {}, {w} x {h}, {}\n\n",
+        first.field, first.surface
+    );
     text += "| view | tracer        | map            | steps, mean | p99 | skipped % | unconverged % | error, texels |\n";
     text += "|----:|:--------------|:---------------|----:|----:|----:|----:|----:|\n";
     for row in rows {
