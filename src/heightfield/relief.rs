@@ -10,6 +10,7 @@ use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
 use thiserror::Error;
 
 use super::conemap::ConeMap;
+use super::generate::mips::rounded_down;
 use super::heights::{Heights, Patches};
 use super::maxmip::MaxMip;
 use crate::shader::Module;
@@ -256,24 +257,14 @@ impl Relief {
             rounds: numbers.rounds,
             starts,
         };
-        let ratios: Vec<f32> =
-            map.map_or(vec![0.0], |m| m.ratios.iter().map(|r| down(*r)).collect());
+        let ratios: Vec<f32> = map.map_or(vec![0.0], |m| {
+            m.ratios.iter().map(|r| rounded_down(*r)).collect()
+        });
         vec![
             ("relief_parameters", bytes_of(&uniform).to_vec()),
             ("heights", cast_slice(self.heights.data()).to_vec()),
             ("ratios", cast_slice(&ratios).to_vec()),
             ("maxima", cast_slice(&maxima).to_vec()),
         ]
-    }
-}
-
-/// The f32 next to a number that is not negative, never above it: a cone that is rounded
-/// up is too wide.
-fn down(ratio: f64) -> f32 {
-    let near = ratio as f32;
-    if f64::from(near) > ratio {
-        near.next_down()
-    } else {
-        near
     }
 }
