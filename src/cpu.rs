@@ -194,9 +194,11 @@ impl<S: Solid> Run<'_, S> {
             let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
             color::color(solid, &light, &view.view_ray(pixel), &hits[at], state)
         };
-        bands.over(self.plan.size, one, |i, (c, n)| {
-            set(radiance, i, c.as_vec3().to_array());
-            set(normals, i, n.as_vec3().to_array());
+        let undecided = &mut self.frame.undecided;
+        bands.over(self.plan.size, one, |i, pixel| {
+            set(radiance, i, pixel.radiance.as_vec3().to_array());
+            set(normals, i, pixel.normal.as_vec3().to_array());
+            *undecided += usize::from(!pixel.decided);
         })?;
         Ok((0, 0))
     }

@@ -257,7 +257,11 @@ impl Plan {
     pub fn light(&self) -> Light {
         let distance = (self.camera.target - self.camera.eye).length();
         let up = self.camera.up.try_normalize().unwrap_or(DVec3::Z);
-        self.look.light(up, distance)
+        let crossing = match &self.subject {
+            Subject::Heightfield(shape) => shape.crossing(),
+            _ => None,
+        };
+        self.look.light(up, distance, crossing)
     }
 
     /// The passes over cells and pixels, in order.

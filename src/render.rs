@@ -117,6 +117,19 @@ fn most_steps(scene: &Scene) -> u32 {
     (MOST_ROUNDS_AT_ONCE / rounds).clamp(1, MOST_STEPS_AT_ONCE)
 }
 
+/// Whether a device that binds so many bytes at most has room for what a scene brings.
+fn has_room(device: &str, what: &'static str, needed: u64, most: u64) -> Result<(), RenderError> {
+    if needed <= most {
+        return Ok(());
+    }
+    Err(RenderError::TooLarge {
+        device: device.into(),
+        what,
+        needed,
+        most,
+    })
+}
+
 /// Renders plans on one device.
 pub struct Renderer {
     /// The device.
@@ -198,7 +211,7 @@ impl Renderer {
                 extras,
                 block: *block,
             };
-            let mut bound = self.bind_frame(&job);
+            let mut bound = self.bind_frame(&job)?;
             let mut parents = 0;
             for (i, (&pass, kernel)) in passes.iter().zip(&kernels).enumerate() {
                 parents = self.run(&job, (i, pass), kernel, parents, &mut bound, &mut frame)?;
@@ -224,9 +237,11 @@ impl Renderer {
     }
 
     /// Uniforms that hold for a whole block.
-    fn bind_frame(&mut self, job: &Job<'_>) -> Bound {
+    fn bind_frame(&mut self, job: &Job<'_>) -> Result<Bound, RenderError> {
         let mut bound = Bound::new();
+        let most = self.device.most_bound();
         for (name, bytes) in job.scene.twin().uniforms() {
+            has_room(&self.device.info.name, name, bytes.len() as u64, most)?;
             bound.insert(name.into(), Rc::new(uniform(&self.device, name, &bytes)));
         }
         let view = job.plan.view().uniform(&job.block);
@@ -237,7 +252,7 @@ impl Renderer {
         ] {
             bound.insert(name.into(), Rc::new(uniform(&self.device, name, bytes)));
         }
-        bound
+        Ok(bound)
     }
 
     /// Runs one pass over one block until nothing moves; `parents` cells were listed for
@@ -383,5 +398,24 @@ impl Renderer {
             same && program.constants().contains(&("HIT_CARRIES_MARK", 1.0))
         };
         self.kernels.iter().any(of)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_device_has_no_room_for_is_told() {
+        const MOST: u64 = 1 << 27;
+        // Half the cones of four sides over 4096 x 4096 samples fit to the byte.
+        assert!(has_room("d", "ratios", 4096 * 4096 * 2 * 4, MOST).is_ok());
+        let said = has_room("d", "maxima", MOST + 4, MOST)
+            .unwrap_err()
+            .to_string();
+        assert_eq!(
+            said,
+            "the device `d` binds at most 134217728 bytes at once, and `maxima` of the scene needs 134217732; a smaller height map, another --device, or --device cpu would do"
+        );
     }
 }

@@ -432,3 +432,85 @@ fn both_executors_paint_alike() {
         assert!(wrong <= 40, "{by:?}: {wrong} pixels apart");
     }
 }
+
+#[test]
+fn halvings_find_the_sides_of_boxes_too() {
+    const NORMALS: Extras = Extras {
+        count: false,
+        normals: true,
+        levels: false,
+        depth_only: false,
+        time: false,
+    };
+    let shapes = shapes().into_iter();
+    for (name, mut shape) in shapes.filter(|(_, s)| s.patches == Patches::Boxes) {
+        let mut rendered = |tracer| {
+            shape.tracing.tracer = tracer;
+            let mut plan = Plan::new(Subject::Heightfield(shape.clone()));
+            [plan.camera, ..] = cameras(40.0);
+            plan.size = [120, 80];
+            let here = cpu::render(&plan, NORMALS, &mut |_| true).unwrap();
+            [here, adapter::render(&plan, NORMALS)]
+        };
+        let truth = rendered("walk");
+        for tracer in ["linear-binary", "csm-scaled", "rcs-binary", "secant"] {
+            for (own, truth) in rendered(tracer).iter().zip(&truth) {
+                // These tracers lose hits; where they have found the first one, they know
+                // what they met.
+                let both = |i: &usize| own.state[*i] == HIT && truth.state[*i] == HIT;
+                let same = |i: &usize| (own.depth[*i] - truth.depth[*i]).abs() < 1e-4;
+                let found: Vec<usize> = (0..own.state.len()).filter(both).filter(same).collect();
+                let wrong = |i: &&usize| {
+                    let [a, b] = [own, truth].map(|f| DVec3::from(f.normal[**i].map(f64::from)));
+                    a.distance(b) > 1e-4
+                };
+                let wrong = found.iter().filter(wrong).count();
+                assert!(found.len() > 500, "{name}, {tracer}: {} found", found.len());
+                // Rays that meet an edge within a rounding.
+                assert!(wrong <= 8, "{name}, {tracer}: {wrong} of {}", found.len());
+            }
+        }
+    }
+}
+
+#[test]
+fn shadows_that_reach_their_limit_are_counted_and_flagged() {
+    const MAGENTA: [f32; 3] = [1.0, 0.0, 1.0];
+    for tracer in ["walk", "walk-relaxed", "max-mip"] {
+        let mut shape = HeightfieldShape::default();
+        shape.source.field = "fbm:128x128,seed=5,power=3".into();
+        shape.depth = 2.6;
+        shape.tracing.tracer = tracer;
+        let mut plan = Plan::new(Subject::Heightfield(shape));
+        [plan.camera, ..] = cameras(40.0);
+        plan.size = [120, 80];
+        plan.look.light = DVec3::new(-0.8, -0.25, 0.15);
+        let rendered = |plan: &Plan| {
+            let here = cpu::render(plan, Extras::default(), &mut |_| true).unwrap();
+            [here, adapter::render(plan, Extras::default())]
+        };
+        // By itself a shadow has as many steps as it can need.
+        let whole = rendered(&plan);
+        assert_eq!(whole.each_ref().map(|f| f.undecided), [0, 0], "{tracer}");
+        // With few some rays end on the way; those that met something before did not.
+        plan.look.shadow_steps = Some(6);
+        let cut = rendered(&plan);
+        plan.look.flag_unconverged = true;
+        let flagged = rendered(&plan);
+        for ((cut, flagged), whole) in cut.iter().zip(&flagged).zip(&whole) {
+            assert!(cut.undecided > 300, "{tracer}: {}", cut.undecided);
+            assert_eq!(cut.undecided, flagged.undecided);
+            let marked = flagged.radiance.iter().filter(|c| **c == MAGENTA).count();
+            assert_eq!(marked, cut.undecided, "{tracer}");
+            for ((cut, flagged), whole) in cut
+                .radiance
+                .iter()
+                .zip(&flagged.radiance)
+                .zip(&whole.radiance)
+            {
+                // What is not marked is as it should be.
+                assert!(*flagged == MAGENTA || (flagged == cut && cut == whole));
+            }
+        }
+    }
+}

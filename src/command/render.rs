@@ -13,7 +13,7 @@ use super::executor::{Executor, device};
 use super::failure::usage;
 use super::print::{print, say};
 use super::sink::{Parcel, Sink, apart, is_stdout};
-use super::stats::{Stats, shares};
+use super::stats::{Stats, shares, undecided};
 use super::{interrupt, memory, size};
 use crate::frame::Frame;
 use crate::gpu::device::Choice;
@@ -340,12 +340,16 @@ fn summary(output: &Path, frame: &Frame) -> String {
         ),
     };
     let [sky, hit, unconverged] = shares(frame).map(|s| 100.0 * s);
+    let shadows = match 100.0 * undecided(frame) {
+        share if share < 0.05 => String::new(),
+        share => format!(", shadows cut short {share:.1} %"),
+    };
     let name = match output.to_str() {
         Some("-") => "standard output".into(),
         _ => output.display().to_string(),
     };
     format!(
-        "{name}  {w} x {h}  {cones}march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %",
+        "{name}  {w} x {h}  {cones}march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %{shadows}",
         frame.march_ms
     )
 }

@@ -33,6 +33,8 @@ pub struct Stats {
     pub sky: f64,
     /// Share of pixels that reached a limit, 0..1.
     pub unconverged: f64,
+    /// Share of pixels whose shadow's ray did, 0..1.
+    pub undecided: f64,
 }
 
 /// One pass.
@@ -78,8 +80,14 @@ impl Stats {
             hit,
             sky,
             unconverged,
+            undecided: undecided(frame),
         }
     }
+}
+
+/// Share of pixels whose shadow's ray reached its limit, 0..1.
+pub fn undecided(frame: &Frame) -> f64 {
+    frame.undecided as f64 / frame.state.len().max(1) as f64
 }
 
 /// Shares of sky, hit and unconverged pixels, 0..1.

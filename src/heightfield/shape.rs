@@ -334,6 +334,13 @@ impl HeightfieldShape {
         })
     }
 
+    /// The most cells that a ray can cross; `None` where there are no heights.
+    pub fn crossing(&self) -> Option<u32> {
+        let [w, h] = self.relief().ok()?.domain().map(i32::unsigned_abs);
+        // The first cell, and a line of either axis for each other one.
+        Some(w + h)
+    }
+
     /// The numbers of a file's heights; none of a field, whose word says everything.
     pub fn contents(&self) -> Vec<u8> {
         if Named::read(&self.source.field).is_some() {

@@ -4,7 +4,8 @@
 use glam::DVec3;
 
 use super::look::Light;
-use super::{fog, occlusion, shadow};
+use super::shadow::{self, Shadow};
+use super::{fog, occlusion};
 use crate::frame::State;
 use crate::scene::{Hit, Solid, Surface};
 use crate::shader::Module;
@@ -19,7 +20,8 @@ pub fn module(keeps_normals: bool) -> Module {
     )
 }
 
-/// Radiance that leaves a surface towards the eye.
+/// Radiance that leaves a surface towards the eye, and whether the shadow's ray came to an
+/// end.
 pub fn shade<S: Solid>(
     solid: &S,
     light: &Light,
@@ -27,15 +29,19 @@ pub fn shade<S: Solid>(
     q: DVec3,
     surface: &Surface,
     grain: f64,
-) -> DVec3 {
+) -> (DVec3, bool) {
     let n = surface.normal;
     let albedo = light.pigment_color(surface.pigment);
     let facing = n.dot(light.light);
-    let lit = if facing > 0.0 && light.shadowed {
-        facing * shadow::shadow(solid, light, q, n, grain)
+    let key = if facing > 0.0 && light.shadowed {
+        shadow::shadow(solid, light, q, n, grain)
     } else {
-        facing.max(0.0)
+        Shadow {
+            open: 1.0,
+            decided: true,
+        }
     };
+    let lit = facing.max(0.0) * key.open;
     let open = if light.occlusion_strength > 0.0 {
         occlusion::occlusion(solid, light, q, n, grain)
     } else {
@@ -47,29 +53,43 @@ pub fn shade<S: Solid>(
     let bounce = light.light_color * (0.12 * light.fill * (1.0 - up));
     let half_way = (light.light - ray.axis).normalize_or_zero();
     let shine = n.dot(half_way).max(0.0).powi(40);
-    albedo * (light.light_color * (light.key * lit) + (ambient + bounce) * open)
-        + light.light_color * (light.gloss * lit * shine)
+    let c = albedo * (light.light_color * (light.key * lit) + (ambient + bounce) * open)
+        + light.light_color * (light.gloss * lit * shine);
+    (c, key.decided)
 }
 
-/// Radiance and normal of a pixel.
-pub fn color<S: Solid>(
-    solid: &S,
-    light: &Light,
-    ray: &Beam,
-    hit: &Hit,
-    state: State,
-) -> (DVec3, DVec3) {
+/// What the pass says of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shaded {
+    /// Radiance towards the eye.
+    pub radiance: DVec3,
+    /// Unit normal, zero for the sky.
+    pub normal: DVec3,
+    /// Whether the shadow's ray, if there was one, came to its end within its steps.
+    pub decided: bool,
+}
+
+/// The light of a pixel.
+pub fn color<S: Solid>(solid: &S, light: &Light, ray: &Beam, hit: &Hit, state: State) -> Shaded {
     if state == State::Sky {
-        return (light.sky(ray.axis), DVec3::ZERO);
+        return Shaded {
+            radiance: light.sky(ray.axis),
+            normal: DVec3::ZERO,
+            decided: true,
+        };
     }
     let surface = solid.surface(ray, hit);
-    if state == State::Unconverged && light.flag {
-        return (DVec3::new(1.0, 0.0, 1.0), surface.normal);
-    }
     let grain = footprint(ray, hit.t);
-    let mut c = shade(solid, light, ray, ray.at(hit.t), &surface, grain);
+    let (mut c, decided) = shade(solid, light, ray, ray.at(hit.t), &surface, grain);
     if light.fog > 0.0 {
         c = fog::fog(light, c, ray.axis, hit.t);
     }
-    (c, surface.normal)
+    if light.flag && (state == State::Unconverged || !decided) {
+        c = DVec3::new(1.0, 0.0, 1.0);
+    }
+    Shaded {
+        radiance: c,
+        normal: surface.normal,
+        decided,
+    }
 }

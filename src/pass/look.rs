@@ -7,9 +7,16 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
 
-use crate::key::{Count, Fault, Key, List, Number, Switch, Triple};
+use crate::key::{AutoCount, Fault, Key, List, Number, Switch, Triple};
 use crate::shader::Module;
 use crate::wgsl;
+
+/// Steps that are enough for the rays of shadows among fractals, but for those that pass
+/// close over long slopes.
+const SHADOW_STEPS: u32 = 96;
+/// Most that may be asked for. With the rounds of the loops in them they stay under the
+/// 65 535 after which Mesa's software Vulkan ends loops.
+const MOST_SHADOW_STEPS: u32 = 2048;
 
 /// Most colours in a palette.
 pub const MOST_STOPS: usize = 8;
@@ -77,8 +84,8 @@ pub struct Look {
     pub shadow: bool,
     /// Angular radius of the light in degrees.
     pub light_size: f64,
-    /// Steps that a shadow ray may do.
-    pub shadow_steps: u32,
+    /// Steps that a shadow ray may do; `None` for as many as the scene needs.
+    pub shadow_steps: Option<u32>,
     /// Strength of ambient occlusion; 0 is off.
     pub occlusion: f64,
     /// Length over which occlusion looks, as a share of the distance to the target.
@@ -110,7 +117,7 @@ impl Default for Look {
             fill: 1.6,
             shadow: true,
             light_size: 2.0,
-            shadow_steps: 96,
+            shadow_steps: None,
             occlusion: 1.0,
             occlusion_reach: 0.05,
             fog: 0.0,
@@ -163,8 +170,8 @@ impl Look {
             ),
             Key::new(
                 "shadow_steps",
-                Count(&mut self.shadow_steps, 1, 512),
-                "steps that a shadow ray may do",
+                AutoCount(&mut self.shadow_steps, 1, MOST_SHADOW_STEPS),
+                "steps that a shadow ray may do; auto is 96, over a heightfield as many as it has cells to cross",
             ),
             Key::new(
                 "occlusion",
@@ -231,8 +238,9 @@ impl Look {
     }
 
     /// The look made ready: linear colours, lengths in the world. `up` is the world's,
-    /// `distance` that from the eye to the target.
-    pub fn light(&self, up: DVec3, distance: f64) -> Light {
+    /// `distance` that from the eye to the target, `crossing` the most steps that a ray can
+    /// take through the scene, where that is known.
+    pub fn light(&self, up: DVec3, distance: f64, crossing: Option<u32>) -> Light {
         let mut palette = [DVec3::ZERO; MOST_STOPS];
         for (to, from) in palette.iter_mut().zip(&self.palette) {
             *to = linear(*from);
@@ -243,7 +251,10 @@ impl Look {
             key: self.key,
             fill: self.fill,
             softness: self.light_size.to_radians().tan(),
-            shadow_steps: self.shadow_steps,
+            shadow_steps: self.shadow_steps.unwrap_or_else(|| {
+                let enough = crossing.unwrap_or(SHADOW_STEPS);
+                enough.clamp(SHADOW_STEPS, MOST_SHADOW_STEPS)
+            }),
             occlusion_strength: self.occlusion,
             occlusion_reach: self.occlusion_reach * distance,
             fog: self.fog / distance,
@@ -406,7 +417,7 @@ mod tests {
 
     #[test]
     fn tone_keeps_black_black_and_never_exceeds_white() {
-        let light = Look::default().light(DVec3::Z, 1.0);
+        let light = Look::default().light(DVec3::Z, 1.0, None);
         assert_eq!(light.tone(DVec3::ZERO), DVec3::ZERO);
         assert_eq!(light.tone(DVec3::splat(1e9)), DVec3::ONE);
     }

@@ -18,9 +18,18 @@ pub fn module(on: bool) -> Module {
     }
 }
 
-/// Share of the light that reaches a point: 0 behind any hit, else by the narrowest
-/// empty ball on the way, as wide as the light seen from the point.
-pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain: f64) -> f64 {
+/// What a shadow's ray has found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shadow {
+    /// Share of the light that arrives, as far as the ray came: 0 behind any hit, else by
+    /// the narrowest empty ball on the way, as wide as the light seen from the point.
+    pub open: f64,
+    /// Whether it came to its end within its steps.
+    pub decided: bool,
+}
+
+/// Follows a ray from a point to the light.
+pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain: f64) -> Shadow {
     let ray = Beam {
         // Start off the surface, or its own hit shell would shade it.
         origin: q + 4.0 * grain * normal,
@@ -33,10 +42,20 @@ pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain
     let work = &mut Work::default();
     let mut walk = solid.begin(&ray, 0.0, 2.0 * solid.bounds_far(), work);
     let mut open = 1.0_f64;
+    let mut decided = false;
     for _ in 0..light.shadow_steps {
         match solid.walk_step(&ray, &mut walk, work) {
-            Step::Out | Step::Spent => break,
-            Step::Hit => return 0.0,
+            Step::Hit => {
+                return Shadow {
+                    open: 0.0,
+                    decided: true,
+                };
+            }
+            Step::Out => {
+                decided = true;
+                break;
+            }
+            Step::Spent => break,
             Step::Moving => {}
         }
         let t = solid.walk_hit(&walk).t;
@@ -44,5 +63,8 @@ pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain
             open = open.min(solid.walk_radius(&ray, &walk) / (light.softness * t));
         }
     }
-    smoothstep(0.0, 1.0, open)
+    Shadow {
+        open: smoothstep(0.0, 1.0, open),
+        decided,
+    }
 }

@@ -104,8 +104,9 @@ pub fn collect(
     let rgb =
         |v: Vec<[f32; 4]>| -> Vec<_> { v.into_iter().map(|[r, g, b, _]| [r, g, b]).collect() };
     if let Some(raw) = get("radiance".into()) {
-        let pixels = rgb(read(device, raw, job.block.area())?);
-        to.copy(&pixels, &mut frame.radiance);
+        let pixels: Vec<[f32; 4]> = read(device, raw, job.block.area())?;
+        frame.undecided += pixels.iter().filter(|p| p[3] == 0.0).count();
+        to.copy(&rgb(pixels), &mut frame.radiance);
     }
     if let (true, Some(raw)) = (job.extras.normals, get("normals".into())) {
         let normals = rgb(read(device, raw, job.block.area())?);

@@ -5,23 +5,34 @@
 @group(2) @binding(0) var<storage, read> depth: array<f32>;
 @group(2) @binding(1) var<storage, read> state: array<u32>;
 @group(2) @binding(2) var<storage, read> marks: array<Mark>;
+/// Red, green, blue, and 0 where the shadow's ray reached its limit.
 @group(2) @binding(4) var<storage, read_write> radiance: array<vec4<f32>>;
 /// Only for layers that show them; else a stub.
 @group(2) @binding(5) var<storage, read_write> normals: array<vec4<f32>>;
 
 override COLOR_KEEPS_NORMALS: bool;
 
-/// Radiance towards the eye of a hit at q, relative to the eye; `grain` is half a pixel
-/// there, by which shadow and occlusion stand off the surface.
-fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec3<f32> {
+/// What a shadow's ray has found.
+struct Shadow {
+    /// Share of the light that arrives, as far as the ray came.
+    open: f32,
+    /// Whether it came to its end within its steps.
+    decided: bool,
+}
+
+/// Radiance towards the eye of a hit at q, relative to the eye, and 1, or 0 where the
+/// shadow's ray reached its limit; `grain` is half a pixel there, by which shadow and
+/// occlusion stand off the surface.
+fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec4<f32> {
     let n = surface.normal;
     let albedo = pigment_color(surface.pigment);
     let facing = dot(n, look.light);
     // What faces away is dark without asking: it needs no shadow ray.
-    var lit = 0.0;
+    var light = Shadow(0.0, true);
     if facing > 0.0 {
-        lit = facing * shadow(q, n, grain);
+        light = shadow(q, n, grain);
     }
+    let lit = facing * light.open;
     let open = occlusion(q, n, grain);
     // From 0 for what faces down to 1 for what faces up: between the two skies. The lower
     // one is dimmed, as the ground keeps back more than half of what falls on it.
@@ -36,7 +47,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec3<f32> {
     // Blinn and Phong's highlight: dry, narrow, and dark in shadow like the key light.
     let shine = pow(max(0.0, dot(n, half_way)), 40.0);
     c += look.light_color * (look.gloss * lit * shine);
-    return c;
+    return vec4<f32>(c, select(0.0, 1.0, light.decided));
 }
 
 @compute @workgroup_size(64)
@@ -56,6 +67,7 @@ fn color(
     let ray = view_ray(view.block_origin + local);
     let s = state[index];
     var c = sky(ray.axis);
+    var decided = 1.0;
     var n = vec3<f32>(0.0);
     // Pixels that no cone listed were never written: they are sky too.
     if s == STATE_HIT || s == STATE_UNCONVERGED {
@@ -68,13 +80,15 @@ fn color(
         let at = surface(ray, hit);
         // An unconverged ray is lit where it stopped, which is mostly close to a surface.
         let grain = footprint(ray, hit.t);
-        c = fog(shade(ray, ray.origin + hit.t * ray.axis, at, grain), ray.axis, hit.t);
+        let shaded = shade(ray, ray.origin + hit.t * ray.axis, at, grain);
+        c = fog(shaded.rgb, ray.axis, hit.t);
+        decided = shaded.w;
         n = at.normal;
-        if s == STATE_UNCONVERGED && look.flag == 1u {
+        if look.flag == 1u && (s == STATE_UNCONVERGED || decided == 0.0) {
             c = vec3<f32>(1.0, 0.0, 1.0);
         }
     }
-    radiance[index] = vec4<f32>(c, 1.0);
+    radiance[index] = vec4<f32>(c, decided);
     if COLOR_KEEPS_NORMALS {
         normals[index] = vec4<f32>(n, 0.0);
     }

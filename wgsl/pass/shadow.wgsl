@@ -1,22 +1,24 @@
 // A soft shadow: a ray to the light, any hit of which is dark; the narrowest empty
 // ball on the way, seen from the surface, gives the penumbra.
 
-fn shadow(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> f32 {
+fn shadow(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> Shadow {
     // Start off the surface, or its own hit shell would shade it.
     let ray = Beam(q + (4.0 * grain) * normal, look.light, 0.0, 0.0, grain, 0.0);
     var walk = begin(ray, 0.0, 2.0 * bounds_far());
     var open = 1.0;
+    var decided = false;
     for (var i = 0u; i < look.shadow_steps; i++) {
         let s = walk_step(ray, &walk);
-        if s == STATE_SKY {
-            break;
-        }
         if s == STATE_HIT {
-            return 0.0;
+            return Shadow(0.0, true);
+        }
+        if s != STATE_MOVING {
+            decided = s == STATE_SKY;
+            break;
         }
         if walk.t > 4.0 * grain {
             open = min(open, walk_radius(ray, walk) / (look.softness * walk.t));
         }
     }
-    return smoothstep(0.0, 1.0, open);
+    return Shadow(smoothstep(0.0, 1.0, open), decided);
 }
