@@ -9,5 +9,6 @@ pub mod plot;
 pub mod row;
 pub mod setting;
 pub mod steps;
+pub mod steps_row;
 pub mod table;
 pub mod verb;

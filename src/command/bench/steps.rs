@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
-use serde::{Deserialize, Serialize};
 
 use super::common::{Common, median};
 use super::row::flat;
 use super::setting::{Setting, baselines};
+use super::steps_row::StepsRow;
 use super::table;
 use crate::command::executor::Executor;
 use crate::command::failure::usage;
@@ -31,53 +31,6 @@ pub struct StepsBench {
     /// Draw a heat map of evaluations for every preset and mode into this folder
     #[arg(long, value_name = "FOLDER")]
     heat: Option<PathBuf>,
-}
-
-/// One pass of one preset in one mode. Quantiles are of evaluations per visited cell.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct StepsRow {
-    /// Name of the preset.
-    pub preset: String,
-    /// Mode of the march.
-    pub mode: String,
-    /// `march 1/16` or `trace`.
-    pub pass: String,
-    /// Pixels along each axis.
-    pub size: [u32; 2],
-    /// Who rendered.
-    pub device: String,
-    /// Cells of the level.
-    pub cells: u64,
-    /// Cells that did anything: the others lie under sky.
-    pub visited: u64,
-    /// Estimate evaluations.
-    pub evaluations: u64,
-    /// Fold iterations.
-    pub iterations: u64,
-    /// Half of the visited cells need at most so many evaluations.
-    pub p50: u32,
-    /// 90 % do.
-    pub p90: u32,
-    /// 99 % do.
-    pub p99: u32,
-    /// All do.
-    pub max: u32,
-    /// Share of all cells that are proven sky, or lie under one that is.
-    pub sky: f64,
-    /// Share of all cells that reached the step limit.
-    pub unconverged: f64,
-    /// Evaluations of tiles of 8 x 4 cells that run in step, over those needed.
-    pub waste_8x4: f64,
-    /// The same for 8 x 8.
-    pub waste_8x8: f64,
-    /// Visited cells by evaluations: 0, 1, 2, 3-4, 5-8, and so on by doubling.
-    pub histogram: Vec<u64>,
-    /// Time on the device, where it has timestamps; median of warm runs.
-    pub gpu_ms: Option<f64>,
-    /// Time on the clock; median of warm runs.
-    pub wall_ms: f64,
-    /// A warning where f32 cannot hold what the preset asks for.
-    pub precision: Option<String>,
 }
 
 /// Warm runs that a median is taken of.

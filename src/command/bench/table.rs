@@ -2,7 +2,7 @@
 
 use super::cone_rows::{GeneratorRow, TracerRow};
 use super::row::Row;
-use super::steps::StepsRow;
+use super::steps_row::StepsRow;
 
 /// Said above times of a device that does not tell its own.
 const UNTIMED: &str = "The device has no timestamps: times are wall time.\n\n";

@@ -72,21 +72,9 @@ pub fn generate_counted(
             length *= 2;
         }
     }
-    let mut map = map_of(&prepared, ratios);
+    let mut map = prepared.map(ratios);
     if options.least_of_nine {
         map = least_of_nine(&map);
     }
     Ok((map, work))
-}
-
-/// The map of a generator's ratios.
-pub fn map_of(prepared: &Prepared<'_>, ratios: Vec<f64>) -> ConeMap {
-    let walk = prepared.generator.over_cells();
-    ConeMap {
-        kind: prepared.generator.kind(),
-        size: prepared.size,
-        wrap: prepared.heights.wrap(),
-        offset: if walk { prepared.options.offset } else { 0.0 },
-        ratios,
-    }
 }

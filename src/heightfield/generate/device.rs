@@ -15,7 +15,6 @@ use std::time::Instant;
 use bytemuck::{Pod, bytes_of};
 use rayon::prelude::*;
 
-use super::cpu::map_of;
 use super::generator::{GenerateError, Generator, Options, Watch};
 use super::mips::{ConeLevel, rounded_down};
 use super::prepared::Prepared;
@@ -223,7 +222,7 @@ impl<'a> Maker<'a> {
                 return Err(GenerateError::Cancelled);
             }
         }
-        let map = map_of(&prepared, ratios);
+        let map = prepared.map(ratios);
         if options.least_of_nine {
             return self.least_of_nine(&map);
         }

@@ -8,6 +8,7 @@ pub mod falling;
 pub mod generator;
 pub mod mips;
 pub mod nine;
+pub mod nine_device;
 pub mod planes;
 pub mod prepared;
 pub mod program;

@@ -8,6 +8,7 @@ use super::planes::Planes;
 use super::reach::{Aim, Reach};
 use super::search::{Best, Search};
 use super::{falling, quick, relaxed};
+use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::heights::{Axis, Heights, Patches};
 use crate::heightfield::maxmip::MaxMip;
 
@@ -192,6 +193,18 @@ impl<'a> Prepared<'a> {
                 cells: self.generator.over_cells(),
             },
             cost: self.cost(),
+        }
+    }
+
+    /// The map of the ratios that were found.
+    pub fn map(&self, ratios: Vec<f64>) -> ConeMap {
+        let walk = self.generator.over_cells();
+        ConeMap {
+            kind: self.generator.kind(),
+            size: self.size,
+            wrap: self.heights.wrap(),
+            offset: if walk { self.options.offset } else { 0.0 },
+            ratios,
         }
     }
 }
