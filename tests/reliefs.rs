@@ -32,6 +32,13 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 const HIT: u8 = State::Hit as u8;
+const NORMALS: Extras = Extras {
+    count: false,
+    normals: true,
+    levels: false,
+    depth_only: false,
+    time: false,
+};
 
 /// Heightfields of every kind: rough and smooth, ended, wrapped and tiled, as they lie and
 /// turned, patches and boxes.
@@ -300,13 +307,6 @@ fn met(relief: &Relief, ray: &LocalRay) -> Option<(f64, DVec3)> {
 
 #[test]
 fn the_sides_of_boxes_face_sideways() {
-    const NORMALS: Extras = Extras {
-        count: false,
-        normals: true,
-        levels: false,
-        depth_only: false,
-        time: false,
-    };
     let shapes = shapes().into_iter();
     for (name, mut shape) in shapes.filter(|(_, s)| s.patches == Patches::Boxes) {
         for tracer in ["walk", "walk-relaxed", "max-mip", "walk-mip"] {
@@ -435,13 +435,6 @@ fn both_executors_paint_alike() {
 
 #[test]
 fn halvings_find_the_sides_of_boxes_too() {
-    const NORMALS: Extras = Extras {
-        count: false,
-        normals: true,
-        levels: false,
-        depth_only: false,
-        time: false,
-    };
     let shapes = shapes().into_iter();
     for (name, mut shape) in shapes.filter(|(_, s)| s.patches == Patches::Boxes) {
         let mut rendered = |tracer| {
