@@ -19,6 +19,7 @@ use std::sync::Arc;
 use common::plans::{distance, every_program, preset, programs_of};
 use conemarch::formula::Shape;
 use conemarch::formula::mandelbox::Mandelbox;
+use conemarch::gpu::device::STORAGE_BUFFERS;
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
 use conemarch::heightfield::generate::generator::Generator;
 use conemarch::heightfield::generate::program as generate;
@@ -510,4 +511,27 @@ fn the_mandelbox_is_explained() {
         wgsl/pass/fog_off.wgsl
         wgsl/pass/color.wgsl  COLOR_KEEPS_NORMALS=0
     ");
+}
+
+#[test]
+fn no_program_binds_more_buffers_than_are_asked_for() {
+    let mut plan = preset("terrain");
+    let Subject::Heightfield(shape) = &mut plan.subject else {
+        unreachable!("the terrain");
+    };
+    shape.source.field = "fbm:16x16".into();
+    shape.tracing.tracer = "quad";
+    shape.paint = Some(Generator::Exact);
+    let mut programs: Vec<Program> = every_program().into_values().collect();
+    programs.extend(programs_of(&plan));
+    let bound = |program: &Program| {
+        let (module, _) = program.validate(Capabilities::all()).unwrap();
+        let space = |v: &wgpu::naga::GlobalVariable| v.space;
+        let storage =
+            |s: &wgpu::naga::AddressSpace| matches!(s, wgpu::naga::AddressSpace::Storage { .. });
+        let all = module.global_variables.iter().map(|(_, v)| space(v));
+        all.filter(storage).count()
+    };
+    let most = programs.iter().map(bound).max();
+    assert_eq!(most, Some(STORAGE_BUFFERS as usize));
 }

@@ -8,7 +8,8 @@ use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Features, Instance, Limit
 
 /// Storage buffers that a program may use. Parameters are among them: steering branches
 /// by uniform buffers makes lavapipe of Mesa 22 inline them, at times past its stack.
-const STORAGE_BUFFERS: u32 = 14;
+/// Most are those of a cone level over a painted relief with four cones to a sample, counted.
+pub const STORAGE_BUFFERS: u32 = 16;
 
 /// What can go wrong between asking for a device and waiting for its work.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -14,7 +14,6 @@
 
 use std::sync::Arc;
 
-use bytemuck::cast_slice;
 use glam::DVec3;
 
 use super::super::conemap::{ConeMap, MapKind};
@@ -308,11 +307,15 @@ impl Tracer for Cones {
         let mut all = self.relief.modules();
         all.push(wgsl!("heightfield/trace/cone.wgsl"));
         all.push(wgsl!("heightfield/trace/refine.wgsl"));
+        all.push(if self.map.kind == MapKind::Quad {
+            wgsl!("heightfield/trace/cones_four.wgsl")
+        } else {
+            wgsl!("heightfield/trace/cones_one.wgsl")
+        });
         all.push(wgsl!(
             "heightfield/trace/cones.wgsl",
             "CONES_NEAREST" = set(manner.lookup == Lookup::Nearest),
             "CONES_SOLVE" = set(manner.solves),
-            "CONES_QUAD" = set(self.map.kind == MapKind::Quad),
             "CONES_VIEW" = set(matches!(manner.budget, Budget::View { .. })),
             "CONES_SECANT" = set(matches!(manner.refine, Refine::Secant(_))),
         ));
@@ -335,9 +338,7 @@ impl Tracer for Cones {
             },
         };
         if self.map.kind != MapKind::Quad {
-            let mut all = self.relief.buffers(Some(&self.map), numbers);
-            all.push(("ratios_y", cast_slice(&[0.0_f32]).to_vec()));
-            return all;
+            return self.relief.buffers(Some(&self.map), numbers);
         }
         // Four cones of a map of 4096 x 4096 are more than a binding must hold: two, and two.
         let half = |side: usize| ConeMap {

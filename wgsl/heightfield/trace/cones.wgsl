@@ -9,14 +9,10 @@
 override CONES_NEAREST: bool;
 /// Each cell's patch is solved on the way.
 override CONES_SOLVE: bool;
-/// One cone for each side: +x, -x in `ratios`, +y, -y in `ratios_y`.
-override CONES_QUAD: bool;
 /// The number of steps follows the view.
 override CONES_VIEW: bool;
 /// Brackets are refined by false positions, else by halvings; solved ones settle.
 override CONES_SECANT: bool;
-
-@group(0) @binding(9) var<storage, read> ratios_y: array<f32>;
 
 /// A sample's place in its tile, for indices from -1 to the size.
 fn cones_place(at: vec2<i32>) -> i32 {
@@ -24,18 +20,6 @@ fn cones_place(at: vec2<i32>) -> i32 {
     let wraps = relief.wrap == vec2<u32>(1u);
     let i = select(clamp(at, vec2<i32>(0), n - 1), (at + n) % n, wraps);
     return i.y * n.x + i.x;
-}
-
-/// The ratio at a sample, for the side that the ray goes to.
-fn cones_ratio(d: vec3<f32>, at: vec2<i32>) -> f32 {
-    let place = cones_place(at);
-    if !CONES_QUAD {
-        return ratios[place];
-    }
-    if abs(d.x) >= abs(d.y) {
-        return ratios[2 * place + select(0, 1, d.x < 0.0)];
-    }
-    return ratios_y[2 * place + select(0, 1, d.y < 0.0)];
 }
 
 /// Height and ratio of the cone over the ray at s, in a cell.
