@@ -299,6 +299,36 @@ fn a_map_is_refused_for_what_it_was_not_made_for() {
 }
 
 #[test]
+fn many_trips_cost_no_more_than_the_first() {
+    let heights = field([13, 9], [false, true]);
+    for kind in KINDS {
+        let all = forms(kind);
+        for first in all.iter().filter(|f| f.layout != Layout::Full) {
+            // Every form that holds what the first one does: floats, and at least as many
+            // steps that are roots or are not.
+            let most = first.bits.steps().most;
+            let holds = |f: &&Form| {
+                let alike = f.root == first.root && f.bits.steps().most >= most;
+                f.layout == Layout::Full || alike
+            };
+            let stops: Vec<&Form> = all.iter().filter(holds).collect();
+            assert!(stops.len() > 2);
+            let through = |file: &MapFile, form: &Form| {
+                let bytes = encode(file, form).expect("a file");
+                decode_bytes(&bytes).expect("a map")
+            };
+            let start = through(&made(&heights, kind), first);
+            let mut now = start.clone();
+            for form in std::iter::repeat_n(&stops, 10).flatten() {
+                now = through(&now, form);
+                assert_eq!(now.map, start.map, "{first:?}, then {form:?}");
+                assert_eq!(now.heights, start.heights, "{first:?}, then {form:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_map_of_another_program_is_read_as_what_it_is_said_to_be() {
     let folder = Folder::new();
     let heights = field([8, 8], [false; 2]);
