@@ -20,7 +20,8 @@
 //!
 //! That argument holds for maps of empty cones. Of the relaxed maps only the first half
 //! does: rounding may raise new edges in the surface of the file, of which they know
-//! nothing. For the heights that they were made from they stay what they were.
+//! nothing. For the heights that they were made from they stay what they were; over those
+//! in the file, which the papers trace them with, a ray may cross more than once.
 
 /// A channel of whole numbers that stand for 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
