@@ -449,6 +449,52 @@ fn words_need_no_quotes_and_whole_numbers_are_floats() {
 }
 
 #[test]
+fn fields_and_paths_need_no_quotes() {
+    let text = "[scene]\nkind = \"heightfield\"\n";
+    // What becomes of a value, be it a plan or a sentence about a missing file.
+    let set = |value: &str| {
+        let set = Override::read(&format!("scene.field={value}"));
+        let plan = set.and_then(|set| read_with(text, "p.toml", &[set]));
+        plan.map_err(|e| e.to_string().replace('"', ""))
+    };
+    for word in [
+        "fbm",
+        "fbm:64x64,seed=3",
+        "ridges:12x7,power=1.5",
+        "d8.png",
+        "true.png",
+        "inf/nan.exr",
+        "./maps/rock-2_b.png",
+        "../a+b.exr",
+        "/tmp/x.raw",
+    ] {
+        assert_eq!(set(word), set(&format!("\"{word}\"")));
+    }
+    for word in [
+        "1979-05-27.png",
+        "-inf.png",
+        "a b.png",
+        "~/a.png",
+        "fbm:4x4;",
+    ] {
+        let why = set(word).expect_err(word);
+        assert!(why.contains("the value is not TOML"), "{why}");
+    }
+    // What is a value of its own stays one.
+    for value in ["inf", "nan", "true", "false", "-inf", "30"] {
+        let e = set_error(&[&format!("title={value}")]);
+        assert!(e.contains("must be a line of text"), "{e}");
+    }
+    for value in ["inf", "nan"] {
+        let e = set_error(&[&format!("camera.fov={value}")]);
+        assert!(e.contains("must be a number"), "{e}");
+    }
+    let set = Override::read("scene.julia=true").expect("a value");
+    let plan = load("mandelbox", &[set]).expect("a switch").plan;
+    assert_eq!(get(&plan, "scene", "julia"), Value::Boolean(true));
+}
+
+#[test]
 fn another_formula_starts_from_its_own_defaults() {
     let set = Override::read("scene.formula=balls").expect("a value");
     let plan = load("mandelbox", &[set]).expect("scale is dropped").plan;
