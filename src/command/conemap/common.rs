@@ -85,7 +85,7 @@ pub struct Strange {
 }
 
 impl Strange {
-    /// Reads a map. `wrap` is that of another program's.
+    /// Reads a map, and says what is unknown of it. `wrap` is that of another program's.
     pub fn decode(&self, path: &Path, wrap: [bool; 2]) -> Result<MapFile> {
         let foreign = self.from.map(|layout| Foreign {
             layout,
@@ -97,7 +97,11 @@ impl Strange {
             root: self.from_ratio.unwrap_or(Form::new(layout).root),
             wrap,
         });
-        decode(path, foreign.as_ref()).map_err(of_map)
+        let file = decode(path, foreign.as_ref()).map_err(of_map)?;
+        if let Some(why) = file.unknown() {
+            say(&format!("note: {} {why}", path.display()));
+        }
+        Ok(file)
     }
 
     /// Whether it was said what the file is.

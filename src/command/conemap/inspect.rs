@@ -93,6 +93,10 @@ fn belongs(args: &Inspect, file: &MapFile, path: &Path, heights: &str) -> Result
         patches: file.label.patches,
     };
     file.fit(path, &wanted).map_err(of_map)?;
-    say(&format!("{} belongs to {heights}", path.display()));
+    let verb = match file.unknown() {
+        Some(_) => "may belong",
+        None => "belongs",
+    };
+    say(&format!("{} {verb} to {heights}", path.display()));
     Ok(())
 }

@@ -98,6 +98,19 @@ impl MapFile {
         !is_walk(self.map.kind) && self.heights.as_deref() == Some(heights.data())
     }
 
+    /// Why nothing tells for which heights the map was made, if so: any of its size are
+    /// taken for them.
+    pub fn unknown(&self) -> Option<String> {
+        let told = self.heights.is_some() && !is_walk(self.map.kind);
+        let known = told || self.label.digest.is_some();
+        let [w, h] = self.label.samples;
+        (!known).then(|| {
+            format!(
+                "does not tell what heights it was made for; any of {w} x {h} samples are taken for them"
+            )
+        })
+    }
+
     /// Whether the heights are others than those that the map was made for.
     fn foreign(&self, heights: &Heights) -> Option<String> {
         let same = match (&self.label.digest, &self.heights) {
