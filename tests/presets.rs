@@ -364,10 +364,25 @@ fn heightfields_say_what_does_not_fit() {
             "map = \"none/there.exr\"",
             "p.toml:3: scene.map = \"none/there.exr\": none/there.exr: ",
         ),
+        (
+            "field = \"fbm:8192x8192\"\nwrap = \"xy\"\ntiles = [256, 256]",
+            "p.toml:5: scene.tiles = [256, 256]: 256 tiles of 8192 cells along axis 0: one tile or more, and 65536 cells at most",
+        ),
+        (
+            "field = \"fbm:4x1024\"\nwrap = \"y\"\ntiles = [1, 65]",
+            "p.toml:5: scene.tiles = [1, 65]: 65 tiles of 1024 cells along axis 1: ",
+        ),
     ] {
         let e = error(&of(rest));
         assert!(e.starts_with(says), "{e}\n  should begin with\n{says}");
     }
+    let most = of("field = \"fbm:8192x1024\"\nwrap = \"xy\"\ntiles = [8, 64]");
+    read(&most, "p.toml").expect("as many cells as there may be");
+    let tiled = of("field = \"fbm:1024x1024\"\nwrap = \"xy\"");
+    let set = Override::read("scene.tiles=[65, 64]").expect("a value");
+    let e = read_with(&tiled, "p.toml", &[set]).expect_err("too many");
+    let says = "--set scene.tiles=[65, 64]: 65 tiles of 1024 cells along axis 0: ";
+    assert!(e.is_usage() && e.to_string().starts_with(says), "{e}");
 }
 
 /// What an override's error says.

@@ -8,12 +8,12 @@ use glam::{DVec2, DVec3};
 
 use super::conemap::ConeMap;
 use super::generate::generator::Generator;
-use super::heights::Patches;
+use super::heights::{Patches, cells};
 use super::kept::Kept;
 use super::load::Named;
 use super::paint::{PAINTS, Paint};
 use super::placed::Placed;
-use super::relief::{Relief, ReliefError};
+use super::relief::{MOST_CELLS, Relief, ReliefError};
 use super::trace::AnyTracer;
 use super::tracing::{Make, PrepareError, Supply, Tracing, on_cpu, without_cones};
 use crate::key::{Counts, Fault, Key, Number, Triple, Word};
@@ -157,13 +157,27 @@ impl HeightfieldShape {
         }
         match Named::read(&self.source.field) {
             Some(Err(why)) => return Err(Fault::new("scene.field", why)),
-            Some(Ok(_)) => {}
+            // Heights by name are made when they are needed, and never fail.
+            Some(Ok(named)) => self.check_tiles(named.size)?,
             None => drop(self.relief()?),
         }
         if self.tracing.map != "auto" && self.tracing.generator().is_none() {
             let made = self.cones(&*self.relief()?, &mut on_cpu);
             if let Err(PrepareError::Fault(fault)) = made {
                 return Err(fault);
+            }
+        }
+        Ok(())
+    }
+
+    /// That so many tiles of heights of a size are not too many cells, which
+    /// [`Relief::new`] says of heights that are there.
+    fn check_tiles(&self, samples: [u32; 2]) -> Result<(), Fault> {
+        let cells = cells(samples, self.source.wrap.axes(), self.patches);
+        for axis in 0..2 {
+            let (cells, tiles) = (cells[axis], self.tiles[axis]);
+            if u64::from(cells) * u64::from(tiles) > u64::from(MOST_CELLS) {
+                return Err(of_tiles(&ReliefError::Tiles { axis, cells, tiles }));
             }
         }
         Ok(())
