@@ -4,6 +4,7 @@
 use std::fs;
 
 use conemarch::heightfield::conemap::MapKind;
+use conemarch::heightfield::field::Field;
 use conemarch::heightfield::generate::cpu;
 use conemarch::heightfield::generate::generator::{Generator, Options};
 use conemarch::heightfield::heights::Patches;
@@ -75,6 +76,9 @@ fn help_lists_verbs_generators_and_layouts() {
         "--invert",
         "[default: exact]",
     ] {
+        assert!(help.contains(word), "{word}: {help}");
+    }
+    for word in Field::ALL.map(Field::name) {
         assert!(help.contains(word), "{word}: {help}");
     }
     folder.fails(&["conemap"], 2, &["a command is missing"]);
@@ -418,6 +422,44 @@ fn ratios_that_nothing_tells_the_heights_of_are_told_of() {
     assert_eq!(notes(&folder.done(&dummer)), [""; 0]);
     folder.done(&make("fbm:4x4", &["--generator", "quad", "-o", "ours.png"]));
     assert_eq!(notes(&folder.done(&inspect("ours.png", &[]))), [""; 0]);
+}
+
+#[test]
+fn options_without_effect_are_wrong_usage() {
+    let folder = Folder::new();
+    folder.done(&make("sine:4x4", &["-o", "m.png"]));
+    folder.done(&make("sine:4x4", &["-o", "m.exr"]));
+    for file in ["m.png", "m.exr"] {
+        let from = [
+            "conemap", "convert", file, "-o", "a.exr", "--from", "relief",
+        ];
+        let words = [file, "--from", "leave it out"];
+        folder.fails(&from, 2, &words);
+        folder.fails(&inspect(file, &["--from", "dummer"]), 2, &words);
+        for option in [
+            &["--wrap", "x"][..],
+            &["--invert"],
+            &["--normalize"],
+            &["--size", "4x4"],
+        ] {
+            let words = [file, option[0], "--heights"];
+            folder.fails(&inspect(file, option), 2, &words);
+        }
+    }
+    let quad = png([4, 4], ColorType::Rgba, BitDepth::Eight, &[9; 4 * 16]);
+    folder.write("theirs.png", quad);
+    let theirs = |more| [&inspect("theirs.png", &["--from", "dummer"])[..], more].concat();
+    folder.done(&theirs(&["--wrap", "x"]));
+    folder.fails(&theirs(&["--invert"]), 2, &["--invert", "--heights"]);
+    for layout in ["dummer", "pair"] {
+        let args = ["--layout", layout, "--depth", "3", "-o", "a.png"];
+        let words = ["--depth", "relief", layout];
+        folder.fails(&make("sine:4x4", &args), 2, &words);
+    }
+    let words = ["EXR", "--depth"];
+    folder.fails(&make("sine:4x4", &["--depth", "3"]), 2, &words);
+    let convert = ["conemap", "convert", "m.exr", "-o", "a.png", "--depth", "3"];
+    folder.fails(&convert, 2, &["--depth", "relief", "dummer"]);
 }
 
 #[test]
