@@ -282,6 +282,15 @@ impl Plan {
         shape.generators().into_iter().filter_map(one).collect()
     }
 
+    /// What is to be told of the files that it names: what was left out of them, and what
+    /// is taken on trust.
+    pub fn notes(&self) -> Vec<String> {
+        match &self.subject {
+            Subject::Heightfield(shape) => shape.notes(),
+            _ => Vec::new(),
+        }
+    }
+
     /// Numbers that decide the picture beside the plan's text: those of the files that it
     /// names.
     pub fn contents(&self) -> Vec<u8> {

@@ -4,6 +4,7 @@
 use std::fs;
 
 use conemarch::heightfield::conemap::MapKind;
+use conemarch::heightfield::field::Field;
 use conemarch::heightfield::generate::cpu;
 use conemarch::heightfield::generate::generator::{Generator, Options};
 use conemarch::heightfield::heights::Patches;
@@ -75,6 +76,9 @@ fn help_lists_verbs_generators_and_layouts() {
         "--invert",
         "[default: exact]",
     ] {
+        assert!(help.contains(word), "{word}: {help}");
+    }
+    for word in Field::ALL.map(Field::name) {
         assert!(help.contains(word), "{word}: {help}");
     }
     folder.fails(&["conemap"], 2, &["a command is missing"]);
@@ -291,6 +295,171 @@ fn a_map_of_other_heights_is_refused() {
         2,
         &["no cone map"],
     );
+}
+
+/// A small render on the CPU of a preset with some values set.
+fn render<'a>(sets: &[&'a str]) -> Vec<&'a str> {
+    let mut args = vec!["render", "terrain", "--size", "12x9", "--device", "cpu"];
+    args.extend(sets.iter().flat_map(|set| ["--set", set]));
+    args
+}
+
+/// The notes that a command said.
+fn notes(output: &std::process::Output) -> Vec<String> {
+    let said = said(output);
+    let notes = said.lines().filter(|l| l.starts_with("note: "));
+    notes.map(str::to_string).collect()
+}
+
+#[test]
+fn a_map_serves_as_heights_wherever_heights_are_asked_for() {
+    let folder = Folder::new();
+    folder.write("rock.png", slope());
+    let relaxed = ["--generator", "relaxed-exact", "-o", "rel.png"];
+    folder.done(&make("rock.png", &relaxed));
+    let held = read(&folder, "rel.png").heights.expect("heights");
+    let output = folder.done(&make("rel.png", &["-o", "again.exr"]));
+    assert_eq!(read(&folder, "again.exr").heights, Some(held));
+    let [note] = &notes(&output)[..] else {
+        panic!("one note: {}", said(&output));
+    };
+    assert!(note.contains("rel.png is a cone map") && note.contains("alpha"));
+    // The same heights as a grey picture are the same block.
+    let held = read(&folder, "rel.png").heights.expect("heights");
+    let grey: Vec<u8> = held.iter().map(|z| (z * 255.0).round() as u8).collect();
+    let grey = png([16, 12], ColorType::Grayscale, BitDepth::Eight, &grey);
+    folder.write("grey.png", grey);
+    let depth = |field, picture| {
+        let more = ["--layer", "depth", "-o", picture];
+        let output = folder.done(&[&render(&[field])[..], &more].concat());
+        let bytes = folder.bytes(picture);
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
+            .read_info()
+            .expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+        reader.next_frame(&mut pixels).expect("pixels");
+        (pixels, notes(&output))
+    };
+    let (by_map, told) = depth("scene.field=rel.png", "map.png");
+    let (by_grey, silent) = depth("scene.field=grey.png", "of-grey.png");
+    assert_eq!(by_map, by_grey);
+    assert_eq!((told, silent), (vec![note.clone()], vec![]));
+    let red = png([2, 1], ColorType::Rgb, BitDepth::Eight, &[9, 8, 7, 6, 5, 4]);
+    folder.write("red.png", red);
+    let (_, told) = depth("scene.field=red.png", "of-red.png");
+    let red = "note: red.png has colours: red is taken as the height";
+    assert_eq!(told, [red]);
+    folder.done(&make(
+        "rock.png",
+        &["--generator", "quad", "-o", "quad.png"],
+    ));
+    folder.fails(&make("quad.png", &[]), 1, &["quad.png", "no heights"]);
+    let words = ["scene.field=quad.png", "holds no heights"];
+    folder.fails(&render(&["scene.field=quad.png"]), 2, &words);
+}
+
+#[test]
+fn a_map_is_traced_over_the_heights_in_its_own_file() {
+    let folder = Folder::new();
+    folder.write("rock.png", slope());
+    let with = |layout, picture| {
+        let map = ["--layout", layout, "--bits", "8", "-o", "m.png"];
+        folder.done(&make("rock.png", &map));
+        let output = folder.done(&inspect("m.png", &["--heights", "m.png"]));
+        assert!(said(&output).contains("m.png belongs to m.png"));
+        let sets = [
+            "scene.field=m.png",
+            "scene.map=m.png",
+            "scene.tracer=csm-exact",
+        ];
+        folder.done(&[&render(&sets)[..], &["-o", picture]].concat());
+        // Its numbers as heights turned over are others.
+        let turned = [&render(&sets)[..], &["--set", "scene.invert=true"]].concat();
+        folder.fails(&turned, 2, &["m.png", "other heights"]);
+    };
+    for (layout, picture) in [("dummer", "a.png"), ("pair", "b.png"), ("relief", "c.png")] {
+        with(layout, picture);
+    }
+}
+
+#[test]
+fn ratios_that_nothing_tells_the_heights_of_are_told_of() {
+    let folder = Folder::new();
+    let quad = png([4, 4], ColorType::Rgba, BitDepth::Eight, &[9; 4 * 16]);
+    folder.write("theirs.png", quad);
+    let from = ["conemap", "convert", "theirs.png", "--from", "quad"];
+    let told = |output, name: &str| {
+        let notes = notes(&output);
+        assert_eq!(notes.len(), 1, "{notes:?}");
+        let start = format!("note: {name} does not tell what heights it was made for");
+        assert!(notes[0].starts_with(&start), "{notes:?}");
+        said(&output)
+    };
+    let output = folder.done(&[&from[..], &["-o", "q.exr"]].concat());
+    told(output, "theirs.png");
+    let output = folder.done(&inspect("theirs.png", &["--from", "quad"]));
+    told(output, "theirs.png");
+    let output = folder.done(&inspect("q.exr", &["--heights", "fbm:4x4"]));
+    let said = told(output, "q.exr");
+    assert!(said.contains("q.exr may belong to fbm:4x4"), "{said}");
+    let sets = [
+        "scene.field=fbm:4x4",
+        "scene.map=q.exr",
+        "scene.tracer=quad",
+    ];
+    told(folder.done(&render(&sets)), "q.exr");
+    folder.fails(
+        &render(&["scene.field=fbm:5x4", sets[1], sets[2]]),
+        2,
+        &["4 x 4", "5 x 4"],
+    );
+    // Heights in a file tell enough, and a label all.
+    folder.write(
+        "dummer.png",
+        png([4, 4], ColorType::Rgba, BitDepth::Eight, &[9; 4 * 16]),
+    );
+    let dummer = inspect("dummer.png", &["--from", "dummer"]);
+    assert_eq!(notes(&folder.done(&dummer)), [""; 0]);
+    folder.done(&make("fbm:4x4", &["--generator", "quad", "-o", "ours.png"]));
+    assert_eq!(notes(&folder.done(&inspect("ours.png", &[]))), [""; 0]);
+}
+
+#[test]
+fn options_without_effect_are_wrong_usage() {
+    let folder = Folder::new();
+    folder.done(&make("sine:4x4", &["-o", "m.png"]));
+    folder.done(&make("sine:4x4", &["-o", "m.exr"]));
+    for file in ["m.png", "m.exr"] {
+        let from = [
+            "conemap", "convert", file, "-o", "a.exr", "--from", "relief",
+        ];
+        let words = [file, "--from", "leave it out"];
+        folder.fails(&from, 2, &words);
+        folder.fails(&inspect(file, &["--from", "dummer"]), 2, &words);
+        for option in [
+            &["--wrap", "x"][..],
+            &["--invert"],
+            &["--normalize"],
+            &["--size", "4x4"],
+        ] {
+            let words = [file, option[0], "--heights"];
+            folder.fails(&inspect(file, option), 2, &words);
+        }
+    }
+    let quad = png([4, 4], ColorType::Rgba, BitDepth::Eight, &[9; 4 * 16]);
+    folder.write("theirs.png", quad);
+    let theirs = |more| [&inspect("theirs.png", &["--from", "dummer"])[..], more].concat();
+    folder.done(&theirs(&["--wrap", "x"]));
+    folder.fails(&theirs(&["--invert"]), 2, &["--invert", "--heights"]);
+    for layout in ["dummer", "pair"] {
+        let args = ["--layout", layout, "--depth", "3", "-o", "a.png"];
+        let words = ["--depth", "relief", layout];
+        folder.fails(&make("sine:4x4", &args), 2, &words);
+    }
+    let words = ["EXR", "--depth"];
+    folder.fails(&make("sine:4x4", &["--depth", "3"]), 2, &words);
+    let convert = ["conemap", "convert", "m.exr", "-o", "a.png", "--depth", "3"];
+    folder.fails(&convert, 2, &["--depth", "relief", "dummer"]);
 }
 
 #[test]

@@ -1,7 +1,11 @@
 //! Height maps from files: every format, and a sentence for everything that is wrong.
 
 use conemarch::heightfield::field::Field;
+use conemarch::heightfield::generate::cpu;
+use conemarch::heightfield::generate::generator::{Generator, Options};
+use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::load::{LoadOptions, Loaded, load};
+use conemarch::heightfield::mapfile::{Bits, Form, Layout, MapFile, decode_bytes, encode};
 use exr::prelude::FlatSamples;
 use png::{BitDepth, ColorType};
 use tiff::encoder::colortype;
@@ -126,6 +130,91 @@ fn an_exr_has_its_heights_in_the_channel_that_says_so() {
         exr([2, 1], vec![("U", one(0.5)), ("V", one(0.5))]),
     );
     refused(&folder, "uv.exr", &["channels U, V", "rename"]);
+}
+
+/// A generator's map of some heights.
+fn map_of(heights: &Heights, generator: Generator, patches: Patches) -> MapFile {
+    let options = Options::default();
+    let map = cpu::generate(generator, heights, patches, &options, &mut |_| true);
+    MapFile::new(map.expect("a map"), heights, patches, generator.name())
+}
+
+#[test]
+fn a_cone_map_has_its_heights_where_its_layout_has_them() {
+    let folder = Folder::new();
+    let heights = Field::Fbm.heights([9, 7], 5, 2.6);
+    let heights = Heights::new([9, 7], [false; 2], heights).expect("heights");
+    let flat = Patches::Bilinear;
+    for (generator, layout, name, words) in [
+        (Generator::Exact, Layout::Dummer, "a.png", "from red"),
+        (Generator::Exact, Layout::Pair, "a.png", "from grey"),
+        (Generator::Exact, Layout::Relief, "a.png", "from alpha"),
+        (Generator::RelaxedExact, Layout::Relief, "a.png", "depths"),
+        (
+            Generator::Exact,
+            Layout::Full,
+            "a.exr",
+            "the channel height",
+        ),
+        (Generator::Quad, Layout::Full, "a.exr", "the channel height"),
+    ] {
+        for bits in [Bits::Eight, Bits::Sixteen] {
+            let form = Form {
+                bits,
+                ..Form::new(layout)
+            };
+            let bytes = encode(&map_of(&heights, generator, flat), &form).expect("a file");
+            let held = decode_bytes(&bytes).expect("a map").heights;
+            folder.write(name, &bytes);
+            assert_eq!(values(&folder, name), held.expect("heights"), "{form:?}");
+            let note = note(&folder, name);
+            assert!(note.contains("cone map") && note.contains(words), "{note}");
+        }
+        // They are heights like others: they can be turned over and may wrap.
+        let options = LoadOptions {
+            wrap: [true, false],
+            invert: true,
+            ..LoadOptions::default()
+        };
+        let turned = load_as(&folder, name, &options).expect("heights").heights;
+        assert_eq!(turned.wrap(), [true, false]);
+        assert_eq!(turned.data()[3], 1.0 - values(&folder, name)[3]);
+        let sized = LoadOptions {
+            size: Some([9, 7]),
+            ..LoadOptions::default()
+        };
+        let why = load_as(&folder, name, &sized).expect_err("a size of its own");
+        assert!(why.contains("--size"), "{why}");
+    }
+    // Boxes are as many as samples, and as high.
+    let boxes = map_of(&heights, Generator::Walk, Patches::Boxes);
+    let bytes = encode(&boxes, &Form::new(Layout::Full)).expect("a file");
+    folder.write("boxes.exr", bytes);
+    assert_eq!(values(&folder, "boxes.exr"), heights.data());
+}
+
+#[test]
+fn a_cone_map_without_heights_of_samples_is_refused() {
+    let folder = Folder::new();
+    let tile = Field::Fbm.heights([8, 8], 5, 2.6);
+    let tile = Heights::new([8, 8], [true; 2], tile).expect("heights");
+    let of = |generator| map_of(&tile, generator, Patches::Bilinear);
+    let quad = encode(&of(Generator::Quad), &Form::new(Layout::Quad)).expect("a file");
+    folder.write("quad.png", &quad);
+    let words = ["holds no heights", "that it was made from"];
+    refused(&folder, "quad.png", &words);
+    let quad = decode_bytes(&quad).expect("a map");
+    let quad = encode(&quad, &Form::new(Layout::Full)).expect("a file");
+    folder.write("quad.exr", quad);
+    refused(&folder, "quad.exr", &words);
+    for generator in [Generator::Walk, Generator::WalkRelaxed] {
+        for (layout, name) in [(Layout::Pair, "walk.png"), (Layout::Full, "walk.exr")] {
+            let bytes = encode(&of(generator), &Form::new(layout)).expect("a file");
+            folder.write(name, bytes);
+            let words = [generator.name(), "of cells", "that it was made from"];
+            refused(&folder, name, &words);
+        }
+    }
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Cone maps through files: every rounding to the safe side, labels that keep a map from
 //! what it was not made for, and a sentence for everything that is wrong.
 
+use std::path::Path;
+
 use conemarch::heightfield::conemap::MapKind;
 use conemarch::heightfield::field::Field;
 use conemarch::heightfield::heights::{Heights, Patches};
@@ -296,6 +298,80 @@ fn a_map_is_refused_for_what_it_was_not_made_for() {
         why.contains("bilinear patches") && why.contains("boxes"),
         "{why}"
     );
+}
+
+#[test]
+fn a_map_goes_with_the_heights_in_its_own_file() {
+    let fits = |file: &MapFile, heights: &Heights| {
+        let wanted = Wanted {
+            who: "this test",
+            kinds: &[],
+            heights,
+            patches: Patches::Bilinear,
+        };
+        file.fit(Path::new("a.png"), &wanted).is_ok()
+    };
+    let heights = field([12, 10], [true, false]);
+    for (kind, layout) in [
+        (MapKind::Samples, Layout::Dummer),
+        (MapKind::Samples, Layout::Pair),
+        (MapKind::Relaxed, Layout::Relief),
+    ] {
+        let form = Form {
+            bits: Bits::Eight,
+            ..Form::new(layout)
+        };
+        let bytes = encode(&made(&heights, kind), &form).expect("a file");
+        let read = decode_bytes(&bytes).expect("a map");
+        let own = read.heights.clone().expect("heights");
+        assert_ne!(own, heights.data(), "8 bits move them");
+        let of = |wrap, z: &[f32]| Heights::new([12, 10], wrap, z.to_vec()).expect("heights");
+        assert!(fits(&read, &heights), "the true ones");
+        assert!(fits(&read, &of([true, false], &own)), "its own");
+        // One of them a little higher, or going round elsewhere, they are others.
+        assert!(!fits(&read, &of([false; 2], &own)));
+        let mut touched = own;
+        let low = touched.iter_mut().find(|z| **z < 1.0).expect("a height");
+        *low = low.next_up();
+        assert!(!fits(&read, &of([true, false], &touched)));
+    }
+    // A walk's file has the heights of cells, which are no samples, be they as many.
+    let heights = field([8, 8], [true; 2]);
+    let walk = encode(&made(&heights, MapKind::Walk), &Form::new(Layout::Full)).expect("a file");
+    let walk = decode_bytes(&walk).expect("a map");
+    let cells = walk.heights.clone().expect("heights");
+    let cells = Heights::new([8, 8], [true; 2], cells).expect("heights");
+    assert!(fits(&walk, &heights) && !fits(&walk, &cells));
+}
+
+#[test]
+fn many_trips_cost_no_more_than_the_first() {
+    let heights = field([13, 9], [false, true]);
+    for kind in KINDS {
+        let all = forms(kind);
+        for first in all.iter().filter(|f| f.layout != Layout::Full) {
+            // Every form that holds what the first one does: floats, and at least as many
+            // steps that are roots or are not.
+            let most = first.bits.steps().most;
+            let holds = |f: &&Form| {
+                let alike = f.root == first.root && f.bits.steps().most >= most;
+                f.layout == Layout::Full || alike
+            };
+            let stops: Vec<&Form> = all.iter().filter(holds).collect();
+            assert!(stops.len() > 2);
+            let through = |file: &MapFile, form: &Form| {
+                let bytes = encode(file, form).expect("a file");
+                decode_bytes(&bytes).expect("a map")
+            };
+            let start = through(&made(&heights, kind), first);
+            let mut now = start.clone();
+            for form in std::iter::repeat_n(&stops, 10).flatten() {
+                now = through(&now, form);
+                assert_eq!(now.map, start.map, "{first:?}, then {form:?}");
+                assert_eq!(now.heights, start.heights, "{first:?}, then {form:?}");
+            }
+        }
+    }
 }
 
 #[test]

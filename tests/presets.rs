@@ -364,10 +364,25 @@ fn heightfields_say_what_does_not_fit() {
             "map = \"none/there.exr\"",
             "p.toml:3: scene.map = \"none/there.exr\": none/there.exr: ",
         ),
+        (
+            "field = \"fbm:8192x8192\"\nwrap = \"xy\"\ntiles = [256, 256]",
+            "p.toml:5: scene.tiles = [256, 256]: 256 tiles of 8192 cells along axis 0: one tile or more, and 65536 cells at most",
+        ),
+        (
+            "field = \"fbm:4x1024\"\nwrap = \"y\"\ntiles = [1, 65]",
+            "p.toml:5: scene.tiles = [1, 65]: 65 tiles of 1024 cells along axis 1: ",
+        ),
     ] {
         let e = error(&of(rest));
         assert!(e.starts_with(says), "{e}\n  should begin with\n{says}");
     }
+    let most = of("field = \"fbm:8192x1024\"\nwrap = \"xy\"\ntiles = [8, 64]");
+    read(&most, "p.toml").expect("as many cells as there may be");
+    let tiled = of("field = \"fbm:1024x1024\"\nwrap = \"xy\"");
+    let set = Override::read("scene.tiles=[65, 64]").expect("a value");
+    let e = read_with(&tiled, "p.toml", &[set]).expect_err("too many");
+    let says = "--set scene.tiles=[65, 64]: 65 tiles of 1024 cells along axis 0: ";
+    assert!(e.is_usage() && e.to_string().starts_with(says), "{e}");
 }
 
 /// What an override's error says.
@@ -446,6 +461,52 @@ fn words_need_no_quotes_and_whole_numbers_are_floats() {
     assert_eq!(plan.march.mode.name(), "ray-relaxed");
     assert_eq!(plan.camera.fov, 30.0);
     assert_eq!(plan.title, "Two words, no quotes");
+}
+
+#[test]
+fn fields_and_paths_need_no_quotes() {
+    let text = "[scene]\nkind = \"heightfield\"\n";
+    // What becomes of a value, be it a plan or a sentence about a missing file.
+    let set = |value: &str| {
+        let set = Override::read(&format!("scene.field={value}"));
+        let plan = set.and_then(|set| read_with(text, "p.toml", &[set]));
+        plan.map_err(|e| e.to_string().replace('"', ""))
+    };
+    for word in [
+        "fbm",
+        "fbm:64x64,seed=3",
+        "ridges:12x7,power=1.5",
+        "d8.png",
+        "true.png",
+        "inf/nan.exr",
+        "./maps/rock-2_b.png",
+        "../a+b.exr",
+        "/tmp/x.raw",
+    ] {
+        assert_eq!(set(word), set(&format!("\"{word}\"")));
+    }
+    for word in [
+        "1979-05-27.png",
+        "-inf.png",
+        "a b.png",
+        "~/a.png",
+        "fbm:4x4;",
+    ] {
+        let why = set(word).expect_err(word);
+        assert!(why.contains("the value is not TOML"), "{why}");
+    }
+    // What is a value of its own stays one.
+    for value in ["inf", "nan", "true", "false", "-inf", "30"] {
+        let e = set_error(&[&format!("title={value}")]);
+        assert!(e.contains("must be a line of text"), "{e}");
+    }
+    for value in ["inf", "nan"] {
+        let e = set_error(&[&format!("camera.fov={value}")]);
+        assert!(e.contains("must be a number"), "{e}");
+    }
+    let set = Override::read("scene.julia=true").expect("a value");
+    let plan = load("mandelbox", &[set]).expect("a switch").plan;
+    assert_eq!(get(&plan, "scene", "julia"), Value::Boolean(true));
 }
 
 #[test]

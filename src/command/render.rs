@@ -45,8 +45,9 @@ pub struct Render {
 
     /// Set one value of the preset; may be given again
     ///
-    /// Values are TOML; a bare word is a string. Another scene.kind or scene.formula
-    /// drops the preset's other values of the scene.
+    /// Values are TOML; words, fields like fbm:64x64,seed=3 and paths like maps/d8.png need
+    /// no quotes. Another scene.kind or scene.formula drops the preset's other values of the
+    /// scene.
     #[arg(long, value_name = "SECTION.KEY=VALUE", allow_hyphen_values = true)]
     set: Vec<String>,
 
@@ -145,6 +146,9 @@ pub fn run(args: &Render) -> Result<()> {
     let per_pixel = bytes_per_pixel(format, args.device == Choice::Cpu);
     if let Some(why) = memory::lacking(plan.size, per_pixel, memory::available()) {
         anyhow::bail!(why);
+    }
+    for note in plan.notes() {
+        say(&format!("note: {note}"));
     }
     if args.explain {
         return explain(args, &plan, extras);

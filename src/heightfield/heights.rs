@@ -127,13 +127,7 @@ impl Heights {
     /// Cells along each axis. Between n samples that do not wrap there are n - 1
     /// bilinear patches, and one flat one where there is a single sample.
     pub fn cells(&self, patches: Patches) -> [u32; 2] {
-        [0, 1].map(|a| {
-            if patches == Patches::Boxes || self.wrap[a] {
-                self.size[a]
-            } else {
-                (self.size[a] - 1).max(1)
-            }
-        })
+        cells(self.size, self.wrap, patches)
     }
 
     /// The four corner heights of a bilinear cell: (0, 0), (1, 0), (0, 1), (1, 1). All
@@ -175,6 +169,17 @@ impl Heights {
         let high = c[2] + f.x * (c[3] - c[2]);
         low + f.y * (high - low)
     }
+}
+
+/// What [`Heights::cells`] gives for heights of a size and wrapping.
+pub fn cells(size: [u32; 2], wrap: [bool; 2], patches: Patches) -> [u32; 2] {
+    [0, 1].map(|a| {
+        if patches == Patches::Boxes || wrap[a] {
+            size[a]
+        } else {
+            (size[a] - 1).max(1)
+        }
+    })
 }
 
 /// One axis as distances see it.

@@ -14,6 +14,7 @@ pub mod placed;
 pub mod raster;
 pub mod relief;
 pub mod shape;
+pub mod source;
 pub mod survey;
 pub mod trace;
 pub mod tracing;

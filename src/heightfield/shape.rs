@@ -1,7 +1,6 @@
 //! A heightfield as a preset says it: heights, where they lie in the world, and how they are
 //! traced.
 
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bytemuck::cast_slice;
@@ -9,85 +8,17 @@ use glam::{DVec2, DVec3};
 
 use super::conemap::ConeMap;
 use super::generate::generator::Generator;
-use super::heights::Patches;
+use super::heights::{Patches, cells};
 use super::kept::Kept;
-use super::load::{LoadOptions, Loaded, Named, load};
+use super::load::Named;
 use super::paint::{PAINTS, Paint};
 use super::placed::Placed;
-use super::relief::Relief;
+use super::relief::{MOST_CELLS, Relief, ReliefError};
 use super::trace::AnyTracer;
-use super::tracing::{Make, PrepareError, Tracing, on_cpu, without_cones};
-use crate::key::{Counts, Fault, Key, Number, Switch, Text, Triple, Word};
+use super::tracing::{Make, PrepareError, Supply, Tracing, on_cpu, without_cones};
+use crate::key::{Counts, Fault, Key, Number, Triple, Word};
 
-/// Which axes of a height map come round to their start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Wrap {
-    /// Neither: the map ends at its borders.
-    #[default]
-    None,
-    /// x alone.
-    X,
-    /// y alone.
-    Y,
-    /// Both.
-    Both,
-}
-
-impl Wrap {
-    /// The words of presets and the command line.
-    pub const WORDS: &[(&str, Self)] = &[
-        ("none", Self::None),
-        ("x", Self::X),
-        ("y", Self::Y),
-        ("xy", Self::Both),
-    ];
-
-    /// For x and y.
-    pub fn axes(self) -> [bool; 2] {
-        match self {
-            Self::None => [false, false],
-            Self::X => [true, false],
-            Self::Y => [false, true],
-            Self::Both => [true, true],
-        }
-    }
-}
-
-/// What heights are made from.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Source {
-    /// A field in one word, or a file's path.
-    pub field: String,
-    /// The folder that a path is relative to.
-    pub folder: PathBuf,
-    /// Whether the numbers are depths.
-    pub invert: bool,
-    /// Whether the lowest becomes 0 and the highest 1.
-    pub normalize: bool,
-    /// Which axes wrap.
-    pub wrap: Wrap,
-}
-
-impl Source {
-    /// What [`load`] is asked for: the field's word, or the file's path.
-    pub fn argument(&self) -> String {
-        if Named::read(&self.field).is_some() {
-            return self.field.clone();
-        }
-        let path = self.folder.join(Path::new(&self.field));
-        path.to_string_lossy().into_owned()
-    }
-
-    fn load(&self) -> Result<Loaded, Fault> {
-        let options = LoadOptions {
-            wrap: self.wrap.axes(),
-            invert: self.invert,
-            normalize: self.normalize,
-            size: None,
-        };
-        load(&self.argument(), &options).map_err(|e| Fault::new("scene.field", e.to_string()))
-    }
-}
+pub use super::source::{Source, Wrap};
 
 /// What a relief is made from.
 type ReliefKey = (Source, Patches, [u32; 2]);
@@ -117,21 +48,15 @@ pub struct HeightfieldShape {
     pub tracing: Tracing,
     /// Whose cones it is painted by; `None` by its height.
     pub paint: Option<Generator>,
-    reliefs: Kept<ReliefKey, Relief>,
-    maps: Kept<MapKey, Option<Arc<ConeMap>>>,
+    reliefs: Kept<ReliefKey, Ground>,
+    maps: Kept<MapKey, Option<Supply>>,
     paints: Kept<PaintKey, Paint>,
 }
 
 impl Default for HeightfieldShape {
     fn default() -> Self {
         Self {
-            source: Source {
-                field: "fbm".into(),
-                folder: PathBuf::new(),
-                invert: false,
-                normalize: false,
-                wrap: Wrap::None,
-            },
+            source: Source::default(),
             patches: Patches::Bilinear,
             tiles: [1, 1],
             width: 12.0,
@@ -145,6 +70,13 @@ impl Default for HeightfieldShape {
             paints: Kept::default(),
         }
     }
+}
+
+/// A relief with what is to be told of the file that its heights are from.
+#[derive(Clone, Debug)]
+struct Ground {
+    relief: Arc<Relief>,
+    note: Option<String>,
 }
 
 /// A heightfield made ready.
@@ -165,28 +97,8 @@ pub struct Ready {
 impl HeightfieldShape {
     /// The keys that a heightfield reads in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
-        let source = &mut self.source;
-        let mut keys = vec![
-            Key::new(
-                "field",
-                Text(&mut source.field),
-                "a field like fbm:512x512,seed=7,power=2.6, or a file of heights",
-            ),
-            Key::new(
-                "invert",
-                Switch(&mut source.invert),
-                "whether the numbers are depths",
-            ),
-            Key::new(
-                "normalize",
-                Switch(&mut source.normalize),
-                "whether the lowest becomes 0 and the highest 1",
-            ),
-            Key::new(
-                "wrap",
-                Word(&mut source.wrap, Wrap::WORDS),
-                "axes that come round to their start",
-            ),
+        let mut keys = self.source.keys();
+        keys.extend([
             Key::new(
                 "surface",
                 Word(
@@ -220,12 +132,12 @@ impl HeightfieldShape {
                 Triple(&mut self.turn, -360.0, 360.0),
                 "degrees that the block is turned by about x, then y, then z",
             ),
-        ];
-        keys.push(Key::new(
-            "paint",
-            Word(&mut self.paint, PAINTS),
-            "what picks the hue: the height, or how wide the cones of a generator's map are",
-        ));
+            Key::new(
+                "paint",
+                Word(&mut self.paint, PAINTS),
+                "what picks the hue: the height, or how wide the cones of a generator's map are",
+            ),
+        ]);
         keys.extend(self.tracing.keys());
         keys
     }
@@ -245,7 +157,8 @@ impl HeightfieldShape {
         }
         match Named::read(&self.source.field) {
             Some(Err(why)) => return Err(Fault::new("scene.field", why)),
-            Some(Ok(_)) => {}
+            // Heights by name are made when they are needed, and never fail.
+            Some(Ok(named)) => self.check_tiles(named.size)?,
             None => drop(self.relief()?),
         }
         if self.tracing.map != "auto" && self.tracing.generator().is_none() {
@@ -255,6 +168,38 @@ impl HeightfieldShape {
             }
         }
         Ok(())
+    }
+
+    /// That so many tiles of heights of a size are not too many cells, which
+    /// [`Relief::new`] says of heights that are there.
+    fn check_tiles(&self, samples: [u32; 2]) -> Result<(), Fault> {
+        let cells = cells(samples, self.source.wrap.axes(), self.patches);
+        for axis in 0..2 {
+            let (cells, tiles) = (cells[axis], self.tiles[axis]);
+            if u64::from(cells) * u64::from(tiles) > u64::from(MOST_CELLS) {
+                return Err(of_tiles(&ReliefError::Tiles { axis, cells, tiles }));
+            }
+        }
+        Ok(())
+    }
+
+    /// What is to be told of the files that it names: what was left out of them, and what
+    /// is taken on trust. Each with the file's name.
+    pub fn notes(&self) -> Vec<String> {
+        let from_file = Named::read(&self.source.field).is_none();
+        let traced = self.tracing.map != "auto" && self.tracing.generator().is_none();
+        if !from_file && !traced {
+            return Vec::new();
+        }
+        // What fails here fails again, with a sentence, where it is needed.
+        let Ok(ground) = self.ground() else {
+            return Vec::new();
+        };
+        let mut notes = Vec::from_iter(ground.note.clone());
+        if traced && let Ok(supply) = self.cones(&ground.relief, &mut on_cpu) {
+            notes.extend(supply.iter().filter_map(|s| s.note.clone()));
+        }
+        notes
     }
 
     /// Makes what takes long, which is kept until it changes.
@@ -276,7 +221,8 @@ impl HeightfieldShape {
         let relief = self.relief()?;
         let cones = self.cones(&relief, &mut on_cpu)?;
         let paint = self.painted(&relief, &mut on_cpu)?;
-        self.assembled(relief, (*cones).clone(), paint, grain)
+        let cones = cones.as_ref().as_ref().map(|supply| supply.map.clone());
+        self.assembled(relief, cones, paint, grain)
     }
 
     /// What [`HeightfieldShape::ready`] gives, with maps of no cones in place of those
@@ -294,7 +240,7 @@ impl HeightfieldShape {
             Ok(Arc::new(Paint::new(&map)))
         };
         let paint = self.paint.map(paint).transpose()?;
-        self.assembled(relief, cones.map(Arc::new), paint, grain)
+        self.assembled(relief, cones.map(|supply| supply.map), paint, grain)
     }
 
     fn assembled(
@@ -367,25 +313,26 @@ impl HeightfieldShape {
     }
 
     fn relief(&self) -> Result<Arc<Relief>, Fault> {
+        Ok(self.ground()?.relief.clone())
+    }
+
+    fn ground(&self) -> Result<Arc<Ground>, Fault> {
         self.reliefs
             .get(self.relief_key(), |(source, patches, tiles)| {
-                let heights = source.load()?.heights;
-                let made = Relief::new(heights, *patches, *tiles);
-                made.map_err(|e| Fault::new("scene.tiles", e.to_string()))
+                let loaded = source.load()?;
+                let made = Relief::new(loaded.heights, *patches, *tiles);
+                Ok(Ground {
+                    relief: Arc::new(made.map_err(|e| of_tiles(&e))?),
+                    note: loaded.note,
+                })
             })
     }
 
-    fn cones(
-        &self,
-        relief: &Relief,
-        make: Make<'_>,
-    ) -> Result<Arc<Option<Arc<ConeMap>>>, PrepareError> {
+    fn cones(&self, relief: &Relief, make: Make<'_>) -> Result<Arc<Option<Supply>>, PrepareError> {
         let t = &self.tracing;
         let key = (self.relief_key(), t.tracer, t.map.clone(), t.offset);
-        self.maps.get(key, |_| {
-            let made = t.cones(relief, &self.source.folder, make)?;
-            Ok(made.map(Arc::new))
-        })
+        self.maps
+            .get(key, |_| t.cones(relief, &self.source.folder, make))
     }
 
     fn painted(&self, relief: &Relief, make: Make<'_>) -> Result<Option<Arc<Paint>>, PrepareError> {
@@ -395,12 +342,17 @@ impl HeightfieldShape {
         let key = (self.relief_key(), by, self.tracing.offset);
         let made = self.paints.get(key, |_| -> Result<_, PrepareError> {
             if self.tracing.generator() == Some(by)
-                && let Some(map) = &*self.cones(relief, make)?
+                && let Some(supply) = &*self.cones(relief, make)?
             {
-                return Ok(Paint::new(map));
+                return Ok(Paint::new(&supply.map));
             }
             Ok(Paint::new(&self.tracing.made(by, relief, make)?))
         });
         made.map(Some)
     }
+}
+
+/// A fault of tiles.
+fn of_tiles(e: &ReliefError) -> Fault {
+    Fault::new("scene.tiles", e.to_string())
 }

@@ -86,6 +86,24 @@ impl From<Fault> for PrepareError {
     }
 }
 
+/// Cones to trace by.
+#[derive(Clone, Debug)]
+pub struct Supply {
+    /// The map.
+    pub map: Arc<ConeMap>,
+    /// What is taken on trust of a file; with the file's name.
+    pub note: Option<String>,
+}
+
+impl From<ConeMap> for Supply {
+    fn from(map: ConeMap) -> Self {
+        Self {
+            map: Arc::new(map),
+            note: None,
+        }
+    }
+}
+
 /// The tracers' names.
 pub const TRACERS: &[(&str, &str)] = &[
     ("walk", "walk"),
@@ -272,13 +290,13 @@ impl Tracing {
         relief: &Relief,
         folder: &Path,
         make: Make<'_>,
-    ) -> Result<Option<ConeMap>, PrepareError> {
+    ) -> Result<Option<Supply>, PrepareError> {
         if self.kinds().is_empty() {
             return Ok(None);
         }
         let (heights, patches) = (relief.heights(), relief.patches());
         if let Some(generator) = self.generator() {
-            return Ok(Some(self.made(generator, relief, make)?));
+            return Ok(Some(self.made(generator, relief, make)?.into()));
         }
         let path = folder.join(&self.map);
         let file = read_map(&path).map_err(|e| fault(e.to_string()))?;
@@ -289,7 +307,11 @@ impl Tracing {
             patches,
         };
         file.fit(&path, &wanted).map_err(|e| fault(e.to_string()))?;
-        Ok(Some(file.map))
+        let note = file.unknown();
+        Ok(Some(Supply {
+            note: note.map(|note| format!("{} {note}", path.display())),
+            map: Arc::new(file.map),
+        }))
     }
 
     /// The cones of a generator.

@@ -56,7 +56,8 @@ pub struct Override {
 }
 
 impl Override {
-    /// Reads `section.key=value`. Values are TOML; a bare word is a string.
+    /// Reads `section.key=value`. Values are TOML; what is none and reads like a word, as
+    /// `fbm:64x64,seed=3` or `maps/d8.png` do, is a string.
     ///
     /// # Errors
     /// The text has another form. Whether the key exists and takes the value is found
@@ -103,12 +104,11 @@ fn given(text: &str) -> String {
     format!("--set {}", brief(text))
 }
 
-/// A word that may be said without quotes.
+/// A word that may be said without quotes, be it a field with its numbers or a path.
 fn bare(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_alphabetic())
-        && text
-            .chars()
-            .all(|c| c.is_alphanumeric() || c == '-' || c == '_')
+    let first = |c: char| c.is_alphabetic() || matches!(c, '.' | '/');
+    let rest = |c: char| c.is_alphanumeric() || "_.:,=/+-".contains(c);
+    text.starts_with(first) && text.chars().all(rest)
 }
 
 /// A text short enough, and tame enough, to stand in a sentence.

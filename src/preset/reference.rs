@@ -19,9 +19,11 @@ line and what would do.
 
 `conemarch presets NAME` prints a built-in preset to start from, and
 `conemarch render PRESET --set section.key=value` changes single values, like
-`--set camera.fov=30`. Whole numbers serve where numbers are asked for. [method.md](method.md)
-explains shell, detail, cones and bounds, and [benchmarks.md](benchmarks.md) shows what the
-modes and the keys of `[march]` cost in time and in error.
+`--set camera.fov=30`; words, fields and paths need no quotes there, like
+`--set scene.field=fbm:64x64,seed=3`. Whole numbers serve where numbers are asked for.
+[method.md](method.md) explains shell, detail, cones and bounds, and
+[benchmarks.md](benchmarks.md) shows what the modes and the keys of `[march]` cost in time and
+in error.
 
 ";
 

@@ -13,7 +13,9 @@ use crate::command::size;
 use crate::heightfield::conemap::MapKind;
 use crate::heightfield::heights::MOST_SAMPLES;
 use crate::heightfield::load::{LoadError, LoadOptions, Loaded, load};
-use crate::heightfield::mapfile::{Bits, Foreign, Form, Layout, MapError, MapFile, decode};
+use crate::heightfield::mapfile::{
+    Bits, Foreign, Form, Layout, MapError, MapFile, decode, has_map,
+};
 
 /// How heights are read.
 #[derive(Args, Clone, Copy, Debug)]
@@ -50,6 +52,18 @@ impl Reading {
         }
         Ok(loaded)
     }
+
+    /// An option that was given and that only heights have a use for; `wraps` if something
+    /// else has one for `--wrap`.
+    pub fn given(&self, wraps: bool) -> Option<&'static str> {
+        let given = [
+            (self.wrap != [false; 2] && !wraps, "--wrap"),
+            (self.invert, "--invert"),
+            (self.normalize, "--normalize"),
+            (self.size.is_some(), "--size"),
+        ];
+        given.iter().find(|(given, _)| *given).map(|(_, o)| *o)
+    }
 }
 
 fn samples(text: &str) -> Result<[u32; 2], String> {
@@ -85,8 +99,15 @@ pub struct Strange {
 }
 
 impl Strange {
-    /// Reads a map. `wrap` is that of another program's.
+    /// Reads a map, and says what is unknown of it. `wrap` is that of another program's.
     pub fn decode(&self, path: &Path, wrap: [bool; 2]) -> Result<MapFile> {
+        // A file that cannot be read is told of below.
+        if self.is_said() && has_map(path).unwrap_or(false) {
+            return Err(usage(format!(
+                "{} says itself what its cones are, and --from is for the maps of other programs; leave it out",
+                path.display()
+            )));
+        }
         let foreign = self.from.map(|layout| Foreign {
             layout,
             kind: match layout {
@@ -97,7 +118,11 @@ impl Strange {
             root: self.from_ratio.unwrap_or(Form::new(layout).root),
             wrap,
         });
-        decode(path, foreign.as_ref()).map_err(of_map)
+        let file = decode(path, foreign.as_ref()).map_err(of_map)?;
+        if let Some(why) = file.unknown() {
+            say(&format!("note: {} {why}", path.display()));
+        }
+        Ok(file)
     }
 
     /// Whether it was said what the file is.
@@ -121,9 +146,9 @@ pub struct Writing {
     #[arg(long, value_name = "HOW", value_parser = roots())]
     ratio: Option<bool>,
 
-    /// Height of 1 in texture widths, for the normals of relief
-    #[arg(long, value_name = "WIDTHS", default_value_t = 0.25, value_parser = depth)]
-    depth: f64,
+    /// Height of 1 in texture widths, for the normals of relief [default: 0.25]
+    #[arg(long, value_name = "WIDTHS", value_parser = depth)]
+    depth: Option<f64>,
 }
 
 impl Writing {
@@ -146,6 +171,7 @@ impl Writing {
                 (self.layout.is_some(), "--layout"),
                 (self.bits.is_some(), "--bits"),
                 (self.ratio.is_some(), "--ratio"),
+                (self.depth.is_some(), "--depth"),
             ];
             if let Some((_, option)) = given.iter().find(|(given, _)| *given) {
                 return Err(usage(format!(
@@ -160,12 +186,18 @@ impl Writing {
                 why: why.into(),
             }));
         }
+        if self.depth.is_some() && layout != Layout::Relief {
+            return Err(usage(format!(
+                "--depth is for the normals of relief, and the layout is {}; leave it out, or add --layout relief",
+                layout.name()
+            )));
+        }
         let usual = Form::new(layout);
         Ok(Form {
             layout,
             bits: self.bits.unwrap_or(usual.bits),
             root: self.ratio.unwrap_or(usual.root),
-            depth: self.depth,
+            depth: self.depth.unwrap_or(usual.depth),
         })
     }
 }

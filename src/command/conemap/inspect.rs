@@ -45,6 +45,13 @@ pub fn run(args: &Inspect) -> Result<()> {
     // Fields have no file; what is neither is told by the reader of heights.
     let is_map = args.strange.is_said() || has_map(path).unwrap_or(false);
     let canvas = if is_map {
+        let needless = args.reading.given(args.strange.is_said());
+        if let (None, Some(option)) = (&args.heights, needless) {
+            return Err(usage(format!(
+                "{option} says how heights are read, and `{}` is a cone map; leave it out, or name its heights with --heights",
+                args.file
+            )));
+        }
         let file = args.strange.decode(path, args.reading.wrap)?;
         if let Some(heights) = &args.heights {
             belongs(args, &file, path, heights)?;
@@ -93,6 +100,10 @@ fn belongs(args: &Inspect, file: &MapFile, path: &Path, heights: &str) -> Result
         patches: file.label.patches,
     };
     file.fit(path, &wanted).map_err(of_map)?;
-    say(&format!("{} belongs to {heights}", path.display()));
+    let verb = match file.unknown() {
+        Some(_) => "may belong",
+        None => "belongs",
+    };
+    say(&format!("{} {verb} to {heights}", path.display()));
     Ok(())
 }

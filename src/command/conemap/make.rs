@@ -26,8 +26,9 @@ pub struct Make {
     /// A height map (PNG, EXR, TIFF or .raw), or a field like fbm:512x512,seed=7,power=2.2
     ///
     /// Of several channels the first is the height. Numbers of floats must be 0 to 1, or
-    /// --normalize brings them there. Fields are fbm, ridges, spikes, checker, sine and
-    /// noise; size, seed and power may be left out.
+    /// --normalize brings them there. Of a cone map the heights in it count. Fields are fbm,
+    /// ridges, spikes, checker, sine, noise, stones and bricks; size, seed and power may be
+    /// left out.
     #[arg(value_name = "HEIGHTS", value_hint = ValueHint::FilePath)]
     heights: String,
 

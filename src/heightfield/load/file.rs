@@ -5,7 +5,8 @@
 //! cone step maps keep their heights. Alpha is no height and is left out. In an EXR a
 //! channel called `height` counts, else `Y`, `Z` or `R`, else the only one there is; of
 //! names with a dot the part before it counts for `height`, the one after it for the
-//! letters.
+//! letters. Cone maps of this program say what their channels are: the one that holds
+//! heights, or depths, counts. Maps that hold none, or those of cells alone, are refused.
 //!
 //! **Raw files** (.raw, .f32 or .r32) hold f32, little endian, row by row and nothing
 //! else. Their size is given, or stands in the name as in `heights-512x256.raw`.
@@ -14,6 +15,8 @@ use std::io::Read;
 use std::path::Path;
 
 use super::named::read_size;
+use crate::heightfield::heights::Patches;
+use crate::heightfield::mapfile::{Bits, Layout, MapError, has_map, is_walk, kind_word, read_map};
 use crate::heightfield::raster::open::{Format, Opened, open};
 use crate::heightfield::raster::{exr, png, tiff};
 
@@ -39,6 +42,9 @@ pub fn read(path: &Path, size: Option<[u32; 2]>) -> Result<Grid, String> {
     if size.is_some() && opened.format != Format::Other {
         return Err("says its own size; leave --size out, which is for raw files".into());
     }
+    if has_map(path).unwrap_or(false) {
+        return of_map(path);
+    }
     match opened.format {
         Format::Png => read_png(opened),
         Format::Exr => read_exr(&mut opened),
@@ -48,6 +54,46 @@ pub fn read(path: &Path, size: Option<[u32; 2]>) -> Result<Grid, String> {
         }
         Format::Other => read_raw(path, opened, size),
     }
+}
+
+/// The heights in a cone map of this program.
+fn of_map(path: &Path) -> Result<Grid, String> {
+    let file = read_map(path).map_err(MapError::into_why)?;
+    let would = "name the heights that it was made from";
+    let values = file
+        .heights
+        .ok_or_else(|| format!("is a cone map that holds no heights; {would}"))?;
+    if is_walk(file.map.kind) && file.label.patches != Patches::Boxes {
+        return Err(format!(
+            "is a cone map of the kind `{}`, whose heights are of cells, not of samples; {would}",
+            kind_word(file.map.kind)
+        ));
+    }
+    let layout = file.form.layout;
+    let bits = match file.form.bits {
+        Bits::Eight => 8,
+        Bits::Sixteen => 16,
+    };
+    let name = layout.name();
+    let (form, channel) = match layout {
+        Layout::Full => ("EXR, cone map".into(), "the channel height"),
+        _ => (
+            format!("PNG, cone map, layout {name}, {bits} bit"),
+            match layout {
+                Layout::Relief => "alpha, which holds depths",
+                Layout::Pair => "grey",
+                _ => "red",
+            },
+        ),
+    };
+    Ok(Grid {
+        size: file.map.size,
+        values,
+        form,
+        note: Some(format!(
+            "is a cone map of the layout `{name}`: its heights are taken, from {channel}"
+        )),
+    })
 }
 
 fn read_png(opened: Opened) -> Result<Grid, String> {

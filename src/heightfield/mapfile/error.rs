@@ -42,6 +42,13 @@ impl MapError {
         }
     }
 
+    /// What is wrong and what would do, without where.
+    pub fn into_why(self) -> String {
+        match self {
+            Self::File { why, .. } | Self::Layout { why, .. } | Self::Misfit { why, .. } => why,
+        }
+    }
+
     /// Whether the command line is wrong, rather than a file.
     pub fn is_usage(&self) -> bool {
         matches!(self, Self::Layout { .. })

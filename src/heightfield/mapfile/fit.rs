@@ -2,6 +2,10 @@
 //!
 //! A map of other heights, of another kind or for another wrapping gives pictures that
 //! are wrong in places and look right in others; it is refused instead.
+//!
+//! A map over samples is for two sets of heights: those that it was made from, by their
+//! digest, and those in its own file, which may be rounded. What its ratios promise over
+//! the latter is told in `round.rs`.
 
 use std::path::Path;
 
@@ -89,10 +93,28 @@ impl MapFile {
         self.foreign(heights)
     }
 
+    /// Whether the heights are those in the file itself.
+    fn holds(&self, heights: &Heights) -> bool {
+        !is_walk(self.map.kind) && self.heights.as_deref() == Some(heights.data())
+    }
+
+    /// Why nothing tells for which heights the map was made, if so: any of its size are
+    /// taken for them.
+    pub fn unknown(&self) -> Option<String> {
+        let told = self.heights.is_some() && !is_walk(self.map.kind);
+        let known = told || self.label.digest.is_some();
+        let [w, h] = self.label.samples;
+        (!known).then(|| {
+            format!(
+                "does not tell what heights it was made for; any of {w} x {h} samples are taken for them"
+            )
+        })
+    }
+
     /// Whether the heights are others than those that the map was made for.
     fn foreign(&self, heights: &Heights) -> Option<String> {
         let same = match (&self.label.digest, &self.heights) {
-            (Some(known), _) => *known == digest(heights),
+            (Some(known), _) => self.holds(heights) || *known == digest(heights),
             (None, Some(places)) if !is_walk(self.map.kind) => {
                 let mut pairs = places.iter().zip(heights.data());
                 pairs.all(|(a, b)| (a - b).abs() <= ONE_STEP)

@@ -18,4 +18,4 @@ pub use fit::Wanted;
 pub use form::{Bits, Extra, Form, Layout, MapFile};
 pub use label::{Label, digest};
 pub use round::{Ratios, Steps, narrowed};
-pub use words::{kind_named, kind_word, promise, wrap_word};
+pub use words::{is_walk, kind_named, kind_word, promise, wrap_word};

@@ -4,7 +4,10 @@
 //! from. Ratios are safe for both:
 //!
 //! - A ratio becomes the largest number that decodes to no more than it. (Rounding to
-//!   the nearest, as the papers' programs do, widens up to half of all cones.)
+//!   the nearest, as the papers' programs do, widens up to half of all cones.) A number
+//!   decodes to the f32 next below its share of 1, so that an EXR holds it as it is and
+//!   gives the number back: maps may change layouts as often as anybody likes. (Programs
+//!   that take a number for its share itself may see a cone 1.2e-7 of it wider.)
 //! - A height becomes the smallest number that decodes to no less than it, so that the
 //!   surface in the file is never below the true one. But neighbours rise by different
 //!   amounts: the height of sample p by `a(p)`, from 0 to one step. A sample q at a
@@ -17,7 +20,8 @@
 //!
 //! That argument holds for maps of empty cones. Of the relaxed maps only the first half
 //! does: rounding may raise new edges in the surface of the file, of which they know
-//! nothing. For the heights that they were made from they stay what they were.
+//! nothing. For the heights that they were made from they stay what they were; over those
+//! in the file, which the papers trace them with, a ray may cross more than once.
 
 /// A channel of whole numbers that stand for 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +73,7 @@ impl Ratios {
     pub fn ratio(self, number: u16) -> f64 {
         let share = f64::from(number) / f64::from(self.steps.most);
         let share = if self.root { share * share } else { share };
-        share * self.scale
+        f64::from(share_down(share, 1.0)) * self.scale
     }
 
     /// The largest number whose ratio is no more.

@@ -74,6 +74,6 @@ pub(super) fn ratios_per_place(kind: MapKind) -> usize {
 }
 
 /// Whether the places of a map are cells.
-pub(super) fn is_walk(kind: MapKind) -> bool {
+pub fn is_walk(kind: MapKind) -> bool {
     matches!(kind, MapKind::Walk | MapKind::WalkRelaxed)
 }
