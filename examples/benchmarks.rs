@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use conemarch::command::bench::row::Row;
-use conemarch::command::bench::steps::StepsRow;
+use conemarch::command::bench::steps_row::StepsRow;
 use conemarch::command::bench::table;
 
 #[path = "common/page.rs"]

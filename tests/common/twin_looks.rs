@@ -96,7 +96,8 @@ fn lit_errors<S: Solid>(solid: &S, cpu: &Plan, asked: &[Numbers], told: &[Number
             all[1].push((a[1][i], at.pigment[i]));
             all[4].push((a[2][i], fogged[i]));
         }
-        all[2].push((a[0][3], shadow::shadow(solid, &light, point, normal, grain)));
+        let lit = shadow::shadow(solid, &light, point, normal, grain);
+        all[2].push((a[0][3], lit.open));
         all[3].push((
             a[1][3],
             occlusion::occlusion(solid, &light, point, normal, grain),

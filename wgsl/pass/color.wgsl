@@ -12,14 +12,6 @@
 
 override COLOR_KEEPS_NORMALS: bool;
 
-/// What a shadow's ray has found.
-struct Shadow {
-    /// Share of the light that arrives, as far as the ray came.
-    open: f32,
-    /// Whether it came to its end within its steps.
-    decided: bool,
-}
-
 /// Radiance towards the eye of a hit at q, relative to the eye, and 1, or 0 where the
 /// shadow's ray reached its limit; `grain` is half a pixel there, by which shadow and
 /// occlusion stand off the surface.

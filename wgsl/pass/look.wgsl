@@ -27,6 +27,14 @@ struct LookUniform {
     palette: array<vec4<f32>, 8>,
 }
 
+/// What a shadow's ray has found.
+struct Shadow {
+    /// Share of the light that arrives, as far as the ray came.
+    open: f32,
+    /// Whether it came to its end within its steps.
+    decided: bool,
+}
+
 @group(1) @binding(1) var<storage, read> look_parameters: LookUniform;
 var<private> look: LookUniform;
 

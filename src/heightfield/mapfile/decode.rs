@@ -8,8 +8,8 @@ use std::path::Path;
 
 use super::encode::SIDES;
 use super::error::MapError;
-use super::form::{Bits, Extra, Form, Layout, MapFile, scale};
-use super::label::{self, KEYWORD, Label, Read};
+use super::form::{Bits, Extra, Form, Label, Layout, MapFile, scale};
+use super::label::{self, KEYWORD, Read};
 use super::round::Ratios;
 use super::words::{is_walk, ratios_per_place};
 use crate::heightfield::conemap::{ConeMap, MapKind, WIDEST};

@@ -10,8 +10,8 @@
 use std::path::Path;
 
 use super::error::MapError;
-use super::form::MapFile;
-use super::label::{digest, places};
+use super::form::{MapFile, digest};
+use super::label::places;
 use super::words::{is_walk, kind_word, promise, wrap_word};
 use crate::heightfield::conemap::MapKind;
 use crate::heightfield::heights::{Heights, Patches};

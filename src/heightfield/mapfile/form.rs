@@ -15,12 +15,12 @@
 //!
 //! Heights are those of the samples, or for walks those of the cells' highest points.
 
-use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::heights::{Heights, Patches};
+use sha2::{Digest, Sha256};
 
-use super::label::{Label, digest};
 use super::round::Steps;
 use super::words::is_walk;
+use crate::heightfield::conemap::{ConeMap, MapKind};
+use crate::heightfield::heights::{Heights, Patches};
 
 /// Which channels a file has, and what they mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,6 +148,34 @@ pub struct Extra {
     pub name: &'static str,
     /// Its numbers, row by row.
     pub shares: Vec<f32>,
+}
+
+/// What the numbers of a map do not say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// Samples of the heights along each axis.
+    pub samples: [u32; 2],
+    /// What lies between them; only the cells of walks depend on it.
+    pub patches: Patches,
+    /// Texels that a ratio of 1 in the file means.
+    pub scale: f64,
+    /// [`digest`] of the heights; unknown where another program wrote the file.
+    pub digest: Option<String>,
+    /// What made the map; unknown where another program wrote the file.
+    pub generator: Option<String>,
+}
+
+/// A number that tells heights from all others: SHA-256 of their size and bits, in
+/// hexadecimal. Wrapping is no part of it.
+pub fn digest(heights: &Heights) -> String {
+    let mut hash = Sha256::new();
+    for n in heights.size() {
+        hash.update(n.to_le_bytes());
+    }
+    for z in heights.data() {
+        hash.update(z.to_le_bytes());
+    }
+    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
 }
 
 /// A cone map with what its file knows of it.

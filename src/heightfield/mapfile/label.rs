@@ -3,43 +3,14 @@
 //! EXR of that name.
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
-use super::form::{Form, Layout, MapFile};
+use super::form::{Form, Label, Layout, MapFile};
 use super::words::{is_walk, kind_named, kind_word, wrap_named, wrap_word};
 use crate::heightfield::conemap::{MapKind, WIDEST};
-use crate::heightfield::heights::{Heights, MOST_SAMPLES, Patches};
+use crate::heightfield::heights::{MOST_SAMPLES, Patches};
 
 /// Keyword of the text chunk and name of the attribute.
 pub(super) const KEYWORD: &str = "conemarch cone map";
-
-/// What the numbers of a map do not say.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Label {
-    /// Samples of the heights along each axis.
-    pub samples: [u32; 2],
-    /// What lies between them; only the cells of walks depend on it.
-    pub patches: Patches,
-    /// Texels that a ratio of 1 in the file means.
-    pub scale: f64,
-    /// [`digest`] of the heights; unknown where another program wrote the file.
-    pub digest: Option<String>,
-    /// What made the map; unknown where another program wrote the file.
-    pub generator: Option<String>,
-}
-
-/// A number that tells heights from all others: SHA-256 of their size and bits, in
-/// hexadecimal. Wrapping is no part of it.
-pub fn digest(heights: &Heights) -> String {
-    let mut hash = Sha256::new();
-    for n in heights.size() {
-        hash.update(n.to_le_bytes());
-    }
-    for z in heights.data() {
-        hash.update(z.to_le_bytes());
-    }
-    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
-}
 
 /// The text as it stands in a file.
 #[derive(Debug, Serialize, Deserialize)]
@@ -80,11 +51,7 @@ pub(super) fn write(file: &MapFile, form: &Form) -> Result<String, String> {
         wrap: wrap_word(map.wrap).into(),
         offset: map.offset,
         samples: label.samples,
-        surface: match label.patches {
-            Patches::Bilinear => "bilinear",
-            Patches::Boxes => "boxes",
-        }
-        .into(),
+        surface: label.patches.name().into(),
         heights_sha256: label.digest.clone(),
         generator: label.generator.clone(),
     };
