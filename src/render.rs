@@ -411,7 +411,7 @@ mod tests {
         // Half the cones of four sides over 4096 x 4096 samples fit to the byte.
         assert!(has_room("d", "ratios", 4096 * 4096 * 2 * 4, MOST).is_ok());
         let said = has_room("d", "maxima", MOST + 4, MOST)
-            .unwrap_err()
+            .expect_err("no room")
             .to_string();
         assert_eq!(
             said,

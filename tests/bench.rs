@@ -273,8 +273,8 @@ fn cones_are_measured_map_by_map_and_view_by_view() {
     ];
     let (table, _) = bench(&folder, &args);
     for word in [
-        "### Maps of checker, 24 x 16",
-        "### Tracers over noise, 24 x 16",
+        "### Maps of checker, 24 x 16, bilinear",
+        "### Tracers over noise, 24 x 16, bilinear",
     ] {
         assert!(table.contains(word), "`{word}` not in {table}");
     }
@@ -284,6 +284,7 @@ fn cones_are_measured_map_by_map_and_view_by_view() {
     let wanted = [
         "field",
         "size",
+        "surface",
         "generator",
         "device",
         "ms",
@@ -296,6 +297,7 @@ fn cones_are_measured_map_by_map_and_view_by_view() {
     let wanted = [
         "field",
         "size",
+        "surface",
         "view_deg",
         "tracer",
         "map",
@@ -339,7 +341,7 @@ fn cones_are_measured_map_by_map_and_view_by_view() {
     let mut csv = csv::Reader::from_reader(&bytes[..]);
     let header = csv.headers().unwrap().clone();
     assert_eq!(header.iter().next(), Some("field"));
-    assert_eq!(header.len(), 9 + 8);
+    assert_eq!(header.len(), 10 + 8);
     assert_eq!(csv.records().map(Result::unwrap).count(), all.len());
     for (more, words) in [
         (&["fbn"][..], &["fbn", "fbm, ridges"][..]),
@@ -483,4 +485,28 @@ fn times_without_timestamps_are_called_wall_time() {
     let (table, _) = bench(&folder, &tiny("calibrate", &["bench-far", "--rays", "100"]));
     let words: Vec<&str> = table.split_whitespace().collect();
     assert!(words.join(" ").contains(" ms of wall time"), "{table}");
+}
+
+#[test]
+fn boxes_are_measured_as_boxes() {
+    let folder = Folder::new();
+    let args = [
+        "bench", "cones", "spikes", "--boxes", "--size", "32x32", "--json", "a.json",
+    ];
+    let (table, _) = bench(&folder, &args);
+    assert!(
+        table.contains("### Tracers over spikes, 32 x 32, boxes"),
+        "{table}"
+    );
+    let all = rows(&folder, "a.json");
+    assert!(all.iter().all(|row| row["surface"] == "boxes"));
+    let skipped = |name: &str| -> f64 {
+        let own = all.iter().filter(|row| row["tracer"] == name);
+        own.map(|row| row["skipped"].as_f64().unwrap()).sum()
+    };
+    for exact in ["walk", "walk-relaxed", "max-mip"] {
+        assert_eq!(skipped(exact), 0.0, "{exact}");
+    }
+    // Cones of samples know nothing of walls between them.
+    assert!(skipped("secant") > 0.1, "{}", skipped("secant"));
 }

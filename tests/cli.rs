@@ -327,6 +327,7 @@ fn stats_have_the_promised_fields() {
             "size",
             "sky",
             "unconverged",
+            "undecided",
             "wall_ms",
         ];
         assert_eq!(names, promised);

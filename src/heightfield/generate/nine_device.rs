@@ -24,7 +24,7 @@ fn ratio([high, low]: [u32; 2]) -> f64 {
 }
 
 impl Maker<'_> {
-    /// As [`least_of_nine`], on the device, some rows at a time.
+    /// As [`super::nine::least_of_nine`], on the device, some rows at a time.
     ///
     /// # Errors
     /// A map whose rows are too long for the device, and its failures.
