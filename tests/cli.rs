@@ -744,3 +744,15 @@ fn an_interrupt_leaves_no_file() {
         assert!(files.is_empty(), "{files:?}");
     }
 }
+
+#[test]
+fn an_eye_inside_the_solid_is_told() {
+    const WORDS: &str = "camera.eye lies inside the solid";
+    let folder = Folder::new();
+    for preset in ["mandelbox", "terrain"] {
+        let inside = ["--set", "camera.eye=[0.1,0.2,0.1]", "-o", "a.png"];
+        assert!(said(&folder.done(&tiny(preset, &inside))).contains(WORDS));
+        let outside = folder.done(&tiny(preset, &["-o", "b.png"]));
+        assert!(!said(&outside).contains(WORDS), "{}", said(&outside));
+    }
+}

@@ -202,7 +202,18 @@ pub fn run(args: &Render) -> Result<()> {
     }
     parcel.hand_over()?;
     say(&summary(&output, &frame));
+    if ends_at_the_eye(&frame, &plan) {
+        say(
+            "warning: every ray ends at the eye: camera.eye lies inside the solid, or against it, and there is nothing to see; move it away",
+        );
+    }
     Ok(())
+}
+
+/// Whether no ray comes farther than a thousandth of the way to the target.
+fn ends_at_the_eye(frame: &Frame, plan: &Plan) -> bool {
+    let near = 1e-3 * plan.camera.eye.distance(plan.camera.target);
+    frame.depth.iter().all(|t| f64::from(*t) <= near)
 }
 
 /// Prints what would be run, once all arguments are known to be right: those that a
