@@ -6,7 +6,7 @@
 use std::fs;
 use std::io::Read;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -16,7 +16,7 @@ use serde_json::Value;
 mod common {
     pub mod folder;
 }
-use common::folder::{Folder, said, text};
+use common::folder::{Folder, interrupt, said, text};
 
 /// A tiny render by the CPU executor, with more arguments.
 fn tiny<'a>(preset: &'a str, more: &[&'a str]) -> Vec<&'a str> {
@@ -707,9 +707,7 @@ fn interrupted(signals: u32) -> (Output, Vec<String>) {
     }
     sleep(Duration::from_millis(100));
     for _ in 0..signals {
-        let pid = child.id().to_string();
-        let killed = Command::new("kill").args(["-INT", &pid]).status();
-        assert!(killed.expect("kill").success());
+        interrupt(child.id());
         sleep(Duration::from_millis(50));
     }
     while child.try_wait().expect("a child").is_none() {

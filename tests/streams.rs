@@ -10,7 +10,7 @@ use std::process::Stdio;
 mod common {
     pub mod folder;
 }
-use common::folder::{Folder, said, text};
+use common::folder::{Folder, interrupt, said, text};
 
 /// A tiny render by the CPU executor, with more arguments.
 fn tiny<'a>(more: &[&'a str]) -> Vec<&'a str> {
@@ -131,7 +131,7 @@ fn a_preset_that_is_no_file_is_refused_at_once() {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_leaves_no_empty_folder() {
-    use std::process::{Command, Stdio};
+    use std::process::Stdio;
     use std::time::{Duration, Instant};
     for (given, made) in [("h/i", "h"), ("was/i", "was/i")] {
         let folder = Folder::new();
@@ -166,10 +166,7 @@ fn an_interrupt_leaves_no_empty_folder() {
             std::thread::sleep(Duration::from_millis(5));
         }
         std::thread::sleep(Duration::from_millis(200));
-        let killed = Command::new("kill")
-            .args(["-INT", &child.id().to_string()])
-            .status();
-        assert!(killed.expect("kill").success());
+        interrupt(child.id());
         assert_eq!(child.wait().expect("an end").code(), Some(1));
         late();
         assert_eq!(folder.files(), ["was"]);

@@ -96,3 +96,10 @@ pub fn said(output: &Output) -> String {
 pub fn text(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("text")
 }
+
+/// Sends an interrupt to a process, by a shell: a bare machine has no program for it.
+pub fn interrupt(process: u32) {
+    let command = format!("kill -INT {process}");
+    let sent = Command::new("sh").args(["-c", &command]).status();
+    assert!(sent.expect("a shell").success());
+}
