@@ -85,7 +85,8 @@ pub struct Frame {
     pub depth: Vec<f32>,
     /// What each pixel is, as [`State`] codes.
     pub state: Vec<u8>,
-    /// Pixels whose shadow's ray reached its limit: how much light they get is a guess.
+    /// Pixels, of any state but sky, whose shadow's ray reached its limit: how much light
+    /// they get is a guess.
     pub undecided: usize,
     /// Unit normals in the world; zero for sky.
     pub normal: Vec<[f32; 3]>,

@@ -15,6 +15,7 @@ use crate::heightfield::shape::HeightfieldShape;
 use crate::heightfield::tracing::{Make, PrepareError};
 use crate::key::{AutoCount, Fault, Key, Size};
 use crate::mode::Marching;
+use crate::pass::look::MOST_SHADOW_STEPS_OF_FORMULAS;
 use crate::pass::look::{self, Light, Look};
 use crate::pass::{color, fog, march, occlusion, queue, shadow, trace};
 use crate::pyramid::{Level, Pyramid};
@@ -150,6 +151,14 @@ impl Plan {
         }
         self.camera.check()?;
         self.march.check()?;
+        let formula = matches!(self.subject, Subject::Distance { .. });
+        let most = MOST_SHADOW_STEPS_OF_FORMULAS;
+        if formula && self.look.shadow_steps.is_some_and(|steps| steps > most) {
+            return Err(Fault::new(
+                "look.shadow_steps",
+                format!("at most {most} steps for the shadows of a formula; \"auto\" would do"),
+            ));
+        }
         self.look.check()
     }
 

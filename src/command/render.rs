@@ -210,9 +210,9 @@ pub fn run(args: &Render) -> Result<()> {
     Ok(())
 }
 
-/// Whether no ray comes farther than a thousandth of the way to the target.
+/// Whether no ray comes farther than a hundred-thousandth of the way to the target.
 fn ends_at_the_eye(frame: &Frame, plan: &Plan) -> bool {
-    let near = 1e-3 * plan.camera.eye.distance(plan.camera.target);
+    let near = 1e-5 * plan.camera.eye.distance(plan.camera.target);
     frame.depth.iter().all(|t| f64::from(*t) <= near)
 }
 

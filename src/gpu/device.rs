@@ -209,7 +209,9 @@ impl Device {
         let required_limits = Limits {
             max_buffer_size: limits.max_buffer_size,
             max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
-            max_storage_buffers_per_shader_stage: STORAGE_BUFFERS,
+            // Where there are fewer, most programs still fit.
+            max_storage_buffers_per_shader_stage: STORAGE_BUFFERS
+                .min(limits.max_storage_buffers_per_shader_stage),
             ..Limits::default()
         };
         let descriptor = wgpu::DeviceDescriptor {

@@ -13,7 +13,7 @@ use super::kept::Kept;
 use super::load::Named;
 use super::paint::{PAINTS, Paint};
 use super::placed::Placed;
-use super::relief::{MOST_CELLS, Relief, ReliefError};
+use super::relief::{MOST_CELLS, MOST_LEVELS, Relief, ReliefError};
 use super::trace::AnyTracer;
 use super::tracing::{Make, PrepareError, Supply, Tracing, on_cpu, without_cones};
 use crate::key::{Counts, Fault, Key, Number, Triple, Word};
@@ -280,11 +280,19 @@ impl HeightfieldShape {
         })
     }
 
-    /// The most cells that a ray can cross; `None` where there are no heights.
+    /// The most steps that a ray of an exact tracer can take; `None` where there are no
+    /// heights.
     pub fn crossing(&self) -> Option<u32> {
         let [w, h] = self.relief().ok()?.domain().map(i32::unsigned_abs);
         // The first cell, and a line of either axis for each other one.
-        Some(w + h)
+        let cells = w + h;
+        // Up and down the pyramid: a step down for each step up, and those from the top.
+        let climbs = self.tracing.tracer == "max-mip";
+        Some(if climbs {
+            2 * cells + MOST_LEVELS as u32
+        } else {
+            cells
+        })
     }
 
     /// The numbers of a file's heights; none of a field, whose word says everything.

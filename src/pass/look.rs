@@ -14,9 +14,11 @@ use crate::wgsl;
 /// Steps that are enough for the rays of shadows among fractals, but for those that pass
 /// close over long slopes.
 const SHADOW_STEPS: u32 = 96;
-/// Most that may be asked for. With the rounds of the loops in them they stay under the
-/// 65 535 after which Mesa's software Vulkan ends loops.
+/// Most over heightfields. With the rounds of the loops in them they stay under the 65 535
+/// after which Mesa's software Vulkan ends loops.
 const MOST_SHADOW_STEPS: u32 = 2048;
+/// Most where each step has the iterations of a formula in it.
+pub const MOST_SHADOW_STEPS_OF_FORMULAS: u32 = 512;
 
 /// Most colours in a palette.
 pub const MOST_STOPS: usize = 8;
@@ -171,7 +173,7 @@ impl Look {
             Key::new(
                 "shadow_steps",
                 AutoCount(&mut self.shadow_steps, 1, MOST_SHADOW_STEPS),
-                "steps that a shadow ray may do; auto is 96, over a heightfield as many as it has cells to cross",
+                "steps that a shadow ray may do; auto is 96, over a heightfield as many as it has cells to cross; at most 512 for a formula",
             ),
             Key::new(
                 "occlusion",

@@ -1,8 +1,8 @@
 //! Slopes at the samples, for the files that carry them beside the cones.
 //!
 //! As Dummer's program stores slopes (Cone Step Mapping, 2006, appendix B) they are half of
-//! what his shader takes them for, one half too small again at borders, and make flat ground
-//! lean, since 127 is not the middle of 0..=255. Files here have what the shader wants.
+//! what his shader takes them for, half of that again at borders, and make flat ground lean,
+//! since 127 is not the middle of 0..=255. Files here have what the shader wants.
 
 use rayon::prelude::*;
 

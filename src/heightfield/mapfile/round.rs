@@ -3,11 +3,11 @@
 //! A reader may trace with the heights in the file or with those that the map was made
 //! from. Ratios are safe for both:
 //!
-//! - A ratio becomes the largest number that decodes to no more than it. (Rounding to
+//! - A ratio becomes the largest number that stands for no more than it. (Rounding to
 //!   the nearest, as the papers' programs do, widens up to half of all cones.) A number
-//!   decodes to the f32 next below its share of 1, so that an EXR holds it as it is and
-//!   gives the number back: maps may change layouts as often as anybody likes. (Programs
-//!   that take a number for its share itself may see a cone 1.2e-7 of it wider.)
+//!   is read as the largest f32 that is not above its share of 1, so that an EXR holds it
+//!   as it is; and what was read so becomes the same number again. Maps may change layouts
+//!   as often as anybody likes.
 //! - A height becomes the smallest number that decodes to no less than it, so that the
 //!   surface in the file is never below the true one. But neighbours rise by different
 //!   amounts: the height of sample p by `a(p)`, from 0 to one step. A sample q at a
@@ -69,27 +69,33 @@ pub struct Ratios {
 }
 
 impl Ratios {
-    /// The ratio in texels that a number stands for.
-    pub fn ratio(self, number: u16) -> f64 {
+    /// The share of 1 that a number stands for.
+    fn share(self, number: u16) -> f64 {
         let share = f64::from(number) / f64::from(self.steps.most);
-        let share = if self.root { share * share } else { share };
-        f64::from(share_down(share, 1.0)) * self.scale
+        if self.root { share * share } else { share }
     }
 
-    /// The largest number whose ratio is no more.
+    /// The ratio in texels that a number is read as.
+    pub fn ratio(self, number: u16) -> f64 {
+        f64::from(share_down(self.share(number), 1.0)) * self.scale
+    }
+
+    /// The largest number that stands for no more than a ratio, or the one that was read
+    /// as it.
     pub fn ratio_down(self, ratio: f64) -> u16 {
         let share = (ratio / self.scale).clamp(0.0, 1.0);
         let share = if self.root { share.sqrt() } else { share };
         let most = self.steps.most;
         let mut number = (share * f64::from(most)).floor() as u16;
         // The quotient and the root may miss by one either way.
-        while number < most && self.ratio(number + 1) <= ratio {
+        while number < most && self.share(number + 1) * self.scale <= ratio {
             number += 1;
         }
-        while number > 0 && self.ratio(number) > ratio {
+        while number > 0 && self.share(number) * self.scale > ratio {
             number -= 1;
         }
-        number
+        let was_read = number < most && self.ratio(number + 1) == ratio;
+        if was_read { number + 1 } else { number }
     }
 }
 

@@ -1,5 +1,5 @@
 //! Tracers with one cone per sample: those of the papers, put right.
-//! Twin: `wgsl/heightfield/trace/cones.wgsl`.
+//! Twins: `wgsl/heightfield/trace/cones.wgsl`, with `cones_one.wgsl` or `cones_four.wgsl`.
 //!
 //! Dummer's step (Cone Step Mapping, 2006) from the height z over a place with height h and
 //! ratio R is `(z - h) R / (iz - dz R)` along a direction of horizontal part iz; his text has
@@ -17,6 +17,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::super::conemap::{ConeMap, MapKind};
+use super::super::generate::mips::rounded_down;
 use super::super::heights::Patches;
 use super::super::relief::{Numbers, Relief};
 use super::contract::{LocalRay, Step, Trace, TraceError, Tracer};
@@ -341,20 +342,22 @@ impl Tracer for Cones {
             return self.relief.buffers(Some(&self.map), numbers);
         }
         // Four cones of a map of 4096 x 4096 are more than a binding must hold: two, and two.
-        let half = |side: usize| ConeMap {
-            ratios: self
+        let half = |side: usize| -> Vec<u8> {
+            let two = self
                 .map
                 .ratios
                 .chunks(4)
-                .flat_map(|four| &four[side..side + 2])
-                .copied()
-                .collect(),
+                .flat_map(|four| &four[side..side + 2]);
+            two.flat_map(|ratio| rounded_down(*ratio).to_ne_bytes())
+                .collect()
+        };
+        let bare = ConeMap {
+            ratios: Vec::new(),
             ..*self.map
         };
-        let mut all = self.relief.buffers(Some(&half(0)), numbers);
-        let other = self.relief.buffers(Some(&half(2)), numbers);
-        let other = other.into_iter().find(|(name, _)| *name == "ratios");
-        all.extend(other.map(|(_, bytes)| ("ratios_y", bytes)));
+        let mut all = self.relief.buffers(Some(&bare), numbers);
+        all.retain(|(name, _)| *name != "ratios");
+        all.extend([("ratios", half(0)), ("ratios_y", half(2))]);
         all
     }
 }
