@@ -3,9 +3,10 @@
 //! Prints, as tables, how many nodes a place takes by field and size, how long each
 //! generator takes on the CPU and on the device that `auto` chooses, and how the maps
 //! compare with the exact one. `generators nodes`, `generators quality` and `generators
-//! device 1024 exact improved` print one of them; the first and the last write their rows
-//! as JSON, too, where `--json FILE` follows. A generator that is not done within a minute
-//! is given as an estimate, with a tilde.
+//! device 1024 exact improved` print one of them; `generators sizes` how long the device
+//! takes for maps of 256 x 256 up to 4096 x 4096. All but `quality` write their rows as
+//! JSON, too, where `--json FILE` follows. A generator that is not done within a minute is
+//! given as an estimate, with a tilde.
 
 use std::fs;
 use std::time::Instant;
@@ -22,7 +23,7 @@ use conemarch::heightfield::heights::{Heights, Patches};
 
 #[path = "common/rows.rs"]
 mod rows;
-use rows::{NodesRow, TimesRow};
+use rows::{NodesRow, SizesRow, TimesRow};
 
 /// Rough terrain.
 const POWER: f64 = 2.6;
@@ -56,8 +57,9 @@ fn main() -> Result<()> {
             };
             write(json, &device(size.parse().context("a size")?, all)?)
         }
+        ["sizes"] => write(json, &sizes()?),
         _ => anyhow::bail!(
-            "usage: generators [nodes | quality | device SIZE [GENERATOR]...] [--json FILE]"
+            "usage: generators [nodes | quality | device SIZE [GENERATOR]... | sizes] [--json FILE]"
         ),
     }
 }
@@ -153,12 +155,72 @@ fn quality() -> Result<()> {
     Ok(())
 }
 
-/// Times of one map of `fbm`, whole and of the dispatches alone, warm.
-fn device(size: u32, generators: &[Generator]) -> Result<Vec<TimesRow>> {
+fn open() -> Result<Device> {
     let adapters = Adapters::find();
     let found = adapters.choose(&Choice::Auto)?;
     let (adapter, _) = found.context("there is no adapter")?;
-    let device = Device::open(adapter)?;
+    Ok(Device::open(adapter)?)
+}
+
+/// Steps along each ray of Listing 18-2 in the paper on quick maps (section 4.1).
+const PAPER_STEPS: u32 = 64;
+
+/// Times on the device by size: the table of generation times in section 4.1 of Valasek and
+/// Ban (2022), with the exact maps beside. What was given up at one size is left out at all
+/// larger ones.
+fn sizes() -> Result<Vec<SizesRow>> {
+    let device = open()?;
+    let mut maker = Maker::new(&device);
+    let options = Options {
+        search_steps: PAPER_STEPS,
+        ..Options::default()
+    };
+    let mut rows: Vec<SizesRow> = Vec::new();
+    for size in [256, 512, 1024, 2048, 4096] {
+        let heights = field(Field::Fbm, size)?;
+        let generators = [
+            Generator::Brute,
+            Generator::RelaxedSearch,
+            Generator::Improved,
+            Generator::Center,
+            Generator::Exact,
+        ];
+        for generator in generators {
+            let name = generator.name();
+            if rows.iter().any(|r| r.generator == name && r.estimated) {
+                continue;
+            }
+            let ([ms, _], estimated) = best(&mut maker, generator, &heights, &options)?;
+            println!(
+                "{size} {name} {}{ms:.0} ms",
+                if estimated { "~" } else { "" }
+            );
+            rows.push(SizesRow {
+                generator: name.into(),
+                size,
+                ms,
+                estimated,
+            });
+        }
+        let mut fastest = f64::INFINITY;
+        for _ in 0..3 {
+            let start = Instant::now();
+            maker.max_mip(heights.size(), heights.data())?;
+            fastest = fastest.min(ms(start));
+        }
+        rows.push(SizesRow {
+            generator: "max-mip".into(),
+            size,
+            ms: fastest,
+            estimated: false,
+        });
+    }
+    Ok(rows)
+}
+
+/// Times of one map of `fbm`, whole and of the dispatches alone, warm.
+fn device(size: u32, generators: &[Generator]) -> Result<Vec<TimesRow>> {
+    let device = open()?;
     let mut maker = Maker::new(&device);
     let heights = field(Field::Fbm, size)?;
     println!(
@@ -192,6 +254,33 @@ fn device(size: u32, generators: &[Generator]) -> Result<Vec<TimesRow>> {
     Ok(rows)
 }
 
+/// The least times of up to three runs on the device, whole and of the dispatches alone, and
+/// whether they are estimates.
+fn best(
+    maker: &mut Maker<'_>,
+    generator: Generator,
+    heights: &Heights,
+    options: &Options,
+) -> Result<([f64; 2], bool)> {
+    // The first run compiles; an estimate needs no second.
+    let mut best = [f64::INFINITY; 2];
+    for _ in 0..3 {
+        let start = Instant::now();
+        let part = watched(start, |watch| {
+            maker.generate(generator, heights, Patches::default(), options, watch)
+        })?;
+        let now = [ms(start) / part, maker.device_ms / part];
+        best = [best[0].min(now[0]), best[1].min(now[1])];
+        if part < 1.0 {
+            return Ok((best, true));
+        }
+        if ms(start) > 10e3 {
+            break;
+        }
+    }
+    Ok((best, false))
+}
+
 /// One generator: the least of up to three runs on the device, one on the CPU.
 fn times(
     maker: &mut Maker<'_>,
@@ -201,24 +290,10 @@ fn times(
 ) -> Result<TimesRow> {
     let size = heights.size();
     let (patches, options) = (Patches::default(), Options::default());
-    // The first run compiles; an estimate needs no second.
-    let mut best = [f64::INFINITY; 2];
-    let mut estimated = false;
     // From here on: making the heights takes memory, too. Nothing is lost where a system
     // has no such file.
     let _ = fs::write("/proc/self/clear_refs", "5");
-    for _ in 0..3 {
-        let start = Instant::now();
-        let part = watched(start, |watch| {
-            maker.generate(generator, heights, patches, &options, watch)
-        })?;
-        estimated = part < 1.0;
-        let now = [ms(start) / part, maker.device_ms / part];
-        best = [best[0].min(now[0]), best[1].min(now[1])];
-        if estimated || ms(start) > 10e3 {
-            break;
-        }
-    }
+    let (best, estimated) = best(maker, generator, heights, &options)?;
     let peak = peak();
     let start = Instant::now();
     let part = watched(start, |watch| {

@@ -39,6 +39,7 @@ struct Proofs {
 /// [`RenderError::Cancelled`], when `watch` returns `false`; heights or cones that cannot
 /// be had any more.
 pub fn render(plan: &Plan, extras: Extras, watch: Watch<'_>) -> Result<Frame, RenderError> {
+    let plan = &*plan.lean(extras);
     let prepared = prepare(plan, &mut |generator, heights, patches, options| {
         let mut told = |share: f64| watch(&preparing(share));
         generate(generator, heights, patches, options, &mut told)
@@ -63,8 +64,7 @@ impl Task for Render<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let (plan, extras) = (self.plan, self.extras);
-        let mut passes = plan.passes();
-        passes.retain(|p| !(extras.depth_only && *p == Pass::Color));
+        let passes = plan.passes_for(extras);
         let mut run = Run {
             solid,
             view: plan.view(),

@@ -4,6 +4,7 @@
 //! It resolves to a [`Scene`], a [`View`], a [`Pyramid`] and a list of [`Pass`]es, each
 //! with its [`Program`]. Nothing in it depends on a measurement.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
 use glam::DVec3;
@@ -275,8 +276,28 @@ impl Plan {
 
     /// The passes over cells and pixels, in order.
     pub fn passes(&self) -> Vec<Pass> {
+        self.passes_for(Extras::default())
+    }
+
+    /// The passes of a frame with extras, in order.
+    pub fn passes_for(&self, extras: Extras) -> Vec<Pass> {
         let levels = self.pyramid().levels.into_iter().map(Pass::March);
-        levels.chain([Pass::Trace, Pass::Color]).collect()
+        let colours = (!extras.depth_only).then_some(Pass::Color);
+        levels.chain([Pass::Trace]).chain(colours).collect()
+    }
+
+    /// The plan without what a frame with extras has no use for: maps that only colours
+    /// are picked by.
+    pub fn lean(&self, extras: Extras) -> Cow<'_, Self> {
+        let mut plan = Cow::Borrowed(self);
+        if let Subject::Heightfield(shape) = &self.subject
+            && extras.depth_only
+            && shape.paint.is_some()
+            && let Subject::Heightfield(shape) = &mut plan.to_mut().subject
+        {
+            shape.paint = None;
+        }
+        plan
     }
 
     /// What is made before them: the cone maps that the scene needs.
@@ -312,22 +333,22 @@ impl Plan {
     /// What would be run for a frame with extras, without a GPU: passes, programs, modules
     /// and constants.
     pub fn explain(&self, extras: Extras) -> String {
-        let scene = self.outline();
+        let plan = &*self.lean(extras);
+        let scene = plan.outline();
         let mut text = String::new();
         let [w, h] = self.size;
         let _ = writeln!(text, "{w} x {h}, mode {}", self.march.mode.name());
         let _ = writeln!(text, "{}", scene.twin().describe());
         let mut programs: Vec<Program> = Vec::new();
         text.push_str("passes\n");
-        let left_out = |pass: &Pass| extras.depth_only && *pass == Pass::Color;
         let mut line = |name: &str, [w, h]: [u32; 2], limit: &str| {
             let _ = writeln!(text, "  {name:<12} {w:>6} x {h:<6} steps {limit}");
         };
-        for Preparation { generator, places } in self.preparations() {
+        for Preparation { generator, places } in plan.preparations() {
             line(PREPARE, places, "-");
             programs.push(program_of(generator));
         }
-        for pass in self.passes().into_iter().filter(|p| !left_out(p)) {
+        for pass in plan.passes_for(extras) {
             let (cells, limit) = match pass {
                 Pass::March(level) => (level.cells(self.size), level.steps.to_string()),
                 Pass::Trace => (self.size, self.march.ray_steps().to_string()),

@@ -184,17 +184,14 @@ impl Renderer {
         extras: Extras,
         watch: Watch<'_>,
     ) -> Result<Frame, RenderError> {
+        let plan = &*plan.lean(extras);
         let mut maker = Maker::new(&self.device);
         let prepared = prepare(plan, &mut |generator, heights, patches, options| {
             let mut told = |share: f64| watch(&preparing(share));
             maker.generate(generator, heights, patches, options, &mut told)
         })?;
         let scene = plan.scene();
-        let passes: Vec<Pass> = plan
-            .passes()
-            .into_iter()
-            .filter(|p| !(extras.depth_only && *p == Pass::Color))
-            .collect();
+        let passes = plan.passes_for(extras);
         // Compile everything first, so that no time below contains compilation.
         let mut kernels = Vec::new();
         for &pass in &passes {

@@ -9,7 +9,7 @@ use conemarch::heightfield::generate::cpu;
 use conemarch::heightfield::generate::generator::{Generator, Options};
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::load::{LoadOptions, load};
-use conemarch::heightfield::mapfile::{Bits, Layout, MapFile, read_map};
+use conemarch::heightfield::mapfile::{Bits, Layout, MapFile, Slopes, read_map};
 use exr::prelude::FlatSamples;
 use png::{BitDepth, ColorType};
 
@@ -232,6 +232,33 @@ fn options_reach_the_file() {
             .fold(0.0, |m: f32, s| m.max(*s))
     };
     assert!(lean("n0.1.png") < lean("n1.png"));
+    // Slopes as one likes them, which the file says.
+    for slopes in Slopes::ALL {
+        let name = format!("{}.png", slopes.name());
+        let into = ["--slopes", slopes.name(), "-o", &name];
+        folder.done(&make("sine:8x8", &into));
+        assert_eq!(read(&folder, &name).form.slopes, slopes);
+        let told = text(&folder.done(&["conemap", "inspect", &name]));
+        assert_eq!(
+            told.contains("half slopes"),
+            slopes == Slopes::Half,
+            "{told}"
+        );
+    }
+    assert!(lean("half.png") < lean("whole.png"));
+}
+
+#[test]
+fn a_device_writes_the_files_that_the_cpu_writes() {
+    let folder = Folder::new();
+    for layout in ["dummer", "relief"] {
+        let written = ["cpu", "0"].map(|device| {
+            let make = ["conemap", "make", "fbm:150x70", "--wrap", "x", "-o", "-"];
+            let into = ["--layout", layout, "--bits", "16", "--device", device];
+            folder.done(&[&make[..], &into].concat()).stdout
+        });
+        assert_eq!(written[0], written[1], "{layout}");
+    }
 }
 
 #[test]
@@ -460,6 +487,15 @@ fn options_without_effect_are_wrong_usage() {
     folder.fails(&make("sine:4x4", &["--depth", "3"]), 2, &words);
     let convert = ["conemap", "convert", "m.exr", "-o", "a.png", "--depth", "3"];
     folder.fails(&convert, 2, &["--depth", "relief", "dummer"]);
+    for layout in ["pair", "relief"] {
+        let args = ["--layout", layout, "--slopes", "half", "-o", "a.png"];
+        folder.fails(&make("sine:4x4", &args), 2, &["--slopes", "dummer", layout]);
+    }
+    folder.fails(
+        &make("sine:4x4", &["--slopes", "half"]),
+        2,
+        &["EXR", "--slopes"],
+    );
 }
 
 #[test]

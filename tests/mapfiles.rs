@@ -7,8 +7,8 @@ use conemarch::heightfield::conemap::MapKind;
 use conemarch::heightfield::field::Field;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::mapfile::{
-    Bits, Foreign, Form, Layout, MapFile, Ratios, Wanted, decode, decode_bytes, encode, has_map,
-    read_map,
+    Bits, Foreign, Form, Layout, MapFile, Ratios, Slopes, Wanted, decode, decode_bytes, encode,
+    has_map, read_map,
 };
 use conemarch::output::write_map;
 use png::{BitDepth, ColorType};
@@ -217,6 +217,68 @@ fn channels_are_those_of_the_papers() {
     });
     assert_eq!(color, ColorType::GrayscaleAlpha);
     assert_eq!(pair[2 * 10..2 * 11], [0, root]);
+}
+
+/// The slopes of Dummer's program (appendix B), written out as it is but for names.
+fn published(heights: &[i32], [w, h]: [i32; 2]) -> Vec<[i32; 2]> {
+    let at = |x: i32, y: i32| heights[(y * w + x) as usize];
+    let one = |i: i32| {
+        let (x, y) = (i % w, i / w);
+        let across = if x == 0 {
+            (at(x + 1, y) - at(x, y)) / 2
+        } else if x == w - 1 {
+            (at(x, y) - at(x - 1, y)) / 2
+        } else {
+            (at(x + 1, y) - at(x - 1, y)) / 2
+        };
+        let down = if y == 0 {
+            (at(x, y + 1) - at(x, y)) / 2
+        } else if y == h - 1 {
+            (at(x, y) - at(x, y - 1)) / 2
+        } else {
+            (at(x, y + 1) - at(x, y - 1)) / 2
+        };
+        [127 + across / 2, 127 - down / 2]
+    };
+    (0..w * h).map(one).collect()
+}
+
+#[test]
+fn half_slopes_are_the_bytes_of_the_published_program() {
+    // What 8 bits hold as it is, both steep and flat; the program knows no wrapping.
+    let numbers: Vec<i32> = (0..13 * 9).map(|i| i * 7919 % 256).collect();
+    let data = numbers.iter().map(|n| (f64::from(*n) / 255.0) as f32);
+    let heights = Heights::new([13, 9], [true, true], data.collect()).expect("heights");
+    let form = Form {
+        slopes: Slopes::Half,
+        ..Form::new(Layout::Dummer)
+    };
+    let bytes = encode(&made(&heights, MapKind::Samples), &form).expect("a file");
+    let read = decode_bytes(&bytes).expect("a map");
+    assert_eq!(read.form, form);
+    let shares = |i: usize| {
+        read.extra
+            .iter()
+            .map(move |e| (e.shares[i] * 255.0).round() as i32)
+    };
+    for (i, wanted) in published(&numbers, [13, 9]).into_iter().enumerate() {
+        assert_eq!(shares(i).collect::<Vec<_>>(), wanted, "sample {i}");
+    }
+    // The others are twice as steep, but for what whole numbers lose.
+    let whole = encode(
+        &made(&heights, MapKind::Samples),
+        &Form::new(Layout::Dummer),
+    );
+    let whole = decode_bytes(&whole.expect("a file")).expect("a map");
+    assert_eq!(whole.form.slopes, Slopes::Whole);
+    let inside = 4 * 13 + 6;
+    let steep = |file: &MapFile| f64::from(file.extra[0].shares[inside]) - 0.5;
+    assert!(
+        (steep(&whole) / steep(&read) - 2.0).abs() < 0.1,
+        "{} {}",
+        steep(&whole),
+        steep(&read)
+    );
 }
 
 #[test]

@@ -25,7 +25,7 @@ use conemarch::heightfield::relief::Relief;
 use conemarch::heightfield::shape::{HeightfieldShape, Ready, Wrap};
 use conemarch::heightfield::trace::oracle::Oracle;
 use conemarch::heightfield::trace::{LocalRay, Step, Tracer};
-use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::plan::{Extras, PREPARE, Plan, Subject};
 use conemarch::scene::{self, Scene, Solid};
 use conemarch::view::{Beam, Camera};
 use glam::DVec3;
@@ -309,7 +309,7 @@ fn met(relief: &Relief, ray: &LocalRay) -> Option<(f64, DVec3)> {
 fn the_sides_of_boxes_face_sideways() {
     let shapes = shapes().into_iter();
     for (name, mut shape) in shapes.filter(|(_, s)| s.patches == Patches::Boxes) {
-        for tracer in ["walk", "walk-relaxed", "max-mip", "walk-mip"] {
+        for tracer in ["walk", "walk-relaxed", "max-mip", "walk-mip", "cone-mip"] {
             shape.tracing.tracer = tracer;
             let ready = ready(&shape);
             let mut plan = Plan::new(Subject::Heightfield(shape.clone()));
@@ -431,6 +431,36 @@ fn both_executors_paint_alike() {
         // Rays that meet the line between two places within a rounding take either.
         assert!(wrong <= 40, "{by:?}: {wrong} pixels apart");
     }
+}
+
+#[test]
+fn depths_alone_need_no_map_to_paint_by() {
+    let depths = Extras {
+        depth_only: true,
+        ..Extras::default()
+    };
+    let (by, patches) = PAINTED[0];
+    let fresh = || {
+        let mut plan = Plan::new(Subject::Heightfield(painted(by, patches)));
+        plan.size = [64, 40];
+        plan
+    };
+    let maps = |frame: &Frame| frame.passes.iter().filter(|p| p.name == PREPARE).count();
+    let said = |plan: &Plan, extras| plan.explain(extras).matches(PREPARE).count();
+    for (extras, wanted) in [(Extras::default(), 2), (depths, 1)] {
+        let plan = fresh();
+        assert_eq!(said(&plan, extras), wanted, "{}", plan.explain(extras));
+        let here = cpu::render(&plan, extras, &mut |_| true).unwrap();
+        let there = adapter::render(&fresh(), extras);
+        assert_eq!([maps(&here), maps(&there)], [wanted; 2]);
+    }
+    // A plan that has been rendered without its paint still has it.
+    let plan = fresh();
+    let without = cpu::render(&plan, depths, &mut |_| true).unwrap();
+    let with = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
+    assert_eq!(without.depth, with.depth);
+    let own = cpu::render(&fresh(), Extras::default(), &mut |_| true).unwrap();
+    assert_eq!(with.radiance, own.radiance);
 }
 
 #[test]

@@ -192,11 +192,16 @@ fn inexact_shaders_agree_with_their_twins() {
 /// the distance: rays have a height or a texel to a unit of their parameter.
 fn distant(relief: &Arc<Relief>) -> Vec<(String, AnyTracer)> {
     let map = Arc::new(reference_maps::walk(relief, 1.5));
-    let of = |lod: f64| {
+    let cells = |lod: f64| {
         let tracer = WalkMip::new(relief.clone(), map.clone(), lod).unwrap();
         (format!("walk-mip {lod}"), AnyTracer::WalkMip(tracer))
     };
-    [0.0, 0.1, 3.0].map(of).into()
+    let nodes = |lod: f64| {
+        let tracer = WalkMip::of_nodes(relief.clone(), map.clone(), lod).unwrap();
+        (format!("cone-mip {lod}"), AnyTracer::WalkMip(tracer))
+    };
+    let all = [0.0, 0.1, 3.0].map(|lod| [cells(lod), nodes(lod)]);
+    all.into_iter().flatten().collect()
 }
 
 #[test]

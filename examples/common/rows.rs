@@ -17,6 +17,19 @@ pub struct NodesRow {
     pub worst: u32,
 }
 
+/// Time of one map on a device.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SizesRow {
+    /// Who makes it; `max-mip` for the pyramid of maxima alone.
+    pub generator: String,
+    /// Samples along either axis.
+    pub size: u32,
+    /// Milliseconds on the clock, without compilation.
+    pub ms: f64,
+    /// Whether that is of a map that was given up, from the share that was done.
+    pub estimated: bool,
+}
+
 /// Times of one map, on a device and on the CPU.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TimesRow {

@@ -1,5 +1,5 @@
 //! Times of whole frames by the map that rays step with, at 32 and 200 steps: the tables
-//! of section 4.1 of Valasek and Ban (2022).
+//! of section 4.1 of Valasek and Ban (2022), at its sizes.
 
 use anyhow::{Context, Result, ensure};
 use conemarch::command::executor::Executor;
@@ -15,7 +15,7 @@ const RUNS: usize = 9;
 const STEPS: [u32; 2] = [32, 200];
 /// Length of the block's side in the preset, over which texels are spread.
 const WIDTH: f64 = 12.0;
-const TEXELS: f64 = 255.0;
+const TEXELS: f64 = 511.0;
 
 /// One kind of map with one refinement, at one number of steps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -71,7 +71,7 @@ fn plan(field: &str, relaxed: &str, kind: (&str, &str, &str, &str), steps: u32) 
         "march.mode=ray".into(),
         "look.shadow=false".into(),
         "look.occlusion=0".into(),
-        "image.size=[640, 360]".into(),
+        "image.size=[1920, 1080]".into(),
     ];
     let set: Vec<Override> = set
         .iter()
@@ -80,7 +80,8 @@ fn plan(field: &str, relaxed: &str, kind: (&str, &str, &str, &str), steps: u32) 
     Ok(preset::load("terrain", &set)?.plan)
 }
 
-fn frame_ms(frame: &Frame) -> f64 {
+/// Milliseconds of all passes, on the clock.
+pub fn frame_ms(frame: &Frame) -> f64 {
     frame.passes.iter().map(|p| p.wall_ms).sum()
 }
 
@@ -141,7 +142,8 @@ pub fn measure(field: &str, relaxed: &str) -> Result<Vec<FrameRow>> {
     Ok(rows)
 }
 
-fn median(mut all: Vec<f64>) -> f64 {
+/// The middle one.
+pub fn median(mut all: Vec<f64>) -> f64 {
     all.sort_by(f64::total_cmp);
     all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
 }

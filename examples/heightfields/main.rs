@@ -3,11 +3,13 @@
 //!
 //! - `heightfields frames FILE FIELD MAP`: times of whole frames as JSON, MAP being the file
 //!   of the field's relaxed map, which takes long to make;
+//! - `heightfields distances FILE`: the walks for distant views beside the walk, as JSON;
 //! - `heightfields maps FOLDER`: cone maps of one relief, drawn;
 //! - `heightfields join FILE COLUMNS PNG...`: pictures side by side;
 //! - `heightfields page FOLDER DOCUMENT DATE`: the tables of the page, from the rows of
 //!   the measurements in a folder.
 
+mod distances;
 mod frames;
 mod maps;
 mod picture;
@@ -32,6 +34,10 @@ fn main() -> Result<()> {
             let rows = frames::measure(field, map)?;
             fs::write(file, serde_json::to_string_pretty(&rows)?).context("the rows")
         }
+        ["distances", file] => {
+            let rows = distances::measure()?;
+            fs::write(file, serde_json::to_string_pretty(&rows)?).context("the rows")
+        }
         ["maps", folder] => maps::draw(Path::new(folder)),
         ["join", file, columns, ref files @ ..] => {
             let read = |f: &&str| Picture::read(Path::new(f));
@@ -41,7 +47,7 @@ fn main() -> Result<()> {
         }
         ["page", folder, document, date] => write(Path::new(folder), document, date),
         _ => anyhow::bail!(
-            "usage: heightfields frames FILE FIELD MAP | maps FOLDER | join FILE COLUMNS PNG... | page FOLDER DOCUMENT DATE"
+            "usage: heightfields frames FILE FIELD MAP | distances FILE | maps FOLDER | join FILE COLUMNS PNG... | page FOLDER DOCUMENT DATE"
         ),
     }
 }
@@ -53,6 +59,8 @@ fn write(folder: &Path, document: &str, date: &str) -> Result<()> {
     let nodes: Vec<rows::NodesRow> = page::read(&folder.join("nodes.json"))?;
     let times: Vec<rows::TimesRow> = page::read(&folder.join("times.json"))?;
     let large: Vec<rows::TimesRow> = page::read(&folder.join("large.json"))?;
+    let sizes: Vec<rows::SizesRow> = page::read(&folder.join("sizes.json"))?;
+    let distances: Vec<distances::DistanceRow> = page::read(&folder.join("distances.json"))?;
     let frames: Vec<frames::FrameRow> = page::read(&folder.join("frames.json"))?;
     let device = times.first().map_or("", |r| &r.device);
     let mut text = fs::read_to_string(document).context("the document")?;
@@ -64,6 +72,8 @@ fn write(folder: &Path, document: &str, date: &str) -> Result<()> {
         ("nodes", tables::nodes(&nodes)),
         ("times", tables::times(&times) + &tables::large(&large)),
         ("aims", tables::aims(&cones, &nodes, &times)),
+        ("sizes", tables::sizes(&sizes)),
+        ("distances", tables::distances(&distances)),
         ("frames", tables::frames(&frames)),
     ];
     for (section, content) in measured {

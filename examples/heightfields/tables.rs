@@ -3,8 +3,9 @@
 use conemarch::command::bench::cone_rows::{GeneratorRow, TracerRow};
 use serde::Deserialize;
 
+use crate::distances::DistanceRow;
 use crate::frames::FrameRow;
-use crate::rows::{NodesRow, TimesRow};
+use crate::rows::{NodesRow, SizesRow, TimesRow};
 
 /// A row of `bench cones`, of either kind.
 #[derive(Deserialize)]
@@ -392,6 +393,47 @@ pub fn frames(rows: &[FrameRow]) -> String {
             );
         }
         text.push('\n');
+    }
+    text
+}
+
+/// Times of maps on the device, size by size.
+pub fn sizes(rows: &[SizesRow]) -> String {
+    let names = once(rows.iter().map(|r| r.generator.as_str()));
+    let mut text = format!("| size | {} |\n", names.join(" | "));
+    text += &format!("|:--|{}\n", "--:|".repeat(names.len()));
+    for size in once(rows.iter().map(|r| r.size)) {
+        let cell = |name: &&str| {
+            let mut own = rows
+                .iter()
+                .filter(|r| r.size == size && r.generator == *name);
+            own.next().map_or("n/a".into(), |r| {
+                format!("{}{}", if r.estimated { "~" } else { "" }, ms(r.ms))
+            })
+        };
+        let cells: Vec<String> = names.iter().map(cell).collect();
+        text += &format!("| {size} x {size} | {} |\n", cells.join(" | "));
+    }
+    text
+}
+
+/// The walks for distant views beside the walk.
+pub fn distances(rows: &[DistanceRow]) -> String {
+    let mut text = String::from(
+        "| samples | texels to a pixel | tracer | steps, rays alone | after cones | time of `walk`'s | in one only % | apart, pixels: median | 95 % |\n|:--|--:|:--|--:|--:|--:|--:|--:|--:|\n",
+    );
+    for row in rows {
+        let [half, most] = row.apart;
+        text += &format!(
+            "| {n} x {n} | {:.1} | {} | {:.1} | {:.1} | {:.2} | {} | {half:.2} | {most:.2} |\n",
+            row.texels,
+            row.tracer,
+            row.alone,
+            row.after_cones,
+            row.of_walk,
+            percent(row.in_one),
+            n = row.samples,
+        );
     }
     text
 }

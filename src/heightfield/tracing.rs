@@ -109,6 +109,7 @@ pub const TRACERS: &[(&str, &str)] = &[
     ("walk", "walk"),
     ("walk-relaxed", "walk-relaxed"),
     ("walk-mip", "walk-mip"),
+    ("cone-mip", "cone-mip"),
     ("max-mip", "max-mip"),
     ("linear-binary", "linear-binary"),
     ("csm-exact", "csm-exact"),
@@ -136,8 +137,8 @@ pub struct Tracing {
     /// Factor on the steps that cones give.
     pub stretch: Option<f64>,
     /// Distance at which `csm-loop` has half as many steps, and a texel is as wide as a pixel
-    /// to `walk-mip`; 0 for never. Where none is given `csm-loop` never has fewer, and
-    /// `walk-mip` goes by the camera.
+    /// to `walk-mip` and `cone-mip`; 0 for never. Where none is given `csm-loop` never has
+    /// fewer, and these go by the camera.
     pub lod: Option<f64>,
     /// Room that the walks' cones leave, in texels.
     pub offset: f64,
@@ -165,7 +166,7 @@ impl Tracing {
             Key::new(
                 "tracer",
                 Word(&mut self.tracer, TRACERS),
-                "how rays find the surface: walk, walk-relaxed and max-mip miss nothing, walk-mip is off by a pixel at most",
+                "how rays find the surface: walk, walk-relaxed and max-mip miss nothing, walk-mip and cone-mip are off by a pixel at most",
             ),
             Key::new(
                 "map",
@@ -198,7 +199,7 @@ impl Tracing {
             Key::new(
                 "lod",
                 AutoNumber(&mut self.lod, 0.0, 1e6),
-                "distance at which a texel is as wide as a pixel to walk-mip, and csm-loop has half its steps; 0 for never; auto goes by the camera for walk-mip and is never for csm-loop",
+                "distance at which a texel is as wide as a pixel to walk-mip and cone-mip, and csm-loop has half its steps; 0 for never; auto goes by the camera for the first two and is never for csm-loop",
             ),
             Key::new(
                 "offset",
@@ -233,7 +234,7 @@ impl Tracing {
     /// tracer without cones.
     fn kinds(&self) -> &'static [MapKind] {
         match self.tracer {
-            "walk" | "walk-mip" => &[MapKind::Walk],
+            "walk" | "walk-mip" | "cone-mip" => &[MapKind::Walk],
             "walk-relaxed" => &[MapKind::WalkRelaxed],
             _ => self.manner().map_or(&[], |m| m.kinds()),
         }
@@ -356,6 +357,10 @@ impl Tracing {
             (None, "walk-mip") => {
                 let lod = self.lod.unwrap_or(pixel);
                 WalkMip::new(relief, map, lod).map(AnyTracer::WalkMip)
+            }
+            (None, "cone-mip") => {
+                let lod = self.lod.unwrap_or(pixel);
+                WalkMip::of_nodes(relief, map, lod).map(AnyTracer::WalkMip)
             }
             (None, _) => WalkRelaxed::new(relief, map).map(AnyTracer::WalkRelaxed),
         };

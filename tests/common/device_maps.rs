@@ -10,6 +10,7 @@ use conemarch::heightfield::generate::generator::{GenerateError, Generator, Opti
 use conemarch::heightfield::generate::mips::{self, rounded_down};
 use conemarch::heightfield::generate::nine::least_of_nine;
 use conemarch::heightfield::generate::program::every_program;
+use conemarch::heightfield::generate::slopes::slopes;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::maxmip::MaxMip;
 use wgpu::naga::valid::Capabilities;
@@ -22,7 +23,7 @@ fn device() -> Device {
 #[test]
 fn every_generators_program_is_valid() {
     let all = every_program();
-    assert_eq!(all.len(), 3 + Generator::ALL.len());
+    assert_eq!(all.len(), 4 + Generator::ALL.len());
     for program in all {
         let result = program.validate(Capabilities::default());
         assert!(
@@ -169,6 +170,38 @@ fn the_devices_least_of_nine_is_the_cpus() {
             let there = maker.least_of_nine(&map).unwrap();
             let what = format!("{wrap:?}, bands of {band}");
             assert_same(&what, &there.ratios, &least_of_nine(&map).ratios);
+        }
+    }
+}
+
+#[test]
+fn the_devices_slopes_are_the_cpus() {
+    let device = device();
+    let mut maker = Maker::new(&device);
+    for (i, (name, heights)) in small().into_iter().enumerate() {
+        // Whole maps, a row at a time, and a few.
+        maker.cutting.band = [1 << 16, 1, 100][i % 3];
+        let there = maker.slopes(&heights).unwrap();
+        assert_eq!(there, slopes(&heights), "{name}");
+    }
+    // Heights that f32 can hardly tell apart, none at all and the least of all.
+    let odd = [0.0, f32::from_bits(1), f32::MIN_POSITIVE, 1e-30, 0.3, 1.0];
+    let height = |i: u32| match i * 7919 % 100 {
+        n @ 0..6 => odd[n as usize],
+        n => 0.5 + f32::EPSILON * n as f32,
+    };
+    for wrap in WRAPS {
+        let data = (0..31 * 23).map(height).collect();
+        let heights = Heights::new([31, 23], wrap, data).unwrap();
+        maker.cutting.band = 100;
+        let there = maker.slopes(&heights).unwrap();
+        for (there, here) in there
+            .as_flattened()
+            .iter()
+            .zip(slopes(&heights).as_flattened())
+        {
+            let tiny = here.abs() <= f32::MIN_POSITIVE && there.abs() <= f32::MIN_POSITIVE;
+            assert!(there == here || tiny, "{wrap:?}: {there} {here}");
         }
     }
 }

@@ -10,7 +10,7 @@ use conemarch::formula::balls::BallsUniform;
 use conemarch::formula::mandelbox::MandelboxUniform;
 use conemarch::formula::rotation::RotationUniform;
 use conemarch::heightfield::generate::uniform::{
-    GenerateUniform, MipUniform, NineUniform, PyramidUniform, Search,
+    GenerateUniform, MipUniform, NineUniform, PyramidUniform, Search, SlopesUniform,
 };
 use conemarch::heightfield::relief::ReliefUniform;
 use conemarch::pass::look::LookUniform;
@@ -165,6 +165,14 @@ fn layouts() -> Vec<(&'static str, Layout)> {
             rows,
             wrap,
             channels
+        }),
+        layout!(SlopesUniform {
+            size,
+            wrap,
+            first,
+            rows,
+            pad0,
+            pad1
         }),
         layout!(LevelUniform {
             divisor,

@@ -14,7 +14,7 @@ use crate::heightfield::conemap::MapKind;
 use crate::heightfield::heights::MOST_SAMPLES;
 use crate::heightfield::load::{LoadError, LoadOptions, Loaded, load};
 use crate::heightfield::mapfile::{
-    Bits, Foreign, Form, Layout, MapError, MapFile, decode, has_map,
+    Bits, Foreign, Form, Layout, MapError, MapFile, Slopes, decode, has_map,
 };
 
 /// How heights are read.
@@ -149,6 +149,10 @@ pub struct Writing {
     /// Height of 1 in texture widths, for the normals of relief [default: 0.25]
     #[arg(long, value_name = "WIDTHS", value_parser = depth)]
     depth: Option<f64>,
+
+    /// What the slopes of dummer stand for [default: whole]
+    #[arg(long, value_name = "WHAT", value_parser = slopes())]
+    slopes: Option<Slopes>,
 }
 
 impl Writing {
@@ -172,6 +176,7 @@ impl Writing {
                 (self.bits.is_some(), "--bits"),
                 (self.ratio.is_some(), "--ratio"),
                 (self.depth.is_some(), "--depth"),
+                (self.slopes.is_some(), "--slopes"),
             ];
             if let Some((_, option)) = given.iter().find(|(given, _)| *given) {
                 return Err(usage(format!(
@@ -192,12 +197,19 @@ impl Writing {
                 layout.name()
             )));
         }
+        if self.slopes.is_some() && layout != Layout::Dummer {
+            return Err(usage(format!(
+                "--slopes is for the slopes of dummer, and the layout is {}; leave it out, or add --layout dummer",
+                layout.name()
+            )));
+        }
         let usual = Form::new(layout);
         Ok(Form {
             layout,
             bits: self.bits.unwrap_or(usual.bits),
             root: self.ratio.unwrap_or(usual.root),
             depth: self.depth.unwrap_or(usual.depth),
+            slopes: self.slopes.unwrap_or(usual.slopes),
         })
     }
 }
@@ -226,6 +238,16 @@ fn bits() -> impl TypedValueParser<Value = Bits> {
         "16" => Bits::Sixteen,
         _ => Bits::Eight,
     })
+}
+
+fn slopes() -> impl TypedValueParser<Value = Slopes> {
+    let values = Slopes::ALL.map(|slopes| {
+        PossibleValue::new(slopes.name()).help(match slopes {
+            Slopes::Whole => "the slopes, as Dummer's shader takes them",
+            Slopes::Half => "half of them, as Dummer's program stores them",
+        })
+    });
+    PossibleValuesParser::new(values).map(|word| Slopes::named(&word).unwrap_or(Slopes::Whole))
 }
 
 fn roots() -> impl TypedValueParser<Value = bool> {

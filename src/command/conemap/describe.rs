@@ -6,7 +6,7 @@ use crate::heightfield::conemap::{MapKind, WIDEST};
 use crate::heightfield::generate::slopes::slopes;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::load::Loaded;
-use crate::heightfield::mapfile::{Bits, Layout, MapFile, kind_word, promise, wrap_word};
+use crate::heightfield::mapfile::{Bits, Layout, MapFile, Slopes, kind_word, promise, wrap_word};
 
 /// Longest bar of a histogram.
 const BAR: f64 = 40.0;
@@ -172,8 +172,12 @@ fn form(file: &MapFile) -> String {
         Bits::Sixteen => 16,
     };
     format!(
-        "PNG, layout {}, {bits} bit, ratios {}, 1 means {} texels",
+        "PNG, layout {}, {bits} bit, {}ratios {}, 1 means {} texels",
         form.layout.name(),
+        match (form.layout, form.slopes) {
+            (Layout::Dummer, Slopes::Half) => "half slopes, ",
+            _ => "",
+        },
         if form.root {
             "as square roots"
         } else {
@@ -181,6 +185,12 @@ fn form(file: &MapFile) -> String {
         },
         figure(file.label.scale)
     )
+}
+
+/// Rise per texel where it is steepest.
+pub(super) fn steepness(slope: [f32; 2]) -> f64 {
+    let [x, y] = slope.map(f64::from);
+    x.hypot(y)
 }
 
 /// Ratios by doubling bounds, from the first that is under some of them up to the scale
@@ -250,7 +260,7 @@ pub fn describe_heights(name: &str, loaded: &Loaded) -> String {
         figure(sorted.at(0.5))
     );
     row(&mut text, "", &range);
-    let steep = Sorted::new(slopes(heights).into_iter().map(|[x, y]| x.hypot(y)));
+    let steep = Sorted::new(slopes(heights).into_iter().map(steepness));
     let what = format!(
         "mean {} of the height per texel, steepest {}",
         figure(steep.mean()),

@@ -10,7 +10,7 @@ use crate::command::interrupt;
 use crate::gpu::device::{Adapters, Choice, Device, DeviceError};
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::generate::generator::{GenerateError, Generator, Options};
-use crate::heightfield::generate::{cpu, device};
+use crate::heightfield::generate::{cpu, device, slopes as on_cpu};
 use crate::heightfield::heights::{Heights, Patches};
 use crate::render::RenderError;
 
@@ -94,5 +94,16 @@ pub fn generate(
     made.map_err(|e| match e {
         GenerateError::Cancelled => RenderError::Cancelled.into(),
         e => e.into(),
+    })
+}
+
+/// Makes the slopes at the samples, by the same maker.
+///
+/// # Errors
+/// The device failed.
+pub fn slopes(maker: &Maker, heights: &Heights) -> Result<Vec<[f32; 2]>> {
+    Ok(match maker {
+        Maker::Gpu(device) => device::Maker::new(device).slopes(heights)?,
+        Maker::Cpu => on_cpu::slopes(heights),
     })
 }

@@ -9,7 +9,7 @@ use clap::{Args, ValueHint};
 
 use super::common::{Output, Reading, Writing, of_map, shown};
 use super::convert::kept;
-use super::generate::{Maker, generate};
+use super::generate::{Maker, generate, slopes};
 use crate::command::executor::device;
 use crate::command::failure::usage;
 use crate::command::print::say;
@@ -115,7 +115,10 @@ pub fn run(args: &Make) -> Result<()> {
     let start = Instant::now();
     let map = generate(&maker, generator, heights, patches, &options)?;
     let took = start.elapsed().as_secs_f64() * 1e3;
-    let file = MapFile::new(map, heights, patches, &made_by(generator, &options));
+    let mut file = MapFile::new(map, heights, patches, &made_by(generator, &options));
+    if form.layout.has_slopes() {
+        file.slopes = Some(slopes(&maker, heights)?);
+    }
     let bytes = encode(&file, &form).map_err(of_map)?;
     let again = decode_bytes(&bytes).map_err(anyhow::Error::msg);
     let again = again.context("the map could not be read back")?;

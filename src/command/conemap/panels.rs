@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::canvas::{Bar, Canvas, Panel};
+use super::describe::steepness;
 use crate::heightfield::generate::slopes::slopes;
 use crate::heightfield::heights::Heights;
 use crate::heightfield::mapfile::{Layout, MapFile};
@@ -146,10 +147,11 @@ pub fn heights_panels(heights: &Heights) -> Canvas {
     let size = heights.size();
     let width = size[0];
     let slopes = slopes(heights);
-    let steepness = slopes.iter().map(|[x, y]| x.hypot(*y)).sum::<f64>();
-    let depth = SHADED * slopes.len() as f64 / steepness.max(1e-9);
+    let steep = slopes.iter().map(|slope| steepness(*slope)).sum::<f64>();
+    let depth = SHADED * slopes.len() as f64 / steep.max(1e-9);
     let light = DVec3::new(-1.0, -1.0, 1.5).normalize();
-    let lit = |[x, y]: [f64; 2]| {
+    let lit = |slope: [f32; 2]| {
+        let [x, y] = slope.map(f64::from);
         let normal = DVec3::new(-x * depth, -y * depth, 1.0).normalize();
         0.06 + 0.94 * normal.dot(light).max(0.0)
     };

@@ -20,4 +20,5 @@ pub mod scan;
 pub mod search;
 pub mod settle;
 pub mod slopes;
+pub mod slopes_device;
 pub mod uniform;

@@ -93,6 +93,7 @@ pub fn every_program() -> Vec<Program> {
         super::pyramid::tiles_program(),
         super::pyramid::mips_program(),
         super::nine::nine_program(),
+        super::slopes::slopes_program(),
     ];
     let generators = Generator::ALL.into_iter().map(program_of);
     pyramids.into_iter().chain(generators).collect()

@@ -1,46 +1,48 @@
-//! Slopes at the samples, for the files that carry them beside the cones.
+//! Slopes at the samples, for the files that carry them beside the cones, on the CPU and on
+//! a device with the same result. Twin: `wgsl/heightfield/generate/slopes.wgsl`.
 //!
-//! As Dummer's program stores slopes (Cone Step Mapping, 2006, appendix B) they are half of
-//! what his shader takes them for, half of that again at borders, and make flat ground lean,
-//! since 127 is not the middle of 0..=255. Files here have what the shader wants.
+//! In f32, as heights are: one difference, correctly rounded here and there, and a half.
 
 use rayon::prelude::*;
 
 use crate::heightfield::heights::Heights;
+use crate::shader::Program;
+use crate::wgsl;
 
 /// Rise per texel along both axes at each sample, by central differences; at a border
 /// that does not wrap by the difference to the one neighbour that there is.
-pub fn slopes(heights: &Heights) -> Vec<[f64; 2]> {
+pub fn slopes(heights: &Heights) -> Vec<[f32; 2]> {
     let [w, h] = heights.size().map(i64::from);
     let slope = |i: i64| {
+        let place = [i % w, i / w];
         [0, 1].map(|axis| {
-            let [low, high, steps] = beside(heights, axis, i % w, i / w);
-            if steps > 0.0 {
-                (high - low) / steps
-            } else {
-                0.0
-            }
+            let (low, high) = beside(heights, axis, place);
+            (high - low) * per_step(heights, axis, place[axis])
         })
     };
     (0..w * h).into_par_iter().map(slope).collect()
 }
 
-/// The heights of the two neighbours along an axis, and the steps between them.
-fn beside(heights: &Heights, axis: usize, x: i64, y: i64) -> [f64; 3] {
-    let last = i64::from(heights.size()[axis]) - 1;
-    let here = [x, y][axis];
-    let (down, up) = if heights.wrap()[axis] {
-        (1, 1)
-    } else {
-        (here.min(1), (last - here).min(1))
-    };
+/// The heights of the two neighbours of a sample along an axis, of which at a border that
+/// does not wrap one is the sample itself.
+fn beside(heights: &Heights, axis: usize, place: [i64; 2]) -> (f32, f32) {
     let at = |step: i64| {
-        let at = if axis == 0 {
-            [x + step, y]
-        } else {
-            [x, y + step]
-        };
-        heights.at(at[0], at[1])
+        let mut at = place;
+        at[axis] += step;
+        let [x, y] = [0, 1].map(|a| heights.index(a, at[a]) as usize);
+        heights.data()[y * heights.size()[0] as usize + x]
     };
-    [at(-down), at(up), (down + up) as f64]
+    (at(-1), at(1))
+}
+
+/// One over the steps between the two neighbours of the `i`-th place on an axis.
+fn per_step(heights: &Heights, axis: usize, i: i64) -> f32 {
+    let last = i64::from(heights.size()[axis]) - 1;
+    let inside = heights.wrap()[axis] || (i > 0 && i < last);
+    if inside { 0.5 } else { 1.0 }
+}
+
+/// Makes the slopes of a band.
+pub fn slopes_program() -> Program {
+    Program::new("slopes", vec![wgsl!("heightfield/generate/slopes.wgsl")])
 }

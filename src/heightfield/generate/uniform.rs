@@ -1,5 +1,5 @@
 //! What the kernels are told, laid out as they read it. Twins:
-//! `wgsl/heightfield/generate/{shared,pyramid,mips,nine}.wgsl`.
+//! `wgsl/heightfield/generate/{shared,pyramid,mips,nine,slopes}.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -114,4 +114,22 @@ pub struct NineUniform {
     pub wrap: u32,
     /// Ratios to a place.
     pub channels: u32,
+}
+
+/// Parameters of a band of slopes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct SlopesUniform {
+    /// Samples along each axis.
+    pub size: [u32; 2],
+    /// 1 for each axis that wraps.
+    pub wrap: [u32; 2],
+    /// First row of the band.
+    pub first: u32,
+    /// Rows of the band.
+    pub rows: u32,
+    /// Nothing.
+    pub pad0: u32,
+    /// Nothing.
+    pub pad1: u32,
 }

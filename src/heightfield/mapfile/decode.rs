@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::encode::SIDES;
 use super::error::MapError;
-use super::form::{Bits, Extra, Form, Label, Layout, MapFile, scale};
+use super::form::{Bits, Extra, Form, Label, Layout, MapFile, Slopes, scale};
 use super::label::{self, KEYWORD, Read};
 use super::round::Ratios;
 use super::words::{is_walk, ratios_per_place};
@@ -174,6 +174,8 @@ fn taken_for(foreign: &Foreign, size: [u32; 2]) -> Result<Read, String> {
         root: foreign.root,
         wrap: foreign.wrap,
         offset: 0.0,
+        // His program's, most likely; cones do not depend on it.
+        slopes: Slopes::Half,
         label: Label {
             samples: size,
             patches: Patches::Bilinear,
@@ -265,9 +267,11 @@ fn finished(
         },
         heights,
         extra,
+        slopes: None,
         form: Form {
             bits,
             root: read.root,
+            slopes: read.slopes,
             ..Form::new(read.layout)
         },
         label: read.label,

@@ -1,12 +1,12 @@
 //! A cone map to the bytes of a file.
 
 use super::error::MapError;
-use super::form::{Form, Layout, MapFile};
+use super::form::{Form, Layout, MapFile, Slopes};
 use super::label::{self, KEYWORD};
 use super::round::{Ratios, Steps, narrowed, share_down};
-use super::slopes::{normal_shares, slope_share};
+use super::slopes::{half, normal_shares, whole};
 use super::words::is_walk;
-use crate::heightfield::generate::slopes::slopes;
+use crate::heightfield::generate::slopes;
 use crate::heightfield::heights::Heights;
 use crate::heightfield::raster::{exr, png};
 
@@ -105,21 +105,35 @@ fn numbers(file: &MapFile, form: &Form) -> Result<(usize, Vec<u16>), String> {
     if form.layout == Layout::Pair {
         return Ok((2, both.flat_map(|(z, r)| [z, r]).collect()));
     }
-    // Slopes of the heights themselves, not of their rounding.
-    let surface = Heights::new(map.size, map.wrap, heights.to_vec()).map_err(|e| e.to_string())?;
-    let slopes = slopes(&surface);
-    let numbers = both.zip(slopes).flat_map(|((z, r), slope)| {
-        if form.layout == Layout::Dummer {
-            // His rows are turned for OpenGL, so that y goes up.
-            let [x, y] = [slope[0], -slope[1]].map(|s| steps.nearest(slope_share(s)));
-            [z, r, x, y]
-        } else {
-            let depth = form.depth * file.label.scale;
+    if form.layout == Layout::Dummer {
+        let slopes = match form.slopes {
+            Slopes::Half => half(&up, map.size, steps),
+            Slopes::Whole => {
+                let all = slopes(file, heights)?;
+                all.iter().map(|slope| whole(*slope, steps)).collect()
+            }
+        };
+        let all = both.zip(slopes).flat_map(|((z, r), [x, y])| [z, r, x, y]);
+        return Ok((4, all.collect()));
+    }
+    let depth = form.depth * file.label.scale;
+    let all = both
+        .zip(slopes(file, heights)?)
+        .flat_map(|((z, r), slope)| {
             let [x, y] = normal_shares(slope, depth).map(|n| steps.nearest(n));
             [x, y, r, steps.most - z]
-        }
-    });
-    Ok((4, numbers.collect()))
+        });
+    Ok((4, all.collect()))
+}
+
+/// The slopes of the heights themselves, not of their rounding.
+fn slopes(file: &MapFile, heights: &[f32]) -> Result<Vec<[f32; 2]>, String> {
+    if let Some(made) = &file.slopes {
+        return Ok(made.clone());
+    }
+    let map = &file.map;
+    let surface = Heights::new(map.size, map.wrap, heights.to_vec()).map_err(|e| e.to_string())?;
+    Ok(slopes::slopes(&surface))
 }
 
 /// Ratios that stay clear when heights rise to their numbers.

@@ -2,7 +2,7 @@
 //!
 //! | layout | file | channels |
 //! |---|---|---|
-//! | `dummer` | PNG, RGBA | height, ratio, slope along x, slope along y |
+//! | `dummer` | PNG, RGBA | height, ratio, slope along x, slope along y ([`Slopes`]) |
 //! | `relief` | PNG, RGBA | normal x, normal y, ratio, depth (1 less the height) |
 //! | `pair` | PNG, grey and alpha | height, ratio |
 //! | `quad` | PNG, RGBA | ratios to +x, -x, +y, -y |
@@ -73,6 +73,11 @@ impl Layout {
         }
     }
 
+    /// Whether slopes, or normals made from them, are in it.
+    pub fn has_slopes(self) -> bool {
+        matches!(self, Self::Dummer | Self::Relief)
+    }
+
     /// Why a kind has no place in the layout, if so.
     pub fn lacks(self, kind: MapKind) -> Option<&'static str> {
         let quad = kind == MapKind::Quad;
@@ -109,6 +114,35 @@ impl Bits {
     }
 }
 
+/// What the slopes of [`Layout::Dummer`] stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slopes {
+    /// What Dummer's text and his shader take them for: 0.5 is flat, and 0 and 1 are half
+    /// the height down or up over one texel.
+    Whole,
+    /// What his program stores (appendix B): differences of the file's own heights, half of
+    /// that, and half of it again at borders, which never wrap; 127 of 255 is flat.
+    Half,
+}
+
+impl Slopes {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Whole, Self::Half];
+
+    /// The word for it in options and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "whole",
+            Self::Half => "half",
+        }
+    }
+
+    /// The slopes of a word.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|s| s.name() == name)
+    }
+}
+
 /// How a map is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Form {
@@ -121,6 +155,8 @@ pub struct Form {
     pub root: bool,
     /// Height of 1 in texture widths, for normals.
     pub depth: f64,
+    /// What slopes stand for.
+    pub slopes: Slopes,
 }
 
 impl Form {
@@ -137,6 +173,7 @@ impl Form {
             root: !matches!(layout, Layout::Relief | Layout::Full),
             // A relief a quarter as deep as it is wide; deeper ones are rare.
             depth: 0.25,
+            slopes: Slopes::Whole,
         }
     }
 }
@@ -188,6 +225,9 @@ pub struct MapFile {
     pub heights: Option<Vec<f32>>,
     /// Slopes or normals that were read with it.
     pub extra: Vec<Extra>,
+    /// Rise per texel along both axes at each sample, where it was made already; a file
+    /// that holds slopes or normals is written with them.
+    pub slopes: Option<Vec<[f32; 2]>>,
     /// How it is, was or will be written.
     pub form: Form,
     /// What the file says of the map.
@@ -214,6 +254,7 @@ impl MapFile {
             map,
             heights: Some(places),
             extra: Vec::new(),
+            slopes: None,
             form,
             label,
         }

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::form::{Form, Label, Layout, MapFile};
+use super::form::{Form, Label, Layout, MapFile, Slopes};
 use super::words::{is_walk, kind_named, kind_word, wrap_named, wrap_word};
 use crate::heightfield::conemap::{MapKind, WIDEST};
 use crate::heightfield::heights::{MOST_SAMPLES, Patches};
@@ -29,6 +29,9 @@ struct Text {
     samples: [u32; 2],
     /// `bilinear` or `boxes`.
     surface: String,
+    /// `whole` or `half`, where the layout has slopes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    slopes: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     heights_sha256: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -52,6 +55,7 @@ pub(super) fn write(file: &MapFile, form: &Form) -> Result<String, String> {
         offset: map.offset,
         samples: label.samples,
         surface: label.patches.name().into(),
+        slopes: (form.layout == Layout::Dummer).then(|| form.slopes.name().into()),
         heights_sha256: label.digest.clone(),
         generator: label.generator.clone(),
     };
@@ -66,6 +70,7 @@ pub(super) struct Read {
     pub root: bool,
     pub wrap: [bool; 2],
     pub offset: f64,
+    pub slopes: Slopes,
     pub label: Label,
 }
 
@@ -118,6 +123,10 @@ pub(super) fn read(text: &str) -> Result<Read, String> {
         "boxes" => Patches::Boxes,
         other => return Err(wrong("surface", other)),
     };
+    let slopes = match text.slopes.as_deref() {
+        None => Slopes::Whole,
+        Some(word) => Slopes::named(word).ok_or_else(|| wrong("slopes", word))?,
+    };
     if !(1e-3..=WIDEST).contains(&text.scale) {
         return Err(wrong("scale", &text.scale.to_string()));
     }
@@ -133,6 +142,7 @@ pub(super) fn read(text: &str) -> Result<Read, String> {
         root,
         wrap,
         offset: text.offset,
+        slopes,
         label: Label {
             samples: text.samples,
             patches,

@@ -15,6 +15,6 @@ pub use decode::{Foreign, decode, decode_bytes, has_map, read_map};
 pub use encode::encode;
 pub use error::MapError;
 pub use fit::Wanted;
-pub use form::{Bits, Extra, Form, Label, Layout, MapFile, digest};
+pub use form::{Bits, Extra, Form, Label, Layout, MapFile, Slopes, digest};
 pub use round::{Ratios, Steps, narrowed};
 pub use words::{is_walk, kind_named, kind_word, promise, wrap_word};

@@ -4,9 +4,12 @@
 //! A step looks at the node of a level that follows the ray's parameter: cells as long as a
 //! texel is wider than a pixel, then nodes of as many texels as a pixel is wide, rounded
 //! down to a power of two. A ray above the node's maximum goes on to its exit at least, or as
-//! far as the cone of the cell that it stands over lets it. Over cells it is the walk. (A
-//! node has a cone, too, with the highest apex and the least ratio under it; but that lies
-//! inside the cell's, and over flat ground takes back more than wide nodes give.)
+//! far as a cone lets it. Over cells it is the walk.
+//!
+//! There are two cones to choose from. `walk-mip` takes that of the cell under the ray, which
+//! is the wider one. `cone-mip` takes the node's own, with the highest apex and the least
+//! ratio under it ([`mips`]): it reads nothing finer than the nodes that it looks at, so that
+//! what is far away needs little of a large map, and pays for it with more steps.
 //!
 //! Over a larger node a ray that comes down to its maximum has hit it. That is never behind
 //! the first hit of the surface, as no surface lies higher; and the surface does reach the
@@ -16,7 +19,10 @@
 
 use std::sync::Arc;
 
+use bytemuck::cast_slice;
+
 use super::super::conemap::{ConeMap, MapKind};
+use super::super::generate::mips::{ConeLevel, mips, rounded_down};
 use super::super::relief::{Node, Numbers, Relief};
 use super::contract::{LocalRay, Step, Trace, TraceError, Tracer};
 use super::course::{
@@ -33,18 +39,56 @@ use crate::wgsl;
 pub struct WalkMip {
     relief: Arc<Relief>,
     map: Arc<ConeMap>,
+    /// The cones of nodes, level by level; none to take those of cells.
+    nodes: Option<Arc<Vec<ConeLevel>>>,
     lod: f64,
 }
 
 impl WalkMip {
-    /// A walk with the cones of a map. `lod` is the parameter of the ray at which a texel is
-    /// as wide as a pixel; 0 for cells at any distance.
+    /// A walk with the cones of a map: `walk-mip`. `lod` is the parameter of the ray at which
+    /// a texel is as wide as a pixel; 0 for cells at any distance.
     ///
     /// # Errors
     /// The map is of another kind, or of another relief.
     pub fn new(relief: Arc<Relief>, map: Arc<ConeMap>, lod: f64) -> Result<Self, TraceError> {
         check_map("walk-mip", &[MapKind::Walk], &relief, &map)?;
-        Ok(Self { relief, map, lod })
+        Ok(Self {
+            relief,
+            map,
+            nodes: None,
+            lod,
+        })
+    }
+
+    /// A walk with the cones of nodes, made from those of a map: `cone-mip`. As
+    /// [`WalkMip::new`] otherwise.
+    ///
+    /// # Errors
+    /// The map is of another kind, or of another relief.
+    pub fn of_nodes(relief: Arc<Relief>, map: Arc<ConeMap>, lod: f64) -> Result<Self, TraceError> {
+        check_map("cone-mip", &[MapKind::Walk], &relief, &map)?;
+        let nodes = mips(&relief.maxima().levels[0].max, &map).map(Arc::new);
+        Ok(Self {
+            relief,
+            map,
+            nodes,
+            lod,
+        })
+    }
+
+    /// The ratio and the apex of the cone over a cell in a node.
+    fn cone(&self, cell: [i32; 2], level: u32, node: &Node) -> (f64, f64) {
+        match &self.nodes {
+            Some(nodes) => {
+                let own = &nodes[level as usize];
+                let [x, y] = node.place.map(|i| i as usize);
+                (own.ratios[y * own.size[0] as usize + x], node.maximum)
+            }
+            None => {
+                let ratio = self.map.ratios[self.relief.number(cell) as usize];
+                (ratio, self.relief.apex(cell))
+            }
+        }
     }
 
     /// The level whose nodes are as wide as a pixel at a parameter of the ray, or narrower by
@@ -96,8 +140,8 @@ impl Tracer for WalkMip {
                 return Step::Hit;
             }
         }
-        let ratio = self.map.ratios[relief.number(trace.cell) as usize] * WALK_TRUST;
-        let way = cone_way(ray, ratio, z - relief.apex(trace.cell), self.map.offset);
+        let (ratio, apex) = self.cone(trace.cell, level, &node);
+        let way = cone_way(ray, ratio * WALK_TRUST, z - apex, self.map.offset);
         let next = trace.s + way * WALK_TRUST;
         if next.max(exit) >= trace.end {
             return course_end(relief, ray, trace);
@@ -117,7 +161,11 @@ impl Tracer for WalkMip {
     fn modules(&self) -> Vec<Module> {
         let mut all = self.relief.modules();
         all.push(wgsl!("heightfield/trace/cone.wgsl"));
-        all.push(wgsl!("heightfield/trace/walk_mip.wgsl"));
+        let nodes = f64::from(u8::from(self.nodes.is_some()));
+        all.push(wgsl!(
+            "heightfield/trace/walk_mip.wgsl",
+            "WALK_MIP_NODES" = nodes
+        ));
         all
     }
 
@@ -126,6 +174,14 @@ impl Tracer for WalkMip {
             lod: self.lod,
             ..Numbers::default()
         };
-        self.relief.buffers(Some(&self.map), numbers)
+        let mut all = self.relief.buffers(Some(&self.map), numbers);
+        if let Some(nodes) = &self.nodes {
+            // Level after level, as the maxima lie.
+            let ratios = nodes.iter().flat_map(|level| &level.ratios);
+            let ratios: Vec<f32> = ratios.map(|r| rounded_down(*r)).collect();
+            all.retain(|(name, _)| *name != "ratios");
+            all.push(("ratios", cast_slice(&ratios).to_vec()));
+        }
+        all
     }
 }

@@ -1,8 +1,12 @@
 // The cone walk for distant views: over nodes of a pyramid that are about as wide as a
-// pixel. A ray above a node's maximum goes on to its exit at least, or as far as the cone of
-// the cell under it lets it. Over cells, as long as a texel is wider than a pixel, this is
+// pixel. A ray above a node's maximum goes on to its exit at least, or as far as a cone lets
+// it: that of the cell under it (`walk-mip`), or the node's own, with the least ratio under it
+// and nothing finer to read (`cone-mip`). Over cells, as long as a texel is wider than a pixel, this is
 // the walk. Over larger nodes a ray that comes down to the maximum has hit: never behind
 // the first hit of the surface, and off by a node sideways at most.
+
+/// Whether cones are those of nodes, not of cells.
+override WALK_MIP_NODES: bool;
 
 /// More than the nodes of any level are wide, in texels.
 const WALK_MIP_WIDEST = 65536.0;
@@ -58,10 +62,13 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
             return STATE_HIT;
         }
     }
-    let cell = (*trace).cell;
-    let ratio = ratios[relief_number(cell)] * WALK_TRUST_RATIO;
-    let apex = relief_apex(cell);
-    let next = (*trace).s + cone_way(d, ratio, z - apex, relief.offset) * WALK_TRUST_WAY;
+    // Maxima of cells are their apexes, and ratios lie as they do.
+    var at = node.at;
+    if !WALK_MIP_NODES {
+        at = relief_number((*trace).cell);
+    }
+    let ratio = ratios[at] * WALK_TRUST_RATIO;
+    let next = (*trace).s + cone_way(d, ratio, z - maxima[at], relief.offset) * WALK_TRUST_WAY;
     if max(next, exit.x) >= (*trace).end {
         return course_end(o, d, trace);
     }

@@ -1,0 +1,153 @@
+//! The walk beside the walks for distant views, of finer and finer maps.
+//!
+//! The terrain of a preset, made of more and more samples of rough ground, is seen from one
+//! place: steps of rays alone and after cones, times, and how the pictures differ from that
+//! of the walk.
+
+use anyhow::Result;
+use conemarch::command::executor::Executor;
+use conemarch::compare::quantile;
+use conemarch::cpu;
+use conemarch::frame::{Frame, State};
+use conemarch::gpu::device::Choice;
+use conemarch::mode::Mode;
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset::{Override, load};
+use serde::{Deserialize, Serialize};
+
+use crate::frames::{frame_ms, median};
+
+/// Samples along either axis.
+const SAMPLES: [u32; 4] = [512, 1024, 2048, 4096];
+/// Length of the block's sides in the preset.
+const WIDTH: f64 = 12.0;
+const SIZE: [u32; 2] = [640, 360];
+/// Times the distance of the preset's eye: the whole block is in the picture.
+const AWAY: f64 = 1.6;
+/// The first is what the others are compared with.
+const TRACERS: [&str; 3] = ["walk", "walk-mip", "cone-mip"];
+/// Warm runs that a median is taken of.
+const RUNS: usize = 7;
+const DEPTHS: Extras = Extras {
+    count: false,
+    normals: false,
+    levels: false,
+    depth_only: true,
+    time: false,
+};
+const COUNTED: Extras = Extras {
+    count: true,
+    ..DEPTHS
+};
+
+/// One tracer over one map.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct DistanceRow {
+    /// Samples of the map along either axis.
+    pub samples: u32,
+    /// Texels that a pixel in the middle is wide.
+    pub texels: f64,
+    /// Who traces.
+    pub tracer: String,
+    /// Mean steps of the rays that take any, from the eye.
+    pub alone: f64,
+    /// The same, after cones over pixels.
+    pub after_cones: f64,
+    /// Median time of the device over that of the walk, rays alone.
+    pub of_walk: f64,
+    /// Share of the pixels with ground that only one of it and the walk shows.
+    pub in_one: f64,
+    /// How far apart their depths are elsewhere, in pixel widths: the median, and for 95 of
+    /// 100.
+    pub apart: [f64; 2],
+}
+
+/// Measures all tracers over all maps.
+pub fn measure() -> Result<Vec<DistanceRow>> {
+    let (mut executor, _) = Executor::open(&Choice::Auto)?;
+    let mut rows = Vec::new();
+    for samples in SAMPLES {
+        let mut plans = TRACERS
+            .into_iter()
+            .map(|tracer| plan(samples, tracer))
+            .collect::<Result<Vec<Plan>>>()?;
+        let mut times = vec![Vec::new(); TRACERS.len()];
+        for run in 0..=RUNS {
+            for (plan, times) in plans.iter().zip(&mut times) {
+                let frame = executor.render(plan, DEPTHS, &mut |_| true)?;
+                // The first run makes maps and compiles.
+                if run > 0 {
+                    times.push(frame_ms(&frame));
+                }
+            }
+        }
+        let mut counted = |mode| -> Result<Vec<Frame>> {
+            let one = |plan: &mut Plan| {
+                plan.march.mode = mode;
+                cpu::render(plan, COUNTED, &mut |_| true)
+            };
+            Ok(plans.iter_mut().map(one).collect::<Result<_, _>>()?)
+        };
+        let after_cones = counted(Mode::Safe)?;
+        let alone = counted(Mode::Ray)?;
+        let view = plans[0].view();
+        let far = (plans[0].camera.eye - plans[0].camera.target).length();
+        let texel = WIDTH / f64::from(samples - 1);
+        for (i, tracer) in TRACERS.into_iter().enumerate() {
+            let (in_one, apart) = differences(&plans[0], &alone[0], &alone[i]);
+            let ratios = times[i].iter().zip(&times[0]).map(|(own, walk)| own / walk);
+            rows.push(DistanceRow {
+                samples,
+                texels: view.pixel * far / texel,
+                tracer: tracer.into(),
+                alone: steps(&alone[i]),
+                after_cones: steps(&after_cones[i]),
+                of_walk: median(ratios.collect()),
+                in_one,
+                apart: [0.5, 0.95].map(|q| quantile(&apart, q)),
+            });
+        }
+    }
+    Ok(rows)
+}
+
+/// The preset's terrain with so many samples, seen from farther away by rays alone.
+fn plan(samples: u32, tracer: &str) -> Result<Plan> {
+    let set = [
+        format!("scene.field=\"fbm:{samples}x{samples},seed=5,power=2.6\""),
+        format!("scene.width={WIDTH}"),
+        format!("scene.tracer={tracer}"),
+        "march.mode=ray".into(),
+    ];
+    let set: Vec<Override> = set
+        .iter()
+        .map(|s| Override::read(s))
+        .collect::<Result<_, _>>()?;
+    let mut plan = load("terrain", &set)?.plan;
+    plan.size = SIZE;
+    plan.camera.eye = plan.camera.target + AWAY * (plan.camera.eye - plan.camera.target);
+    Ok(plan)
+}
+
+/// Mean steps of the rays that take any.
+fn steps(frame: &Frame) -> f64 {
+    let taken = frame.work.iter().map(|w| f64::from(w.evaluations));
+    let some: Vec<f64> = taken.filter(|n| *n > 0.0).collect();
+    some.iter().sum::<f64>() / some.len().max(1) as f64
+}
+
+/// The share of pixels that are hits of one frame only, and the differences of depth of the
+/// others in pixel widths, sorted.
+fn differences(plan: &Plan, a: &Frame, b: &Frame) -> (f64, Vec<f64>) {
+    let hit = |f: &Frame, i: usize| f.state[i] == State::Hit as u8;
+    let count = a.state.len();
+    let one = (0..count).filter(|i| hit(a, *i) != hit(b, *i)).count();
+    let ground = (0..count).filter(|i| hit(a, *i) || hit(b, *i)).count();
+    let grain = plan.view().view_ray([0, 0]).grain;
+    let both = (0..count).filter(|i| hit(a, *i) && hit(b, *i));
+    let mut apart: Vec<f64> = both
+        .map(|i| f64::from(a.depth[i] - b.depth[i]).abs() / f64::from(a.depth[i]) / (2.0 * grain))
+        .collect();
+    apart.sort_by(f64::total_cmp);
+    (one as f64 / ground.max(1) as f64, apart)
+}
