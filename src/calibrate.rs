@@ -181,7 +181,7 @@ impl Task for Follow<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
-        let limit = self.plan.march.ray_steps();
+        let limit = self.plan.ray_steps();
         let one = |&pixel: &[u32; 2]| {
             let ray = view.view_ray(pixel);
             let (hit, state) = trace(solid, &ray, 0.0, limit, &mut Work::default());
@@ -242,7 +242,7 @@ impl Task for Lost<'_> {
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
         let levels = self.plan.pyramid().levels;
-        let limit = self.plan.march.ray_steps();
+        let limit = self.plan.ray_steps();
         let one = |probe: &&Probe| {
             let Some(hit) = probe.hit else { return false };
             let Some(front) = front(solid, &view, &levels, probe.pixel) else {

@@ -154,7 +154,7 @@ impl<S: Solid> Run<'_, S> {
 
     fn trace(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
-        let limit = self.plan.march.ray_steps();
+        let limit = self.plan.ray_steps();
         let one = |pixel| {
             let parent = parent_of(parents, pixel);
             let mut work = Work::default();
@@ -285,7 +285,7 @@ impl Task for Sample<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
-        let limit = self.plan.march.ray_steps();
+        let limit = self.plan.ray_steps();
         let width = view.size[0] as usize;
         let pixels = width * view.size[1] as usize;
         (0..pixels.div_ceil(self.every))

@@ -1,7 +1,7 @@
 //! How a picture is marched: the modes, and the settings of `[march]`.
 
 use crate::cone::ConeRule;
-use crate::key::{AutoNumber, Count, Fault, Key, List, Number, Slot, Word};
+use crate::key::{AutoCount, AutoNumber, Count, Fault, Key, List, Number, Slot, Word};
 use crate::pyramid::Pyramid;
 use crate::scene::distance::{Relaxation, Stepping};
 use toml::Value;
@@ -55,6 +55,10 @@ impl Mode {
     }
 }
 
+/// Steps per level and of a ray, where nothing is known of the scene: the slowest rays of
+/// the presets end well before.
+const STEPS: u32 = 256;
+
 /// The settings of `[march]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Marching {
@@ -71,8 +75,9 @@ pub struct Marching {
     /// Factors on the cones' chords in mode `calibrated`, coarse to fine; the last is
     /// repeated. The other modes march full cones.
     pub fudge: Vec<f64>,
-    /// Steps per level.
-    pub steps: u32,
+    /// Steps per level and of a ray; auto is 256, and over a heightfield for rays as many as
+    /// one can take.
+    pub steps: Option<u32>,
     /// Factor on ray steps; auto is 1, and 0.1 for the truth.
     pub stride: Option<f64>,
     /// Whether rays start where they enter the bounds; auto is yes after cones, no
@@ -89,7 +94,7 @@ impl Default for Marching {
             shell: 0.45,
             relaxation: Relaxation::Auto,
             fudge: vec![1.0],
-            steps: 256,
+            steps: None,
             stride: None,
             clip: None,
         }
@@ -179,8 +184,8 @@ impl Marching {
             ),
             Key::new(
                 "steps",
-                Count(&mut self.steps, 1, 1_000_000),
-                "steps per level",
+                AutoCount(&mut self.steps, 1, 1_000_000),
+                "steps per level and of a ray; auto is 256, and for rays over a heightfield as many as they can take",
             ),
             Key::new(
                 "stride",
@@ -227,12 +232,16 @@ impl Marching {
         Pyramid::new(self.coarsest, fudge, |_| match self.mode {
             Mode::SlidesEven => (128 / passes).max(1),
             Mode::SlidesDeep | Mode::SlidesFast => 512,
-            _ => self.steps,
+            _ => self.steps.unwrap_or(STEPS),
         })
     }
 
-    /// Steps that a ray may do.
-    pub fn ray_steps(&self) -> u32 {
+    /// Steps that a ray may do, `crossing` being the most that one can take through the
+    /// scene, where that is known.
+    pub fn ray_steps(&self, crossing: Option<u32>) -> u32 {
+        let steps = self
+            .steps
+            .unwrap_or_else(|| STEPS.max(crossing.unwrap_or(0)));
         match self.mode {
             Mode::SlidesEven => (128 / (self.coarsest.ilog2() + 1)).max(1),
             Mode::SlidesDeep => 128,
@@ -243,8 +252,8 @@ impl Marching {
                 clippy::cast_sign_loss,
                 reason = "clamped"
             )]
-            Mode::Truth => (f64::from(self.steps) * 16.0 / self.stride()).min(1e6) as u32,
-            _ => self.steps,
+            Mode::Truth => (f64::from(steps) * 16.0 / self.stride()).min(1e6) as u32,
+            _ => steps,
         }
     }
 
@@ -293,13 +302,24 @@ mod tests {
             };
             let levels = march.pyramid().levels;
             let steps: Vec<u32> = levels.iter().map(|l| l.steps).collect();
-            (steps, march.ray_steps())
+            (steps, march.ray_steps(None))
         };
         assert_eq!(budget(Mode::SlidesEven), (vec![25; 4], 25));
         assert_eq!(budget(Mode::SlidesDeep), (vec![512; 4], 128));
         assert_eq!(budget(Mode::SlidesFast), (vec![512; 4], 32));
         assert_eq!(budget(Mode::Safe), (vec![256; 4], 256));
         assert_eq!(budget(Mode::Ray), (vec![], 256));
+    }
+
+    #[test]
+    fn rays_have_as_many_steps_as_they_can_take_unless_told_otherwise() {
+        let mut march = Marching::default();
+        let steps = |march: &Marching| [None, Some(100), Some(900)].map(|n| march.ray_steps(n));
+        assert_eq!(steps(&march), [256, 256, 900]);
+        march.steps = Some(77);
+        assert_eq!(steps(&march), [77; 3]);
+        march.mode = Mode::SlidesFast;
+        assert_eq!(steps(&march), [32; 3]);
     }
 
     #[test]

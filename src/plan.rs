@@ -267,11 +267,20 @@ impl Plan {
     pub fn light(&self) -> Light {
         let distance = (self.camera.target - self.camera.eye).length();
         let up = self.camera.up.try_normalize().unwrap_or(DVec3::Z);
-        let crossing = match &self.subject {
+        self.look.light(up, distance, self.crossing())
+    }
+
+    /// Steps that a ray may do.
+    pub fn ray_steps(&self) -> u32 {
+        self.march.ray_steps(self.crossing())
+    }
+
+    /// The most steps that a ray can take through the scene, where that is known.
+    fn crossing(&self) -> Option<u32> {
+        match &self.subject {
             Subject::Heightfield(shape) => shape.crossing(),
             _ => None,
-        };
-        self.look.light(up, distance, crossing)
+        }
     }
 
     /// The passes over cells and pixels, in order.
@@ -286,18 +295,16 @@ impl Plan {
         levels.chain([Pass::Trace]).chain(colours).collect()
     }
 
-    /// The plan without what a frame with extras has no use for: maps that only colours
-    /// are picked by.
+    /// The plan without what a frame with extras has no use for: maps and pictures that
+    /// only colours are picked by.
     pub fn lean(&self, extras: Extras) -> Cow<'_, Self> {
-        let mut plan = Cow::Borrowed(self);
-        if let Subject::Heightfield(shape) = &self.subject
-            && extras.depth_only
-            && shape.paint.is_some()
-            && let Subject::Heightfield(shape) = &mut plan.to_mut().subject
-        {
-            shape.paint = None;
+        match &self.subject {
+            Subject::Heightfield(shape) if extras.depth_only => Cow::Owned(Self {
+                subject: Subject::Heightfield(shape.colorless()),
+                ..self.clone()
+            }),
+            _ => Cow::Borrowed(self),
         }
-        plan
     }
 
     /// What is made before them: the cone maps that the scene needs.
@@ -351,7 +358,7 @@ impl Plan {
         for pass in plan.passes_for(extras) {
             let (cells, limit) = match pass {
                 Pass::March(level) => (level.cells(self.size), level.steps.to_string()),
-                Pass::Trace => (self.size, self.march.ray_steps().to_string()),
+                Pass::Trace => (self.size, self.ray_steps().to_string()),
                 Pass::Color => (self.size, "-".into()),
             };
             line(&pass.name(), cells, &limit);
@@ -388,7 +395,7 @@ impl Plan {
                     shadow::module(self.look.shadow),
                     occlusion::module(self.look.occlusion > 0.0),
                     fog::module(self.look.fog > 0.0),
-                    color::module(extras.normals),
+                    color::module(extras.normals, scene.is_colored()),
                 ]);
                 "color"
             }

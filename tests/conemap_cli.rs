@@ -410,6 +410,16 @@ fn a_map_is_traced_over_the_heights_in_its_own_file() {
 }
 
 #[test]
+fn a_map_never_takes_the_place_of_its_heights() {
+    let folder = Folder::new();
+    folder.write("rock.png", slope());
+    let words = ["rock.png", "another name"];
+    folder.fails(&make("rock.png", &["-o", "rock.png"]), 2, &words);
+    folder.fails(&make("rock.png", &["-o", "./rock.png"]), 2, &words);
+    assert_eq!(folder.bytes("rock.png"), slope());
+}
+
+#[test]
 fn ratios_that_nothing_tells_the_heights_of_are_told_of() {
     let folder = Folder::new();
     let quad = png([4, 4], ColorType::Rgba, BitDepth::Eight, &[9; 4 * 16]);

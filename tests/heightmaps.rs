@@ -302,6 +302,11 @@ fn a_raw_file_needs_the_size_that_it_has() {
     assert_eq!(loaded.heights.at(0, 1), 0.75);
     let why = load_as(&folder, "bare.raw", &sized([3, 3])).expect_err("too few");
     assert!(why.contains("24 bytes") && why.contains("36"), "{why}");
+    // A name and an option that disagree: one of them is wrong.
+    folder.write("rows-3x2.raw", folder.bytes("bare.raw"));
+    let why = load_as(&folder, "rows-3x2.raw", &sized([2, 3])).expect_err("another size");
+    assert!(why.contains("3 x 2") && why.contains("2 x 3"), "{why}");
+    load_as(&folder, "rows-3x2.raw", &sized([3, 2])).expect("its own size");
     // As long as 16-bit numbers would be.
     let why = load_as(&folder, "bare.raw", &sized([4, 3])).expect_err("too few");
     assert!(why.contains("16-bit"), "{why}");
@@ -311,6 +316,21 @@ fn a_raw_file_needs_the_size_that_it_has() {
     );
     let why = load_as(&folder, "grey.png", &sized([1, 1])).expect_err("a size of its own");
     assert!(why.contains("--size"), "{why}");
+}
+
+#[test]
+fn no_field_is_flat_however_few_its_samples() {
+    for field in Field::ALL {
+        for n in [4, 8, 12, 16, 40] {
+            let heights = field.heights([n, n], 1, 2.6);
+            let row = |y: u32| &heights[(y * n) as usize..][..n as usize];
+            let moves = |own: &[f32]| own.iter().any(|z| *z != own[0]);
+            assert!(moves(&heights), "{field:?} {n}");
+            // A checker changes along either axis.
+            let across = field != Field::Checker || moves(row(0)) && row(0) != row(n - 1);
+            assert!(across, "{n}");
+        }
+    }
 }
 
 #[test]

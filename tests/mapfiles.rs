@@ -169,6 +169,7 @@ fn what_a_form_keeps() {
         steps: Bits::Eight.steps(),
         root: true,
         scale: 32.0,
+        again: false,
     };
     let down = file
         .map
@@ -512,6 +513,115 @@ fn a_map_that_was_cut_or_says_nonsense_is_refused() {
         .expect_err("no map")
         .to_string();
     assert!(why.contains("a.txt") && why.contains("PNG or EXR"), "{why}");
+}
+
+/// A PNG whose label says something else.
+fn relabelled(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
+        .read_info()
+        .expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+    reader.next_frame(&mut pixels).expect("pixels");
+    let info = reader.info();
+    let label = &info.uncompressed_latin1_text[0];
+    assert!(label.text.contains(from), "{}", label.text);
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, info.width, info.height);
+    encoder.set_color(info.color_type);
+    encoder.set_depth(info.bit_depth);
+    let text = label.text.replace(from, to);
+    encoder
+        .add_text_chunk(label.keyword.clone(), text)
+        .expect("a text");
+    let mut writer = encoder.write_header().expect("a head");
+    writer.write_image_data(&pixels).expect("pixels");
+    writer.finish().expect("an end");
+    bytes
+}
+
+#[test]
+fn a_label_that_contradicts_itself_is_refused() {
+    let heights = field([8, 6], [false; 2]);
+    let dummer = encode(
+        &made(&heights, MapKind::Samples),
+        &Form::new(Layout::Dummer),
+    );
+    let dummer = dummer.expect("a file");
+    let quad = encode(&made(&heights, MapKind::Quad), &Form::new(Layout::Quad)).expect("a file");
+    for (bytes, from, to, word) in [
+        (&dummer, "\"samples\"", "\"quad\"", "kind"),
+        (&dummer, "\"samples\"", "\"walk\"", "kind"),
+        (&dummer, "\"dummer\"", "\"quad\"", "layout quad"),
+        (&quad, "\"quad\"\nlayout", "\"samples\"\nlayout", "kind"),
+        (&dummer, "scale = 8.0", "scale = 16.0", "scale"),
+        (&dummer, "\"whole\"", "\"most\"", "slopes"),
+        (&dummer, "\"sqrt\"", "\"cube\"", "ratio"),
+        (
+            &dummer,
+            "slopes",
+            "from_ratio = \"cube\"\nslopes",
+            "from_ratio",
+        ),
+    ] {
+        decode_bytes(&relabelled(bytes, from, from)).expect("a map");
+        let why = decode_bytes(&relabelled(bytes, from, to)).expect_err(to);
+        assert!(why.contains(word) && !why.contains('\n'), "{why}");
+    }
+}
+
+#[test]
+fn a_ratio_that_was_no_number_is_never_rounded_up() {
+    // The ratios that numbers are read as, which lie a hair under what these stand for: to
+    // fresh ones, and to such as were read from other numbers, that is a whole step.
+    let form = Form {
+        bits: Bits::Eight,
+        ..Form::new(Layout::Pair)
+    };
+    let steps = Bits::Eight.steps();
+    for root in [true, false] {
+        let form = Form { root, ..form };
+        let ratios = Ratios {
+            steps,
+            root,
+            scale: 16.0,
+            again: false,
+        };
+        // Of one height, so that none is narrowed for the heights' sake.
+        let flat = Heights::new([16, 16], [false; 2], vec![1.0; 256]).expect("heights");
+        let mut fresh = made(&flat, MapKind::Samples);
+        for (n, ratio) in fresh.map.ratios.iter_mut().enumerate() {
+            *ratio = ratios.ratio(n as u16);
+        }
+        let stands = |n: usize| {
+            let share = n as f64 / 255.0;
+            16.0 * if root { share * share } else { share }
+        };
+        let through = |file: &MapFile, form: &Form| {
+            decode_bytes(&encode(file, form).expect("a file")).expect("a map")
+        };
+        let numbers = |file: &MapFile| -> Vec<usize> {
+            let number = |r: &f64| (0..256).find(|n| ratios.ratio(*n as u16) == *r);
+            file.map
+                .ratios
+                .iter()
+                .map(|r| number(r).expect("a number"))
+                .collect()
+        };
+        let small = through(&fresh, &form);
+        let held = numbers(&small);
+        let above = |(n, r): (&usize, &f64)| stands(*n) > *r;
+        assert!(!held.iter().zip(&fresh.map.ratios).any(above));
+        assert!((0..256).any(|n| held[n] < n), "none lies under its number");
+        // From there on nothing is lost, through floats either.
+        let floats = through(&small, &Form::new(Layout::Full));
+        assert_eq!(floats.origin, small.origin);
+        assert_eq!(numbers(&through(&floats, &form)), held);
+        // Floats that came from numbers of the other sort are fresh to these.
+        let mut others = fresh.clone();
+        others.origin = Some(!root);
+        let floats = through(&others, &Form::new(Layout::Full));
+        assert_eq!(numbers(&through(&floats, &form)), held);
+    }
 }
 
 #[test]

@@ -174,7 +174,7 @@ fn blocks_and_chunks_never_change_a_bit() {
         // one that takes all rays over many dispatches.
         for (coarsest, steps) in [(16, 7), (32, 300)] {
             plan.march.coarsest = coarsest;
-            plan.march.steps = steps;
+            plan.march.steps = Some(steps);
             let frame = render(&plan, extras);
             let limited = steps == 7 && !matches!(plan.subject, Subject::Slab(_));
             assert_eq!(frame.census()[2] > 0, limited);
@@ -272,7 +272,7 @@ fn cells_cut_by_the_image_are_complete() {
 fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
     let mut plan = preset("bench-far", [96, 54]);
     plan.march.mode = Mode::Ray;
-    plan.march.steps = 1;
+    plan.march.steps = Some(1);
     let frame = render(&plan, Extras::default());
     // The first sample is taken at the eye, far from everything.
     let [sky, hit, unconverged] = frame.census();
@@ -287,7 +287,7 @@ fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
     plan.march.clip = Some(true);
     plan.look.flag_unconverged = true;
     for steps in [1, 2, 3] {
-        plan.march.steps = steps;
+        plan.march.steps = Some(steps);
         let frame = render(&plan, Extras::default());
         let other = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
         assert!(frame.census()[1] > 100 && frame.census()[2] > 20);
@@ -301,7 +301,7 @@ fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
         }
     }
     // With steps enough there are none.
-    plan.march.steps = 256;
+    plan.march.steps = Some(256);
     assert_eq!(render(&plan, LEVELS).census()[2], 0);
 }
 

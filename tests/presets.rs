@@ -175,9 +175,10 @@ fn every_key_can_be_set_in_a_file_and_by_override_and_reads_back() {
                     assert_eq!(read(&write(&by_set), "again").expect(&file), by_set);
                     changed += usize::from(get(&by_set, section, name) != before);
                 }
-                // More than one tile needs axes that wrap: see the heightfields below.
+                // More than one tile needs axes that wrap, a texture a file: see the
+                // heightfields below.
                 assert!(
-                    changed > 0 || name == "tiles",
+                    changed > 0 || ["tiles", "texture"].contains(&name),
                     "no candidate changes {section}.{name}"
                 );
             }
@@ -213,8 +214,8 @@ fn no_key_takes_what_is_no_value_for_anything_and_says_where() {
                     let place = format!("bad.toml:{line}: ");
                     assert!(e.starts_with(&place), "{e}");
                     // Numbers that TOML has no room for are the parser's to refuse, and
-                    // files of heights and cones are looked for.
-                    let named = ["field", "map"].contains(&name) && text == "\"?\"";
+                    // files of heights, cones and colours are looked for.
+                    let named = ["field", "map", "texture"].contains(&name) && text == "\"?\"";
                     if text != "1e400" && !named {
                         let what = format!("bad.toml:{line}: {section}.{name} = {text}: must be ");
                         assert!(e.starts_with(&what), "{e}");
@@ -331,6 +332,11 @@ fn errors_name_line_key_value_and_what_would_do() {
 #[test]
 fn heightfields_say_what_does_not_fit() {
     let of = |rest: &str| format!("[scene]\nkind = \"heightfield\"\n{rest}\n");
+    let path = "docs/stones.png";
+    let textured = of(&format!("texture = \"{path}\""));
+    let plan = read(&textured, "p.toml").expect("a picture");
+    assert_eq!(get(&plan, "scene", "texture"), Value::String(path.into()));
+    assert_eq!(read(&write(&plan), "again").expect("a picture"), plan);
     let tiled = of("field = \"sine:8x8\"\nwrap = \"xy\"\ntiles = [5, 7]");
     let plan = read(&tiled, "p.toml").expect("tiles of what wraps");
     assert_eq!(get(&plan, "scene", "tiles"), toml("[5, 7]"));

@@ -25,6 +25,7 @@ use conemarch::heightfield::generate::generator::Generator;
 use conemarch::heightfield::generate::program as generate;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::relief::Relief;
+use conemarch::heightfield::texture::Texture;
 use conemarch::heightfield::trace::cones::{Cones, Manner};
 use conemarch::heightfield::trace::linear::LinearBinary;
 use conemarch::heightfield::trace::max_mip::MaxMipTracer;
@@ -197,7 +198,7 @@ fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
 
 /// Files of heightfields: those that make cone maps, and those of every tracer.
 fn heightfield_paths() -> BTreeSet<&'static str> {
-    let mut all = BTreeSet::new();
+    let mut all = BTreeSet::from([Texture::module().path]);
     for program in generate::every_program() {
         all.extend(paths(&program));
     }
@@ -432,7 +433,7 @@ fn what_a_slider_moves_compiles_nothing_new() {
     moved.march.detail = 0.3;
     moved.march.shell = 0.7;
     moved.march.fudge = vec![0.9, 0.5];
-    moved.march.steps = 77;
+    moved.march.steps = Some(77);
     moved.look.key = 1.0;
     moved.look.occlusion *= 0.5;
     moved.look.palette = vec![DVec3::ONE; 3];
@@ -509,7 +510,7 @@ fn the_mandelbox_is_explained() {
         wgsl/pass/shadow.wgsl
         wgsl/pass/occlusion.wgsl
         wgsl/pass/fog_off.wgsl
-        wgsl/pass/color.wgsl  COLOR_KEEPS_NORMALS=0
+        wgsl/pass/color.wgsl  COLOR_KEEPS_NORMALS=0  COLOR_IS_PIGMENT=0
     ");
 }
 

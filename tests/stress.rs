@@ -143,7 +143,7 @@ fn sizes_from_1_pixel_to_a_line() {
 fn limits_of_a_few_steps() {
     for ((name, plan), o) in check("limits_of_a_few_steps") {
         // A ray alone starts at the eye, and a step does not bring it here.
-        if plan.march.mode != Mode::Safe && plan.march.steps == 1 {
+        if plan.march.mode != Mode::Safe && plan.march.steps == Some(1) {
             assert!(o.hits == 0.0 && o.unconverged > 0.4, "{name}: {o:?}");
         }
     }
@@ -253,7 +253,7 @@ fn hits_are_where_the_estimate_is_within_the_threshold() {
         let mut plan = load(name, &[]).unwrap().plan;
         plan.size = SIZE;
         plan.march.shell = 0.9;
-        plan.march.steps = 2000;
+        plan.march.steps = Some(2000);
         plan.march.relaxation = Relaxation::Off;
         let Subject::Distance { shape, .. } = &mut plan.subject else {
             unreachable!("bench presets are Mandelboxes");

@@ -10,7 +10,7 @@ use conemarch::preset::{self, Override};
 use serde::{Deserialize, Serialize};
 
 /// Warm runs that a median is taken of.
-const RUNS: usize = 9;
+const RUNS: usize = 5;
 /// Steps of a ray, as in the paper.
 const STEPS: [u32; 2] = [32, 200];
 /// Length of the block's side in the preset, over which texels are spread.

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use crate::plan::{Plan, Preparation};
+
 /// Assumed where the system does not tell.
 const UNKNOWN: u64 = 16 << 30;
 
@@ -44,9 +46,34 @@ pub fn lacking([w, h]: [u32; 2], bytes_per_pixel: u64, available: u64) -> Option
     ))
 }
 
+/// Most memory that making a cone map takes at once, for each ratio: heights, maxima, the
+/// ratios, and the file encoded and read back, measured and rounded up.
+const BYTES_PER_RATIO: u64 = 64;
+
+/// A sentence where cone maps with so many ratios do not fit.
+pub fn lacking_maps(ratios: u64, available: u64) -> Option<String> {
+    let needed = ratios.saturating_mul(BYTES_PER_RATIO);
+    (needed > available).then(|| {
+        format!(
+            "cone maps with {ratios} ratios need about {needed} bytes of memory, and {available} are available; scale the heights down, or cut them"
+        )
+    })
+}
+
+/// A sentence where what a plan prepares does not fit.
+pub fn lacking_for(plan: &Plan, available: u64) -> Option<String> {
+    let ratios = |made: &Preparation| {
+        let places: u64 = made.places.map(u64::from).iter().product();
+        places * made.generator.channels() as u64
+    };
+    lacking_maps(plan.preparations().iter().map(ratios).sum(), available)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::heightfield::shape::{HeightfieldShape, Wrap};
+    use crate::plan::Subject;
 
     #[test]
     fn a_size_that_is_offered_fits() {
@@ -64,5 +91,23 @@ mod tests {
         let text = "MemTotal:  9 kB\nMemAvailable:     2048 kB\n";
         assert_eq!(meminfo(text), Some(2 << 20));
         assert_eq!(meminfo("nothing"), None);
+    }
+
+    #[test]
+    fn maps_are_weighed_by_their_ratios_before_heights_are_made() {
+        let mut shape = HeightfieldShape::default();
+        shape.source.field = "fbm:8192x8192".into();
+        shape.source.wrap = Wrap::Both;
+        shape.tracing.tracer = "quad";
+        let lacking = |shape: &HeightfieldShape, available| {
+            let plan = Plan::new(Subject::Heightfield(shape.clone()));
+            lacking_for(&plan, available)
+        };
+        let needed = 8192 * 8192 * 4 * BYTES_PER_RATIO;
+        assert_eq!(lacking(&shape, needed), None);
+        let why = lacking(&shape, needed - 1).unwrap_or_default();
+        assert!(why.contains(&format!("{needed} bytes of memory")), "{why}");
+        shape.tracing.tracer = "max-mip";
+        assert_eq!(lacking(&shape, 0), None);
     }
 }

@@ -147,6 +147,9 @@ pub fn run(args: &Render) -> Result<()> {
     if let Some(why) = memory::lacking(plan.size, per_pixel, memory::available()) {
         anyhow::bail!(why);
     }
+    if let Some(why) = memory::lacking_for(&plan.lean(extras), memory::available()) {
+        anyhow::bail!(why);
+    }
     for note in plan.notes() {
         say(&format!("note: {note}"));
     }

@@ -6,7 +6,8 @@ use std::time::Duration;
 use thiserror::Error;
 use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Features, Instance, Limits};
 
-/// Storage buffers that a program may use. Parameters are among them: steering branches
+/// Storage buffers that a program may use: twice as many as WebGPU promises, and fewer than
+/// desktop adapters have. Parameters are among them: steering branches
 /// by uniform buffers makes lavapipe of Mesa 22 inline them, at times past its stack.
 /// Most are those of a cone level over a painted relief with four cones to a sample, counted.
 pub const STORAGE_BUFFERS: u32 = 16;
@@ -206,12 +207,20 @@ impl Device {
         let wanted = Features::TIMESTAMP_QUERY | Features::SHADER_F64;
         let features = adapter.features() & wanted;
         let limits = adapter.limits();
+        let buffers = limits.max_storage_buffers_per_shader_stage;
+        // Told here, where another device or the CPU can still take its place.
+        if buffers < STORAGE_BUFFERS {
+            return Err(DeviceError::Open {
+                name: info.name,
+                why: format!(
+                    "it has {buffers} storage buffers to a stage, and {STORAGE_BUFFERS} are needed"
+                ),
+            });
+        }
         let required_limits = Limits {
             max_buffer_size: limits.max_buffer_size,
             max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
-            // Where there are fewer, most programs still fit.
-            max_storage_buffers_per_shader_stage: STORAGE_BUFFERS
-                .min(limits.max_storage_buffers_per_shader_stage),
+            max_storage_buffers_per_shader_stage: STORAGE_BUFFERS,
             ..Limits::default()
         };
         let descriptor = wgpu::DeviceDescriptor {

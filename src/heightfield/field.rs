@@ -17,7 +17,7 @@ pub enum Field {
     Ridges,
     /// Single samples of 0.4 to 1 over low noise, one in fifty.
     Spikes,
-    /// Blocks of sixteen to the map, high and low.
+    /// Sixteen blocks along each axis, as far as there are samples, high and low.
     Checker,
     /// A sum of four sines.
     Sine,
@@ -90,7 +90,7 @@ impl Field {
                 })
                 .collect(),
             Self::Checker => places
-                .map(|(x, y)| ((x * 16 / w + y * 16 / h) % 2) as f64)
+                .map(|(x, y)| ((x * w.min(16) / w + y * h.min(16) / h) % 2) as f64)
                 .collect(),
             Self::Sine => places
                 .map(|(x, y)| {

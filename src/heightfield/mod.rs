@@ -16,6 +16,7 @@ pub mod relief;
 pub mod shape;
 pub mod source;
 pub mod survey;
+pub mod texture;
 pub mod trace;
 pub mod tracing;
 pub mod under;

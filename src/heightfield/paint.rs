@@ -1,10 +1,13 @@
-//! What picks the hue of a relief: its height, or how wide the cones of a map are.
+//! What colours a relief: its height, how wide the cones of a map are, or a picture.
 //! Twins: `wgsl/heightfield/paint.wgsl`, `paint_height.wgsl`.
+
+use std::sync::Arc;
 
 use super::conemap::{ConeMap, MapKind};
 use super::generate::generator::Generator;
 use super::heights::Patches;
 use super::relief::Relief;
+use super::texture::Texture;
 use crate::shader::Module;
 use crate::wgsl;
 
@@ -67,13 +70,36 @@ impl Paint {
     }
 }
 
-/// The module to join for a paint, or for none.
-pub fn module(paint: Option<&Paint>) -> Module {
-    match paint {
-        Some(paint) => wgsl!(
-            "heightfield/paint.wgsl",
-            "PAINT_OVER_CELLS" = f64::from(u8::from(paint.over_cells)),
-        ),
-        None => wgsl!("heightfield/paint_height.wgsl"),
+/// What colours a relief.
+#[derive(Clone, Debug)]
+pub enum Colors {
+    /// Its height picks the hue.
+    Height,
+    /// Cones pick it.
+    Cones(Arc<Paint>),
+    /// A picture has them.
+    Texture(Arc<Texture>),
+}
+
+impl Colors {
+    /// The module to join.
+    pub fn module(&self) -> Module {
+        match self {
+            Self::Height => wgsl!("heightfield/paint_height.wgsl"),
+            Self::Cones(paint) => wgsl!(
+                "heightfield/paint.wgsl",
+                "PAINT_OVER_CELLS" = f64::from(u8::from(paint.over_cells)),
+            ),
+            Self::Texture(_) => Texture::module(),
+        }
+    }
+
+    /// Bytes to bind, if there are any.
+    pub fn buffer(&self) -> Option<(&'static str, Vec<u8>)> {
+        match self {
+            Self::Height => None,
+            Self::Cones(paint) => Some(paint.buffer()),
+            Self::Texture(texture) => Some(texture.buffer()),
+        }
     }
 }

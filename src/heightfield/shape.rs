@@ -1,6 +1,7 @@
 //! A heightfield as a preset says it: heights, where they lie in the world, and how they are
 //! traced.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use bytemuck::cast_slice;
@@ -11,14 +12,18 @@ use super::generate::generator::Generator;
 use super::heights::{Patches, cells};
 use super::kept::Kept;
 use super::load::Named;
-use super::paint::{PAINTS, Paint};
+use super::paint::{Colors, PAINTS, Paint};
 use super::placed::Placed;
 use super::relief::{MOST_CELLS, MOST_LEVELS, Relief, ReliefError};
+use super::texture::Texture;
 use super::trace::AnyTracer;
 use super::tracing::{Make, PrepareError, Supply, Tracing, on_cpu, without_cones};
-use crate::key::{Counts, Fault, Key, Number, Triple, Word};
+use crate::key::{Counts, Fault, Key, Number, Text, Triple, Word};
 
 pub use super::source::{Source, Wrap};
+
+/// What the key of the texture says where there is none.
+const NO_TEXTURE: &str = "none";
 
 /// What a relief is made from.
 type ReliefKey = (Source, Patches, [u32; 2]);
@@ -48,9 +53,12 @@ pub struct HeightfieldShape {
     pub tracing: Tracing,
     /// Whose cones it is painted by; `None` by its height.
     pub paint: Option<Generator>,
+    /// The path of a picture that colours it instead; `none` for none.
+    pub texture: String,
     reliefs: Kept<ReliefKey, Ground>,
     maps: Kept<MapKey, Option<Supply>>,
     paints: Kept<PaintKey, Paint>,
+    textures: Kept<PathBuf, Texture>,
 }
 
 impl Default for HeightfieldShape {
@@ -65,9 +73,11 @@ impl Default for HeightfieldShape {
             turn: DVec3::ZERO,
             tracing: Tracing::default(),
             paint: None,
+            texture: NO_TEXTURE.into(),
             reliefs: Kept::default(),
             maps: Kept::default(),
             paints: Kept::default(),
+            textures: Kept::default(),
         }
     }
 }
@@ -86,8 +96,8 @@ pub struct Ready {
     pub relief: Arc<Relief>,
     /// What traces rays, with its cones.
     pub tracer: AnyTracer,
-    /// What it is painted by, if not by its height.
-    pub paint: Option<Arc<Paint>>,
+    /// What colours it.
+    pub colors: Colors,
     /// Where it stands.
     pub placed: Placed,
     /// The tracer's name.
@@ -137,6 +147,11 @@ impl HeightfieldShape {
                 Word(&mut self.paint, PAINTS),
                 "what picks the hue: the height, or how wide the cones of a generator's map are",
             ),
+            Key::new(
+                "texture",
+                Text(&mut self.texture),
+                "a PNG that colours each tile in place of the palette; none for none",
+            ),
         ]);
         keys.extend(self.tracing.keys());
         keys
@@ -161,10 +176,23 @@ impl HeightfieldShape {
             Some(Ok(named)) => self.check_tiles(named.size)?,
             None => drop(self.relief()?),
         }
+        if self.is_textured() && self.paint.is_some() {
+            return Err(Fault::new(
+                "scene.texture",
+                "cones paint the relief already (scene.paint); paint = \"height\" would do",
+            ));
+        }
+        self.textured()?;
         if self.tracing.map != "auto" && self.tracing.generator().is_none() {
-            let made = self.cones(&*self.relief()?, &mut on_cpu);
-            if let Err(PrepareError::Fault(fault)) = made {
-                return Err(fault);
+            let relief = self.relief()?;
+            match self.cones(&relief, &mut on_cpu) {
+                Ok(supply) => {
+                    let map = (*supply).as_ref().map(|supply| supply.map.clone());
+                    self.tracing.tracer(&relief, map, 0.0)?;
+                }
+                Err(PrepareError::Fault(fault)) => return Err(fault),
+                // Nothing is generated for a map that is read.
+                Err(PrepareError::Generate(_)) => {}
             }
         }
         Ok(())
@@ -188,7 +216,7 @@ impl HeightfieldShape {
     pub fn notes(&self) -> Vec<String> {
         let from_file = Named::read(&self.source.field).is_none();
         let traced = self.tracing.map != "auto" && self.tracing.generator().is_none();
-        if !from_file && !traced {
+        if !from_file && !traced && !self.is_textured() {
             return Vec::new();
         }
         // What fails here fails again, with a sentence, where it is needed.
@@ -198,6 +226,13 @@ impl HeightfieldShape {
         let mut notes = Vec::from_iter(ground.note.clone());
         if traced && let Ok(supply) = self.cones(&ground.relief, &mut on_cpu) {
             notes.extend(supply.iter().filter_map(|s| s.note.clone()));
+        }
+        if let Ok(Some(texture)) = self.textured() {
+            notes.extend(
+                texture
+                    .note()
+                    .map(|note| format!("{} {note}", self.texture)),
+            );
         }
         notes
     }
@@ -254,9 +289,14 @@ impl HeightfieldShape {
         let sides = DVec2::new(w, h);
         let placed = Placed::new(sides, self.width, self.depth, self.centre, self.turn);
         let pixel = placed.texel / (2.0 * grain);
+        let colors = match (paint, self.textured()?) {
+            (Some(paint), _) => Colors::Cones(paint),
+            (None, Some(texture)) => Colors::Texture(texture),
+            (None, None) => Colors::Height,
+        };
         Ok(Ready {
             tracer: self.tracing.tracer(&relief, cones, pixel)?,
-            paint,
+            colors,
             placed,
             relief,
             name: self.tracing.tracer,
@@ -272,37 +312,69 @@ impl HeightfieldShape {
 
     /// Places of a generator's map along each axis; `None` where there are no heights.
     pub fn places(&self, generator: Generator) -> Option<[u32; 2]> {
-        let relief = self.relief().ok()?;
+        // What is made by name need not be made to know how large it is.
+        let size = match Named::read(&self.source.field) {
+            Some(named) => named.ok()?.size,
+            None => self.relief().ok()?.heights().size(),
+        };
         Some(if generator.over_cells() {
-            relief.cells()
+            cells(size, self.source.wrap.axes(), self.patches)
         } else {
-            relief.heights().size()
+            size
         })
     }
 
-    /// The most steps that a ray of an exact tracer can take; `None` where there are no
-    /// heights.
+    /// The most steps that a ray can take; `None` where there are no heights. A tracer that
+    /// counts its own and stops says so itself.
     pub fn crossing(&self) -> Option<u32> {
         let [w, h] = self.relief().ok()?.domain().map(i32::unsigned_abs);
         // The first cell, and a line of either axis for each other one.
         let cells = w + h;
-        // Up and down the pyramid: a step down for each step up, and those from the top.
-        let climbs = self.tracing.tracer == "max-mip";
-        Some(if climbs {
-            2 * cells + MOST_LEVELS as u32
-        } else {
-            cells
+        Some(match self.tracing.tracer {
+            // Up and down the pyramid: a step down for each step up, and those from the top.
+            "max-mip" => 2 * cells + MOST_LEVELS as u32,
+            "linear-binary" => self.tracing.linear_steps(),
+            _ => cells,
         })
     }
 
-    /// The numbers of a file's heights; none of a field, whose word says everything.
+    /// The numbers of its files' heights and colours; none of a field, whose word says
+    /// everything.
     pub fn contents(&self) -> Vec<u8> {
-        if Named::read(&self.source.field).is_some() {
-            return Vec::new();
+        let mut all = Vec::new();
+        if Named::read(&self.source.field).is_none()
+            && let Ok(relief) = self.relief()
+        {
+            all.extend_from_slice(cast_slice(relief.heights().data()));
         }
-        let relief = self.relief();
-        let heights = relief.as_ref().map(|r| r.heights());
-        heights.map_or(Vec::new(), |h| cast_slice(h.data()).to_vec())
+        if let Ok(Some(texture)) = self.textured() {
+            all.extend(texture.buffer().1);
+        }
+        all
+    }
+
+    /// Whether a picture colours it.
+    pub fn is_textured(&self) -> bool {
+        self.texture != NO_TEXTURE
+    }
+
+    /// The same block, without what only colours are picked by.
+    pub fn colorless(&self) -> Self {
+        Self {
+            paint: None,
+            texture: NO_TEXTURE.into(),
+            ..self.clone()
+        }
+    }
+
+    fn textured(&self) -> Result<Option<Arc<Texture>>, Fault> {
+        if !self.is_textured() {
+            return Ok(None);
+        }
+        let path = self.source.folder.join(&self.texture);
+        let read = self.textures.get(path, |path| Texture::read(path));
+        read.map(Some)
+            .map_err(|why| Fault::new("scene.texture", why))
     }
 
     /// The same block, every first hit found: by a tracer that needs no cones.

@@ -25,8 +25,9 @@ use crate::key::{AutoCount, AutoNumber, Fault, Key, Number, Text, Word};
 const LINEAR_STEPS: u32 = 32;
 /// Halvings after them.
 const LINEAR_ROUNDS: u32 = 6;
-/// Most steps of its own, and most rounds of refinement, that a tracer may have.
-const MOST_STEPS: u32 = 4096;
+/// Most steps of its own, which are no more than shadows may have, and most rounds of
+/// refinement, that a tracer may have.
+const MOST_STEPS: u32 = 2048;
 const MOST_ROUNDS: u32 = 32;
 
 /// Makes cones, on the CPU or on a device.
@@ -204,7 +205,7 @@ impl Tracing {
             Key::new(
                 "offset",
                 Number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
-                "room that the walks' cones leave, in texels",
+                "room that the walks' cones leave, in texels, where they are made",
             ),
         ]
     }
@@ -228,6 +229,11 @@ impl Tracing {
             (refine, _) => refine,
         };
         Some(manner)
+    }
+
+    /// The equal steps of `linear-binary`.
+    pub fn linear_steps(&self) -> u32 {
+        self.steps.unwrap_or(LINEAR_STEPS)
     }
 
     /// Kinds of cones that the tracer can use, the one it makes itself first; none for a
@@ -345,7 +351,7 @@ impl Tracing {
             return Ok(match self.tracer {
                 "linear-binary" => AnyTracer::LinearBinary(LinearBinary::new(
                     relief,
-                    self.steps.unwrap_or(LINEAR_STEPS),
+                    self.linear_steps(),
                     self.rounds.unwrap_or(LINEAR_ROUNDS),
                 )),
                 _ => AnyTracer::MaxMip(MaxMipTracer::new(relief)),

@@ -12,11 +12,13 @@ use crate::shader::Module;
 use crate::view::{Beam, footprint};
 use crate::wgsl;
 
-/// The WGSL module of the pass; normals are written out only where they are asked for.
-pub fn module(keeps_normals: bool) -> Module {
+/// The WGSL module of the pass; normals are written out only where they are asked for, and
+/// the palette looked up only where pigments are not colours themselves.
+pub fn module(keeps_normals: bool, colored: bool) -> Module {
     wgsl!(
         "pass/color.wgsl",
-        "COLOR_KEEPS_NORMALS" = f64::from(u8::from(keeps_normals))
+        "COLOR_KEEPS_NORMALS" = f64::from(u8::from(keeps_normals)),
+        "COLOR_IS_PIGMENT" = f64::from(u8::from(colored))
     )
 }
 
@@ -31,7 +33,11 @@ pub fn shade<S: Solid>(
     grain: f64,
 ) -> (DVec3, bool) {
     let n = surface.normal;
-    let albedo = light.pigment_color(surface.pigment);
+    let albedo = if solid.is_colored() {
+        surface.pigment
+    } else {
+        light.pigment_color(surface.pigment)
+    };
     let facing = n.dot(light.light);
     let key = if facing > 0.0 && light.shadowed {
         shadow::shadow(solid, light, q, n, grain)

@@ -173,7 +173,7 @@ impl Look {
             Key::new(
                 "shadow_steps",
                 AutoCount(&mut self.shadow_steps, 1, MOST_SHADOW_STEPS),
-                "steps that a shadow ray may do; auto is 96, over a heightfield as many as it has cells to cross; at most 512 for a formula",
+                "steps that a shadow ray may do; auto is 96, over a heightfield as many more as one can take, up to 2048; at most 512 for a formula",
             ),
             Key::new(
                 "occlusion",

@@ -61,7 +61,7 @@ impl Job<'_> {
             }
             Pass::Trace => Setup {
                 cells: self.block.size,
-                limit: self.plan.march.ray_steps(),
+                limit: self.plan.ray_steps(),
                 parent_width: parent_width(1),
                 level: None,
             },

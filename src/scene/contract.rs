@@ -44,7 +44,8 @@ pub struct Hit {
 pub struct Surface {
     /// Unit normal.
     pub normal: DVec3,
-    /// Three numbers in 0..1 to look the palette up with.
+    /// Three numbers in 0..1 to look the palette up with; of scenes that are colored
+    /// ([`Solid::is_colored`]) linear red, green and blue.
     pub pigment: DVec3,
 }
 
@@ -84,6 +85,11 @@ pub trait Solid: Sync {
 
     /// The distance from the eye past which there is nothing.
     fn bounds_far(&self) -> f64;
+
+    /// Whether pigments are colours themselves, not numbers to look the palette up with.
+    fn is_colored(&self) -> bool {
+        false
+    }
 }
 
 /// The GPU's side of a scene: modules to join and values to bind.

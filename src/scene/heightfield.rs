@@ -14,7 +14,7 @@ use super::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::cone::ConeRule;
 use crate::frame::Work;
 use crate::heightfield::heights::Patches;
-use crate::heightfield::paint::{self, Paint};
+use crate::heightfield::paint::Colors;
 use crate::heightfield::placed::Placed;
 use crate::heightfield::relief::Relief;
 use crate::heightfield::shape::Ready;
@@ -30,6 +30,8 @@ use crate::wgsl;
 const HEIGHTFIELD_HALVINGS: u32 = 15;
 /// Share of the height above the surface in a guess of the room there is.
 const HEIGHTFIELD_GUESS: f64 = 0.5;
+/// Linear grey of the walls under a texture, which has nothing to say of them: earth.
+const HEIGHTFIELD_WALL: f64 = 0.06;
 /// Rounds of all loops in one step: of `advance` that many sweeps, each a walk over the
 /// levels of the pyramid in up to four runs.
 const HEIGHTFIELD_ROUNDS: u32 = HEIGHTFIELD_HALVINGS * 4 * 16;
@@ -65,7 +67,7 @@ pub struct HeightfieldUniform {
 pub struct Heightfield {
     relief: Arc<Relief>,
     tracer: AnyTracer,
-    paint: Option<Arc<Paint>>,
+    colors: Colors,
     name: &'static str,
     placed: Placed,
     eye: DVec3,
@@ -79,14 +81,14 @@ impl Heightfield {
         let Ready {
             relief,
             tracer,
-            paint,
+            colors,
             placed,
             name,
         } = ready;
         Self {
             relief,
             tracer,
-            paint,
+            colors,
             name,
             far: placed.farthest(eye),
             placed,
@@ -102,10 +104,15 @@ impl Heightfield {
         }
     }
 
-    /// What picks the hue at a place of a cell, of a surface so high.
-    fn hue(&self, cell: [i32; 2], uv: [f64; 2], height: f64) -> f64 {
-        let paint = self.paint.as_ref();
-        paint.map_or(height, |paint| paint.at(&self.relief, cell, uv))
+    /// The pigment at a place of a cell, of a surface so high that faces up so much.
+    fn pigment(&self, cell: [i32; 2], uv: [f64; 2], height: f64, up: f64) -> DVec3 {
+        let hue = match &self.colors {
+            Colors::Height => height,
+            Colors::Cones(paint) => paint.at(&self.relief, cell, uv),
+            Colors::Texture(texture) => return texture.at(&self.relief, cell, uv),
+        };
+        // Steep ground is darker.
+        DVec3::new(hue, up, 0.5)
     }
 
     fn units(&self) -> DVec3 {
@@ -175,10 +182,12 @@ impl Twin for Heightfield {
                 "scene/heightfield.wgsl",
                 "HEIGHTFIELD_HALVINGS" = f64::from(HEIGHTFIELD_HALVINGS),
                 "HEIGHTFIELD_GUESS" = HEIGHTFIELD_GUESS,
+                "HEIGHTFIELD_COLORED" = f64::from(u8::from(self.is_colored())),
+                "HEIGHTFIELD_WALL" = HEIGHTFIELD_WALL,
                 "HIT_CARRIES_MARK" = 1.0
             ),
         ];
-        all.push(paint::module(self.paint.as_deref()));
+        all.push(self.colors.module());
         all.extend(self.tracer.modules());
         all
     }
@@ -201,7 +210,7 @@ impl Twin for Heightfield {
         };
         let mut all = vec![("heightfield_parameters", bytes_of(&scene).to_vec())];
         all.extend(self.tracer.buffers());
-        all.extend(self.paint.as_ref().map(|paint| paint.buffer()));
+        all.extend(self.colors.buffer());
         all
     }
 
@@ -253,8 +262,8 @@ impl Solid for Heightfield {
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Trace {
-        let end = self.far.min(t_max);
-        self.tracer.begin(&self.local(ray), front, end, work)
+        // The tracer ends it with the block.
+        self.tracer.begin(&self.local(ray), front, t_max, work)
     }
 
     fn walk_step(&self, ray: &Beam, walk: &mut Trace, work: &mut Work) -> Step {
@@ -322,7 +331,11 @@ impl Solid for Heightfield {
         if let Some(side) = wall {
             return Surface {
                 normal: self.placed.side(side),
-                pigment: DVec3::new(0.0, 0.3, 0.3),
+                pigment: if self.is_colored() {
+                    DVec3::splat(HEIGHTFIELD_WALL)
+                } else {
+                    DVec3::new(0.0, 0.3, 0.3)
+                },
             };
         }
         let (cell, width) = (hit.cell(), self.relief.cells()[0]);
@@ -334,7 +347,7 @@ impl Solid for Heightfield {
         if self.relief.patches() == Patches::Boxes && z < a - self.slack().z {
             return Surface {
                 normal: self.placed.side(box_side(ray.axis, hit.uv)),
-                pigment: DVec3::new(self.hue(cell, hit.uv, z), 0.0, 0.5),
+                pigment: self.pigment(cell, hit.uv, z, 0.0),
             };
         }
         let [u, v] = hit.uv;
@@ -345,18 +358,18 @@ impl Solid for Heightfield {
         let low = a + u * (b - a);
         let high = c + u * (d - c);
         let steep = slope * (self.placed.depth / self.placed.texel);
+        let up = steep.extend(1.0).length().recip();
         Surface {
             normal: self.placed.normal(slope),
-            // Steep ground is darker.
-            pigment: DVec3::new(
-                self.hue(cell, hit.uv, low + v * (high - low)),
-                steep.extend(1.0).length().recip(),
-                0.5,
-            ),
+            pigment: self.pigment(cell, hit.uv, low + v * (high - low), up),
         }
     }
 
     fn bounds_far(&self) -> f64 {
         self.far
+    }
+
+    fn is_colored(&self) -> bool {
+        matches!(self.colors, Colors::Texture(_))
     }
 }

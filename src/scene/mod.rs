@@ -36,6 +36,18 @@ impl Scene {
         }
     }
 
+    /// Whether pigments are colours themselves.
+    pub fn is_colored(&self) -> bool {
+        struct Asked;
+        impl Task for Asked {
+            type Output = bool;
+            fn run<S: Solid>(self, solid: &S) -> bool {
+                solid.is_colored()
+            }
+        }
+        self.run(Asked)
+    }
+
     /// The GPU's side of the scene.
     pub fn twin(&self) -> &dyn Twin {
         match self {

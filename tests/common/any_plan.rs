@@ -146,7 +146,7 @@ fn marching() -> impl Strategy<Value = Marching> {
                 detail,
                 shell,
                 relaxation,
-                steps,
+                steps: Some(steps),
                 clip,
                 ..Marching::default()
             },

@@ -322,7 +322,7 @@ pub fn limits() -> Vec<Case> {
                 let mut plan = load("bench-outside", &[]).expect("built in").plan;
                 plan.size = SIZE;
                 plan.march.mode = mode;
-                plan.march.steps = steps;
+                plan.march.steps = Some(steps);
                 plan.march.coarsest = coarsest;
                 let name = format!("{}, from 1/{coarsest}, {steps} steps", mode.name());
                 all.push((name, plan));

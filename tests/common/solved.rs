@@ -43,7 +43,7 @@ pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
     plan.camera = camera.clone();
     plan.march.coarsest = 32;
     // Rays that graze a ball creep for hundreds of steps; none is to end half-way.
-    plan.march.steps = 2048;
+    plan.march.steps = Some(2048);
     plan.size = size;
     plan
 }

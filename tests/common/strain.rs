@@ -92,7 +92,7 @@ pub fn faults(plan: &Plan, frame: &Frame) -> Vec<String> {
         "position",
         count(&|i| position[i].iter().any(|x| !x.is_finite())),
     );
-    let limit = plan.march.ray_steps();
+    let limit = plan.ray_steps();
     bad("evaluations", count(&|i| frame.work[i].evaluations > limit));
     for level in &frame.levels {
         let fronts = level.front.iter().filter(|f| !f.is_finite() || **f < 0.0);
@@ -129,7 +129,7 @@ pub fn reference(plan: &Plan) -> Frame {
     let mut plan = plan.clone();
     plan.march.mode = Mode::Truth;
     plan.march.clip = Some(true);
-    plan.march.steps = 1024;
+    plan.march.steps = Some(1024);
     let extras = Extras {
         depth_only: true,
         ..Extras::default()

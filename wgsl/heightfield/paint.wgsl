@@ -5,12 +5,14 @@ override PAINT_OVER_CELLS: bool;
 
 @group(0) @binding(8) var<storage, read> paint: array<f32>;
 
-/// What picks the hue at a place in 0..1 of a cell of the domain, of a surface so high.
-fn relief_paint(cell: vec2<i32>, at: vec2<f32>, height: f32) -> f32 {
-    if PAINT_OVER_CELLS {
-        return paint[relief_number(cell)];
-    }
+/// The pigment at a place in 0..1 of a cell of the domain, of a surface so high that faces
+/// up so much.
+fn relief_paint(cell: vec2<i32>, at: vec2<f32>, height: f32, up: f32) -> vec3<f32> {
     // A box has one sample, a patch one in each corner.
     let near = select(vec2<i32>(at + 0.5), vec2<i32>(0), RELIEF_BOXES);
-    return paint[relief_place(relief_tile_cell(cell) + near)];
+    var place = u32(relief_place(relief_tile_cell(cell) + near));
+    if PAINT_OVER_CELLS {
+        place = relief_number(cell);
+    }
+    return vec3<f32>(paint[place], up, 0.5);
 }

@@ -11,13 +11,18 @@
 @group(2) @binding(5) var<storage, read_write> normals: array<vec4<f32>>;
 
 override COLOR_KEEPS_NORMALS: bool;
+/// Whether pigments are linear colours themselves.
+override COLOR_IS_PIGMENT: bool;
 
 /// Radiance towards the eye of a hit at q, relative to the eye, and 1, or 0 where the
 /// shadow's ray reached its limit; `grain` is half a pixel there, by which shadow and
 /// occlusion stand off the surface.
 fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec4<f32> {
     let n = surface.normal;
-    let albedo = pigment_color(surface.pigment);
+    var albedo = surface.pigment;
+    if !COLOR_IS_PIGMENT {
+        albedo = pigment_color(surface.pigment);
+    }
     let facing = dot(n, look.light);
     // What faces away is dark without asking: it needs no shadow ray.
     var light = Shadow(0.0, true);

@@ -26,6 +26,9 @@ override HEIGHTFIELD_HALVINGS: u32;
 /// Share of the height above the surface in a guess of the room there is.
 override HEIGHTFIELD_GUESS: f32;
 override HIT_CARRIES_MARK: bool;
+/// Whether pigments are colours themselves, and the grey of walls then.
+override HEIGHTFIELD_COLORED: bool;
+override HEIGHTFIELD_WALL: f32;
 
 @group(0) @binding(0) var<storage, read> heightfield_parameters: HeightfieldUniform;
 var<private> heightfield: HeightfieldUniform;
@@ -102,8 +105,8 @@ fn advance(cone: Beam, front: f32) -> Advance {
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
     let origin = heightfield.eye + to_local(ray.origin);
-    let end = min(heightfield.far, t_max);
-    let trace = trace_begin(origin, to_local(ray.axis), front, end);
+    // The tracer ends it with the block.
+    let trace = trace_begin(origin, to_local(ray.axis), front, t_max);
     return Walk(front, trace);
 }
 
@@ -189,7 +192,8 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
         } else if face <= 4u {
             n = vec3<f32>(0.0, select(1.0, -1.0, face == 3u), 0.0);
         }
-        return Surface(to_world(n), vec3<f32>(0.0, 0.3, 0.3));
+        let plain = vec3<f32>(HEIGHTFIELD_WALL);
+        return Surface(to_world(n), select(vec3<f32>(0.0, 0.3, 0.3), plain, HEIGHTFIELD_COLORED));
     }
     let index = i32(hit.id & 0x0fffffffu);
     let cell = vec2<i32>(index % relief.cells.x, index / relief.cells.x);
@@ -199,8 +203,7 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
         let height = heightfield.eye.z + to_local(ray.origin).z + hit.t * d.z;
         // Under the top of its box by more than a rounding: on a side.
         if height < c.x - heightfield.slack.z {
-            let hue = relief_paint(cell, hit.uv, height);
-            return Surface(to_world(box_side(d, hit.uv)), vec3<f32>(hue, 0.0, 0.5));
+            return Surface(to_world(box_side(d, hit.uv)), relief_paint(cell, hit.uv, height, 0.0));
         }
     }
     let slope = vec2<f32>(
@@ -210,5 +213,5 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
     let n = normalize(vec3<f32>(-steep, 1.0));
     let z = mix(mix(c.x, c.y, hit.uv.x), mix(c.z, c.w, hit.uv.x), hit.uv.y);
     // Steep ground is darker.
-    return Surface(to_world(n), vec3<f32>(relief_paint(cell, hit.uv, z), n.z, 0.5));
+    return Surface(to_world(n), relief_paint(cell, hit.uv, z, n.z));
 }

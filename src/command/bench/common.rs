@@ -70,6 +70,9 @@ impl Common {
             if let Some(why) = memory::lacking(plan.size, BYTES_PER_PIXEL, memory::available()) {
                 anyhow::bail!("{name}: {why}");
             }
+            if let Some(why) = memory::lacking_for(plan, memory::available()) {
+                anyhow::bail!("{name}: {why}");
+            }
         }
         Ok(plans)
     }

@@ -6,7 +6,7 @@ use crate::heightfield::conemap::{MapKind, WIDEST};
 use crate::heightfield::generate::slopes::slopes;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::load::Loaded;
-use crate::heightfield::mapfile::{Bits, Layout, MapFile, Slopes, kind_word, promise, wrap_word};
+use crate::heightfield::mapfile::{Layout, MapFile, Slopes, kind_word, promise, wrap_word};
 
 /// Longest bar of a histogram.
 const BAR: f64 = 40.0;
@@ -167,10 +167,7 @@ fn form(file: &MapFile) -> String {
             figure(file.label.scale)
         );
     }
-    let bits = match form.bits {
-        Bits::Eight => 8,
-        Bits::Sixteen => 16,
-    };
+    let bits = form.bits.count();
     format!(
         "PNG, layout {}, {bits} bit, {}ratios {}, 1 means {} texels",
         form.layout.name(),

@@ -1,6 +1,6 @@
 //! `conemarch conemap make HEIGHTS`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result};
@@ -18,6 +18,7 @@ use crate::command::{interrupt, memory};
 use crate::gpu::device::Choice;
 use crate::heightfield::generate::generator::{Generator, Options};
 use crate::heightfield::heights::Patches;
+use crate::heightfield::load::Named;
 use crate::heightfield::mapfile::{MapFile, decode_bytes, encode, kind_word};
 
 /// What `make` takes.
@@ -76,10 +77,6 @@ fn generators() -> impl TypedValueParser<Value = Generator> {
         .map(|word| Generator::named(&word).unwrap_or(Generator::Exact))
 }
 
-/// Most memory that making and writing a map takes at once, for each ratio: heights,
-/// maxima, the ratios, and the file encoded and read back, measured and rounded up.
-const BYTES_PER_RATIO: u64 = 64;
-
 /// Makes a map.
 ///
 /// # Errors
@@ -87,22 +84,25 @@ const BYTES_PER_RATIO: u64 = 64;
 pub fn run(args: &Make) -> Result<()> {
     let generator = args.generator;
     let options = options(args)?;
+    // What is made by name need not be made to know that it is too large.
+    if let Some(Ok(named)) = Named::read(&args.heights) {
+        room(generator, named.size)?;
+    }
     let loaded = args.reading.load(&args.heights)?;
     let heights = &loaded.heights;
+    room(generator, heights.size())?;
     let output = match &args.output.output {
         Some(path) => path.clone(),
         // Never the name of the heights themselves, and the format that keeps all.
         None => PathBuf::from(format!("{}-cones.exr", loaded.name)),
     };
-    let form = args.writing.form(&output, generator.kind())?;
-    let [w, h] = heights.size();
-    let needed = u64::from(w) * u64::from(h) * generator.channels() as u64 * BYTES_PER_RATIO;
-    let available = memory::available();
-    if needed > available {
-        anyhow::bail!(
-            "a cone map of {w} x {h} needs about {needed} bytes of memory, and {available} are available; scale the heights down, or cut them"
-        );
+    if is_same(&output, &args.heights) {
+        return Err(usage(format!(
+            "the map would take the place of its heights, {}; give -o another name",
+            args.heights
+        )));
     }
+    let form = args.writing.form(&output, generator.kind())?;
     interrupt::listen();
     let sink = Sink::prepare(&output)?;
     let patches = if args.boxes {
@@ -136,6 +136,21 @@ pub fn run(args: &Make) -> Result<()> {
         kept(&file, &again)
     ));
     Ok(())
+}
+
+/// Whether a path and an argument name the same file.
+fn is_same(path: &Path, argument: &str) -> bool {
+    let found = |path: &Path| path.canonicalize().ok();
+    found(path).is_some_and(|path| found(Path::new(argument)) == Some(path))
+}
+
+/// That there is memory for a map of heights of a size.
+fn room(generator: Generator, [w, h]: [u32; 2]) -> Result<()> {
+    let ratios = u64::from(w) * u64::from(h) * generator.channels() as u64;
+    match memory::lacking_maps(ratios, memory::available()) {
+        Some(why) => anyhow::bail!(why),
+        None => Ok(()),
+    }
 }
 
 /// What the generator is told; options that it does not know are wrong usage.

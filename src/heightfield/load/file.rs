@@ -16,7 +16,7 @@ use std::path::Path;
 
 use super::named::read_size;
 use crate::heightfield::heights::Patches;
-use crate::heightfield::mapfile::{Bits, Layout, MapError, has_map, is_walk, kind_word, read_map};
+use crate::heightfield::mapfile::{Layout, MapError, has_map, is_walk, kind_word, read_map};
 use crate::heightfield::raster::open::{Format, Opened, open};
 use crate::heightfield::raster::{exr, png, tiff};
 
@@ -70,10 +70,7 @@ fn of_map(path: &Path) -> Result<Grid, String> {
         ));
     }
     let layout = file.form.layout;
-    let bits = match file.form.bits {
-        Bits::Eight => 8,
-        Bits::Sixteen => 16,
-    };
+    let bits = file.form.bits.count();
     let name = layout.name();
     let (form, channel) = match layout {
         Layout::Full => ("EXR, cone map".into(), "the channel height"),
@@ -180,7 +177,15 @@ fn read_raw(path: &Path, mut opened: Opened, size: Option<[u32; 2]>) -> Result<G
         );
     }
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
-    let size = size.or_else(|| stem.and_then(|s| size_in(&s)));
+    let named = stem.and_then(|s| size_in(&s));
+    if let (Some([w, h]), Some([x, y])) = (size, named)
+        && size != named
+    {
+        return Err(format!(
+            "says by its name that it is {x} x {y}, and --size that it is {w} x {h}; leave --size out, or rename it"
+        ));
+    }
+    let size = size.or(named);
     let Some([w, h]) = size else {
         return Err(
             "is raw and does not tell its size; put it into the name like heights-512x256.raw (or give --size WxH where that is an option)"

@@ -124,6 +124,7 @@ fn from_png(file: impl BufRead + Seek, foreign: Option<&Foreign>) -> Result<MapF
         steps,
         root: read.root,
         scale: read.label.scale,
+        again: true,
     };
     let ratios = |channel: usize| pixels.channel(channel).map(|n| numbers.ratio(n));
     let heights = |channel: usize| pixels.channel(channel).map(|n| steps.height(n));
@@ -157,6 +158,8 @@ fn from_png(file: impl BufRead + Seek, foreign: Option<&Foreign>) -> Result<MapF
             (ratios(1).collect(), Some(heights(0).collect()), Vec::new())
         }
     };
+    let origin = Some(read.root);
+    let read = Read { origin, ..read };
     Ok(finished(read, bits, pixels.size, ratios, heights, extra))
 }
 
@@ -174,6 +177,7 @@ fn taken_for(foreign: &Foreign, size: [u32; 2]) -> Result<Read, String> {
         root: foreign.root,
         wrap: foreign.wrap,
         offset: 0.0,
+        origin: None,
         // His program's, most likely; cones do not depend on it.
         slopes: Slopes::Half,
         label: Label {
@@ -268,6 +272,7 @@ fn finished(
         heights,
         extra,
         slopes: None,
+        origin: read.origin,
         form: Form {
             bits,
             root: read.root,

@@ -87,6 +87,7 @@ fn numbers(file: &MapFile, form: &Form) -> Result<(usize, Vec<u16>), String> {
         steps,
         root: form.root,
         scale: file.label.scale,
+        again: file.origin == Some(form.root),
     };
     let map = &file.map;
     if form.layout == Layout::Quad {
@@ -100,7 +101,11 @@ fn numbers(file: &MapFile, form: &Form) -> Result<(usize, Vec<u16>), String> {
         .ok_or("wants heights, and the map comes without; make it from its heights again")?;
     let up: Vec<u16> = heights.iter().map(|z| steps.height_up(*z)).collect();
     let cones = narrowed_all(file, heights, &up, steps);
-    let cones = cones.into_iter().map(|r| ratios.ratio_down(r));
+    let cones = cones.into_iter().zip(&map.ratios).map(|(r, read)| {
+        // One that was narrowed is a fresh one.
+        let again = ratios.again && r == *read;
+        Ratios { again, ..ratios }.ratio_down(r)
+    });
     let both = up.iter().copied().zip(cones);
     if form.layout == Layout::Pair {
         return Ok((2, both.flat_map(|(z, r)| [z, r]).collect()));

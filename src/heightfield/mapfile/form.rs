@@ -103,6 +103,14 @@ pub enum Bits {
 }
 
 impl Bits {
+    /// How many there are.
+    pub fn count(self) -> u32 {
+        match self {
+            Self::Eight => 8,
+            Self::Sixteen => 16,
+        }
+    }
+
     /// The numbers of a channel.
     pub fn steps(self) -> Steps {
         Steps {
@@ -228,6 +236,10 @@ pub struct MapFile {
     /// Rise per texel along both axes at each sample, where it was made already; a file
     /// that holds slopes or normals is written with them.
     pub slopes: Option<Vec<[f32; 2]>>,
+    /// Whether its ratios were read from whole numbers that are square roots, or such that are
+    /// not, here or before they were converted to floats: as numbers of that sort, of whatever
+    /// bits, they become again what they were. None for fresh ratios.
+    pub origin: Option<bool>,
     /// How it is, was or will be written.
     pub form: Form,
     /// What the file says of the map.
@@ -255,6 +267,7 @@ impl MapFile {
             heights: Some(places),
             extra: Vec::new(),
             slopes: None,
+            origin: None,
             form,
             label,
         }

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::form::{Form, Label, Layout, MapFile, Slopes};
+use super::form::{Form, Label, Layout, MapFile, Slopes, scale};
 use super::words::{is_walk, kind_named, kind_word, wrap_named, wrap_word};
 use crate::heightfield::conemap::{MapKind, WIDEST};
 use crate::heightfield::heights::{MOST_SAMPLES, Patches};
@@ -29,6 +29,9 @@ struct Text {
     samples: [u32; 2],
     /// `bilinear` or `boxes`.
     surface: String,
+    /// `linear` or `sqrt`: whole numbers that the ratios of an EXR were read from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    from_ratio: Option<String>,
     /// `whole` or `half`, where the layout has slopes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     slopes: Option<String>,
@@ -38,6 +41,16 @@ struct Text {
     generator: Option<String>,
 }
 
+fn root_word(root: bool) -> &'static str {
+    if root { "sqrt" } else { "linear" }
+}
+
+fn root_named(word: &str) -> Option<bool> {
+    [true, false]
+        .into_iter()
+        .find(|root| root_word(*root) == word)
+}
+
 /// The only version of the text so far.
 const VERSION: u32 = 1;
 
@@ -45,16 +58,19 @@ const VERSION: u32 = 1;
 pub(super) fn write(file: &MapFile, form: &Form) -> Result<String, String> {
     let map = &file.map;
     let label = &file.label;
+    // A PNG says it by its own numbers.
+    let origin = file.origin.filter(|_| form.layout == Layout::Full);
     let text = Text {
         version: VERSION,
         kind: kind_word(map.kind).into(),
         layout: form.layout.name().into(),
-        ratio: if form.root { "sqrt" } else { "linear" }.into(),
+        ratio: root_word(form.root).into(),
         scale: label.scale,
         wrap: wrap_word(map.wrap).into(),
         offset: map.offset,
         samples: label.samples,
         surface: label.patches.name().into(),
+        from_ratio: origin.map(|root| root_word(root).into()),
         slopes: (form.layout == Layout::Dummer).then(|| form.slopes.name().into()),
         heights_sha256: label.digest.clone(),
         generator: label.generator.clone(),
@@ -71,6 +87,7 @@ pub(super) struct Read {
     pub wrap: [bool; 2],
     pub offset: f64,
     pub slopes: Slopes,
+    pub origin: Option<bool>,
     pub label: Label,
 }
 
@@ -113,10 +130,10 @@ pub(super) fn read(text: &str) -> Result<Read, String> {
     let kind = kind_named(&text.kind).ok_or_else(|| wrong("kind", &text.kind))?;
     let layout = Layout::named(&text.layout).ok_or_else(|| wrong("layout", &text.layout))?;
     let wrap = wrap_named(&text.wrap).ok_or_else(|| wrong("wrap", &text.wrap))?;
-    let root = match text.ratio.as_str() {
-        "sqrt" => true,
-        "linear" => false,
-        other => return Err(wrong("ratio", other)),
+    let root = root_named(&text.ratio).ok_or_else(|| wrong("ratio", &text.ratio))?;
+    let origin = match text.from_ratio.as_deref() {
+        None => None,
+        Some(word) => Some(root_named(word).ok_or_else(|| wrong("from_ratio", word))?),
     };
     let patches = match text.surface.as_str() {
         "bilinear" => Patches::Bilinear,
@@ -127,14 +144,19 @@ pub(super) fn read(text: &str) -> Result<Read, String> {
         None => Slopes::Whole,
         Some(word) => Slopes::named(word).ok_or_else(|| wrong("slopes", word))?,
     };
-    if !(1e-3..=WIDEST).contains(&text.scale) {
-        return Err(wrong("scale", &text.scale.to_string()));
+    if layout.lacks(kind).is_some() {
+        let both = format!("{} in the layout {}", text.kind, text.layout);
+        return Err(wrong("kind", &both));
     }
     if !(0.0..=WIDEST).contains(&text.offset) {
         return Err(wrong("offset", &text.offset.to_string()));
     }
     if text.samples.iter().any(|n| !(1..=MOST_SAMPLES).contains(n)) {
         return Err(wrong("samples", &format!("{:?}", text.samples)));
+    }
+    // Nothing else was ever written; another one would make all cones wider or narrower.
+    if text.scale != scale(text.samples) {
+        return Err(wrong("scale", &text.scale.to_string()));
     }
     Ok(Read {
         kind,
@@ -143,6 +165,7 @@ pub(super) fn read(text: &str) -> Result<Read, String> {
         wrap,
         offset: text.offset,
         slopes,
+        origin,
         label: Label {
             samples: text.samples,
             patches,

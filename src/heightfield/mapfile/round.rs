@@ -6,8 +6,11 @@
 //! - A ratio becomes the largest number that stands for no more than it. (Rounding to
 //!   the nearest, as the papers' programs do, widens up to half of all cones.) A number
 //!   is read as the largest f32 that is not above its share of 1, so that an EXR holds it
-//!   as it is; and what was read so becomes the same number again. Maps may change layouts
-//!   as often as anybody likes.
+//!   as it is. Maps remember that they were read from numbers, in EXRs, too: what was read
+//!   so becomes the same number again, and no other ratio becomes one that stands for
+//!   more. (Shares of 8 bits are shares of 16, and f32 tells all of 16 bits apart, as it does
+//!   their squares; but not the ones from the others.) Maps may change layouts as often as
+//!   anybody likes.
 //! - A height becomes the smallest number that decodes to no less than it, so that the
 //!   surface in the file is never below the true one. But neighbours rise by different
 //!   amounts: the height of sample p by `a(p)`, from 0 to one step. A sample q at a
@@ -66,6 +69,8 @@ pub struct Ratios {
     pub root: bool,
     /// Texels that a ratio of 1 in the file means.
     pub scale: f64,
+    /// Whether the ratios were read from such numbers.
+    pub again: bool,
 }
 
 impl Ratios {
@@ -80,8 +85,8 @@ impl Ratios {
         f64::from(share_down(self.share(number), 1.0)) * self.scale
     }
 
-    /// The largest number that stands for no more than a ratio, or the one that was read
-    /// as it.
+    /// The largest number that stands for no more than a ratio, or where ratios were read
+    /// from such numbers the one that was read as it.
     pub fn ratio_down(self, ratio: f64) -> u16 {
         let share = (ratio / self.scale).clamp(0.0, 1.0);
         let share = if self.root { share.sqrt() } else { share };
@@ -94,7 +99,7 @@ impl Ratios {
         while number > 0 && self.share(number) * self.scale > ratio {
             number -= 1;
         }
-        let was_read = number < most && self.ratio(number + 1) == ratio;
+        let was_read = self.again && number < most && self.ratio(number + 1) == ratio;
         if was_read { number + 1 } else { number }
     }
 }

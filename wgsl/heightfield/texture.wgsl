@@ -1,0 +1,36 @@
+// A picture over a relief, once to each tile, interpolated between its texels.
+
+/// Columns, rows, then texels row by row: sRGB of 8 bits, red in the low byte.
+@group(0) @binding(8) var<storage, read> texels: array<u32>;
+
+/// sRGB to linear (IEC 61966-2-1).
+fn texture_linear(c: vec3<f32>) -> vec3<f32> {
+    return select(pow((c + 0.055) / 1.055, vec3<f32>(2.4)), c / 12.92, c <= vec3<f32>(0.04045));
+}
+
+/// The place of an index along an axis: beyond the ends the last one, or the one that comes
+/// round.
+fn texture_index(i: i32, count: i32, wraps: bool) -> i32 {
+    return select(clamp(i, 0, count - 1), (i % count + count) % count, wraps);
+}
+
+fn texture_texel(place: vec2<i32>) -> vec3<f32> {
+    let size = vec2<i32>(i32(texels[0]), i32(texels[1]));
+    let x = texture_index(place.x, size.x, relief.wrap.x == 1u);
+    let y = texture_index(place.y, size.y, relief.wrap.y == 1u);
+    return texture_linear(unpack4x8unorm(texels[2 + y * size.x + x]).rgb);
+}
+
+/// The colour at a place in 0..1 of a cell of the domain.
+fn relief_paint(cell: vec2<i32>, at: vec2<f32>, height: f32, up: f32) -> vec3<f32> {
+    // A sample is the middle of its texel: of a box that is its middle, too.
+    let middle = select(0.5, 0.0, RELIEF_BOXES);
+    let own = vec2<f32>(relief_tile_cell(cell)) + at + middle;
+    let size = vec2<f32>(f32(texels[0]), f32(texels[1]));
+    let place = own / vec2<f32>(relief.samples) * size - 0.5;
+    let low = vec2<i32>(floor(place));
+    let f = place - floor(place);
+    let first = mix(texture_texel(low), texture_texel(low + vec2<i32>(1, 0)), f.x);
+    let second = mix(texture_texel(low + vec2<i32>(0, 1)), texture_texel(low + vec2<i32>(1, 1)), f.x);
+    return mix(first, second, f.y);
+}
