@@ -73,17 +73,22 @@ fn binary(
     rounds: u32,
     work: &mut Work,
 ) -> Refined {
-    let [mut low, mut high] = bracket;
+    let mut left = bracket;
     for _ in 0..rounds {
-        work.iterations += 1;
-        let middle = 0.5 * (low + high);
-        if refine_over(relief, ray, middle) <= 0.0 {
-            high = middle;
-        } else {
-            low = middle;
-        }
+        left = halved(relief, ray, left, work);
     }
-    ([low, high], 0.5 * (low + high))
+    (left, 0.5 * (left[0] + left[1]))
+}
+
+/// The half of a bracket whose ends still lie on both sides.
+fn halved(relief: &Relief, ray: &LocalRay, [low, high]: [f64; 2], work: &mut Work) -> [f64; 2] {
+    work.iterations += 1;
+    let middle = 0.5 * (low + high);
+    if refine_over(relief, ray, middle) <= 0.0 {
+        [low, middle]
+    } else {
+        [middle, high]
+    }
 }
 
 fn secant(
@@ -122,13 +127,7 @@ fn settle(relief: &Relief, ray: &LocalRay, trace: &mut Trace, bracket: [f64; 2],
         if course_cell(relief, ray, low) == course_cell(relief, ray, high) {
             break;
         }
-        work.iterations += 1;
-        let middle = 0.5 * (low + high);
-        if refine_over(relief, ray, middle) <= 0.0 {
-            high = middle;
-        } else {
-            low = middle;
-        }
+        [low, high] = halved(relief, ray, [low, high], work);
     }
     course_land(relief, ray, trace, low);
     for _ in 0..SETTLE_CELLS {
