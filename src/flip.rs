@@ -8,6 +8,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::srgb::linear;
+
 /// Pixels per degree of visual angle: a screen of 3840 pixels and 0.7 m, seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 67.0;
 
@@ -203,17 +205,6 @@ fn from_opponent(c: DVec3) -> DVec3 {
     let y = (c.x + 16.0) / 116.0;
     let n = DVec3::new(y + c.y / 500.0, y, y - c.z / 200.0);
     rgb_matrix().inverse() * (n * white())
-}
-
-fn linear(c: DVec3) -> DVec3 {
-    let one = |v: f64| {
-        if v <= 0.04045 {
-            v / 12.92
-        } else {
-            ((v + 0.055) / 1.055).powf(2.4)
-        }
-    };
-    DVec3::new(one(c.x), one(c.y), one(c.z))
 }
 
 /// The D65 white: what equal red, green and blue give.

@@ -25,5 +25,6 @@ pub mod pyramid;
 pub mod render;
 pub mod scene;
 pub mod shader;
+pub mod srgb;
 pub mod truth;
 pub mod view;

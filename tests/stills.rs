@@ -15,9 +15,9 @@ use conemarch::compare::{Report, compare, quantile};
 use conemarch::cpu;
 use conemarch::frame::{Frame, State};
 use conemarch::mode::{MODES, Mode};
-use conemarch::pass::look::srgb;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{BUILTIN, Override, load};
+use conemarch::srgb::srgb;
 use glam::DVec3;
 
 fn preset(name: &str, size: [u32; 2]) -> Plan {

@@ -12,8 +12,8 @@ use super::heights::Patches;
 use super::raster::open::{Format, open};
 use super::raster::png;
 use super::relief::Relief;
-use crate::pass::look::linear;
 use crate::shader::Module;
+use crate::srgb::linear;
 use crate::wgsl;
 
 /// A picture over a relief.

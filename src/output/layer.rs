@@ -8,8 +8,9 @@ use rayon::prelude::*;
 
 use crate::compare::errors;
 use crate::frame::{Frame, State};
-use crate::pass::look::{Light, srgb};
+use crate::pass::look::Light;
 use crate::plan::{Extras, Plan};
+use crate::srgb::srgb;
 use crate::view::View;
 
 /// What a picture can show.
