@@ -12,7 +12,7 @@ use std::fs;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use conemarch::gpu::device::{Adapters, Choice, Device};
+use conemarch::gpu::device::{Adapters, Choice, Device, PROMISED_BUFFERS};
 use conemarch::heightfield::conemap::ConeMap;
 use conemarch::heightfield::field::Field;
 use conemarch::heightfield::generate::cpu;
@@ -159,7 +159,7 @@ fn open() -> Result<Device> {
     let adapters = Adapters::find();
     let found = adapters.choose(&Choice::Auto)?;
     let (adapter, _) = found.context("there is no adapter")?;
-    Ok(Device::open(adapter)?)
+    Ok(Device::open(adapter, PROMISED_BUFFERS)?)
 }
 
 /// Steps along each ray of Listing 18-2 in the paper on quick maps (section 4.1).

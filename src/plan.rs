@@ -6,6 +6,7 @@
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
 use glam::DVec3;
 
@@ -324,6 +325,14 @@ impl Plan {
     pub fn notes(&self) -> Vec<String> {
         match &self.subject {
             Subject::Heightfield(shape) => shape.notes(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The files that it names, each with the key that does.
+    pub fn files(&self) -> Vec<(&'static str, PathBuf)> {
+        match &self.subject {
+            Subject::Heightfield(shape) => shape.files(),
             _ => Vec::new(),
         }
     }

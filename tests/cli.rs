@@ -391,6 +391,24 @@ fn what_a_heightfield_prepares_is_told_apart() {
     let sum: f64 = walls.filter_map(|p| p["wall_ms"].as_f64()).sum();
     let wall = stats["wall_ms"].as_f64().expect("a time");
     assert!((sum - wall).abs() < 1e-6 * wall.max(1.0), "{sum} {wall}");
+    // A picture may need a map more than its depths do: each pass keeps its own time.
+    let paint = [
+        "--set",
+        "scene.paint=exact",
+        "--set",
+        "scene.tracer=max-mip",
+    ];
+    let output = folder.done(&tiny("terrain", &[&args[..], &paint].concat()));
+    let stats: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let passes = stats["passes"].as_array().expect("a list");
+    let named = |p: &&Value, name: &str| p["name"].as_str().is_some_and(|n| n.starts_with(name));
+    assert_eq!(passes.iter().filter(|p| named(p, "prepare")).count(), 1);
+    let marched = passes
+        .iter()
+        .filter(|p| named(p, "march") || named(p, "trace"));
+    let sum: f64 = marched.filter_map(|p| p["wall_ms"].as_f64()).sum();
+    let wall = stats["wall_ms"].as_f64().expect("a time");
+    assert!((sum - wall).abs() < 1e-6 * wall.max(1.0), "{sum} {wall}");
 }
 
 #[test]

@@ -416,6 +416,7 @@ fn a_map_never_takes_the_place_of_its_heights() {
     let words = ["rock.png", "another name"];
     folder.fails(&make("rock.png", &["-o", "rock.png"]), 2, &words);
     folder.fails(&make("rock.png", &["-o", "./rock.png"]), 2, &words);
+    folder.fails(&inspect("rock.png", &["-o", "rock.png"]), 2, &words);
     assert_eq!(folder.bytes("rock.png"), slope());
 }
 

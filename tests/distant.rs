@@ -25,7 +25,7 @@ use conemarch::heightfield::relief::Relief;
 use conemarch::heightfield::survey::{first_hits, survey, view_rays};
 use conemarch::heightfield::trace::oracle::Oracle;
 use conemarch::heightfield::trace::walk::Walk;
-use conemarch::heightfield::trace::walk_mip::WalkMip;
+use conemarch::heightfield::trace::walk_mip::{WalkMip, node_cones};
 use conemarch::heightfield::trace::{LocalRay, SURFACE, Step, Trace, Tracer};
 use rayon::prelude::*;
 
@@ -37,7 +37,8 @@ fn walk_mip(relief: &Arc<Relief>, map: &Arc<ConeMap>, lod: f64) -> WalkMip {
 }
 
 fn cone_mip(relief: &Arc<Relief>, map: &Arc<ConeMap>, lod: f64) -> WalkMip {
-    WalkMip::of_nodes(relief.clone(), map.clone(), lod).unwrap()
+    let nodes = node_cones(relief, map).unwrap();
+    WalkMip::of_nodes(relief.clone(), map.clone(), nodes, lod).unwrap()
 }
 
 /// By the cones of cells, and by those of nodes.

@@ -548,6 +548,17 @@ fn a_label_that_contradicts_itself_is_refused() {
     );
     let dummer = dummer.expect("a file");
     let quad = encode(&made(&heights, MapKind::Quad), &Form::new(Layout::Quad)).expect("a file");
+    let walk = encode(&made(&heights, MapKind::Walk), &Form::new(Layout::Pair)).expect("a file");
+    // The text of an EXR has no sum to check it.
+    let floats = encode(&made(&heights, MapKind::Walk), &Form::new(Layout::Full));
+    let mut floats = floats.expect("a file");
+    let at = floats
+        .windows(6)
+        .position(|w| w == b"\"full\"")
+        .expect("a layout");
+    floats[at..at + 6].copy_from_slice(b"\"pair\"");
+    let why = decode_bytes(&floats).expect_err("an EXR of numbers");
+    assert!(why.contains("PNG") && why.contains("EXR"), "{why}");
     for (bytes, from, to, word) in [
         (&dummer, "\"samples\"", "\"quad\"", "kind"),
         (&dummer, "\"samples\"", "\"walk\"", "kind"),
@@ -562,6 +573,22 @@ fn a_label_that_contradicts_itself_is_refused() {
             "from_ratio = \"cube\"\nslopes",
             "from_ratio",
         ),
+        (
+            &dummer,
+            "slopes",
+            "from_ratio = \"sqrt\"\nslopes",
+            "from_ratio",
+        ),
+        (&dummer, "offset = 0.0", "offset = 2.0", "offset"),
+        (&dummer, "\"dummer\"\n", "\"full\"\n", "slopes"),
+        (&quad, "layout = \"quad\"", "layout = \"full\"", "EXR"),
+        (
+            &quad,
+            "samples = ",
+            "slopes = \"half\"\nsamples = ",
+            "slopes",
+        ),
+        (&walk, "offset = 1.5", "offset = 0.0", "offset"),
     ] {
         decode_bytes(&relabelled(bytes, from, from)).expect("a map");
         let why = decode_bytes(&relabelled(bytes, from, to)).expect_err(to);

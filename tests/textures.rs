@@ -80,6 +80,11 @@ fn a_texel_lies_on_each_sample_of_a_map_of_the_same_size() {
     let boxes = relief(SIZE, [false, false], Patches::Boxes, [1, 1]);
     same(&boxes, [2, 3], [0.5, 0.5], texel(2, 3));
     same(&boxes, [5, 3], [0.9, 0.75], texel(5, 3));
+    // The one cell of a single sample shows the whole picture, and so does one row of it.
+    let single = relief([1, 1], [false, false], Patches::Bilinear, [1, 1]);
+    same(&single, [0, 0], [1.5 / 6.0, 2.5 / 4.0], texel(1, 2));
+    let row = relief([1, 4], [false, false], Patches::Bilinear, [1, 1]);
+    same(&row, [0, 2], [5.5 / 6.0, 0.0], texel(5, 2));
     // Of another size it is stretched: each of these boxes is two texels by one.
     let wide = relief([3, 4], [false, false], Patches::Boxes, [1, 1]);
     same(&wide, [1, 2], [0.25, 0.5], texel(2, 2));
@@ -221,6 +226,19 @@ fn what_colors_nothing_is_refused_or_told() {
     folder.fails(&both, 2, &["scene.paint", "height"]);
     let told = said(&folder.done(&render("scene.texture=clear.png")));
     assert!(told.contains("note: clear.png is transparent"), "{told}");
+    // What is read is never written over, by whatever name.
+    let over = |name: &'static str| {
+        let small = ["--set", "scene.field=fbm:8x8", "--size", "24x16"];
+        let set = ["--set", "scene.texture=t.png", "-o", name];
+        [&["render", "terrain", "--device", "cpu"][..], &set, &small].concat()
+    };
+    let before = folder.bytes("t.png");
+    for name in ["t.png", "./t.png"] {
+        folder.fails(&over(name), 2, &["the picture", "scene.texture", "-o"]);
+    }
+    let stats = [&over("b.png")[..], &["--stats", "t.png"]].concat();
+    folder.fails(&stats, 2, &["--stats", "scene.texture"]);
+    assert_eq!(folder.bytes("t.png"), before);
     // Depths need no colours.
     let explain = [&render("scene.texture=t.png")[..], &["--explain"]].concat();
     let shown = |args: &[&str]| String::from_utf8(folder.done(args).stdout).unwrap();

@@ -32,7 +32,7 @@ use conemarch::heightfield::trace::cones::{Cones, Lookup, Manner};
 use conemarch::heightfield::trace::linear::LinearBinary;
 use conemarch::heightfield::trace::oracle::Oracle;
 use conemarch::heightfield::trace::walk::Walk;
-use conemarch::heightfield::trace::walk_mip::WalkMip;
+use conemarch::heightfield::trace::walk_mip::{WalkMip, node_cones};
 use conemarch::heightfield::trace::{AnyTracer, LocalRay, SURFACE, Step, Tracer};
 use conemarch::shader::Program;
 use conemarch::wgsl;
@@ -197,7 +197,8 @@ fn distant(relief: &Arc<Relief>) -> Vec<(String, AnyTracer)> {
         (format!("walk-mip {lod}"), AnyTracer::WalkMip(tracer))
     };
     let nodes = |lod: f64| {
-        let tracer = WalkMip::of_nodes(relief.clone(), map.clone(), lod).unwrap();
+        let nodes = node_cones(relief, &map).unwrap();
+        let tracer = WalkMip::of_nodes(relief.clone(), map.clone(), nodes, lod).unwrap();
         (format!("cone-mip {lod}"), AnyTracer::WalkMip(tracer))
     };
     let all = [0.0, 0.1, 3.0].map(|lod| [cells(lod), nodes(lod)]);

@@ -2,7 +2,7 @@
 
 use crate::cpu;
 use crate::frame::Frame;
-use crate::gpu::device::{Adapters, Choice, Device, DeviceError};
+use crate::gpu::device::{Adapters, Choice, Device, DeviceError, STORAGE_BUFFERS};
 use crate::plan::{Extras, Plan};
 use crate::render::{RenderError, Renderer, Watch};
 
@@ -47,20 +47,34 @@ impl Executor {
             return Ok(Self::cpu("as asked"));
         }
         let adapters = Adapters::find();
+        if *choice == Choice::Auto {
+            return Ok(Self::first_that_opens(&adapters));
+        }
         let Some((adapter, why)) = adapters.choose(choice)? else {
             return Ok(Self::cpu("as there is no adapter"));
         };
-        match Device::open(adapter) {
-            Ok(device) => {
-                let who = format!("{} ({why})", device.info.name);
-                Ok((Self::Gpu(Box::new(Renderer::new(device))), who))
+        let device = Device::open(adapter, STORAGE_BUFFERS)?;
+        Ok(Self::gpu(device, &why))
+    }
+
+    /// The best adapter that opens, else the CPU.
+    fn first_that_opens(adapters: &Adapters) -> (Self, String) {
+        let mut failed = None;
+        for (adapter, why) in adapters.in_order() {
+            match Device::open(adapter, STORAGE_BUFFERS) {
+                Ok(device) => return Self::gpu(device, failed.as_deref().unwrap_or(why)),
+                Err(e) => {
+                    let name = adapter.get_info().name;
+                    failed.get_or_insert(format!("as {name} did not open: {e}"));
+                }
             }
-            Err(e) if *choice == Choice::Auto => {
-                let why = format!("as {} did not open: {e}", adapter.get_info().name);
-                Ok(Self::cpu(&why))
-            }
-            Err(e) => Err(e),
         }
+        Self::cpu(failed.as_deref().unwrap_or("as there is no adapter"))
+    }
+
+    fn gpu(device: Device, why: &str) -> (Self, String) {
+        let who = format!("{} ({why})", device.info.name);
+        (Self::Gpu(Box::new(Renderer::new(device))), who)
     }
 
     fn cpu(why: &str) -> (Self, String) {

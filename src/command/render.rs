@@ -12,7 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::executor::{Executor, device};
 use super::failure::usage;
 use super::print::{print, say};
-use super::sink::{Parcel, Sink, apart, is_stdout};
+use super::sink::{Parcel, Sink, apart, is_stdout, spared};
 use super::stats::{Stats, shares, undecided};
 use super::{interrupt, memory, size};
 use crate::frame::Frame;
@@ -141,7 +141,9 @@ pub fn run(args: &Render) -> Result<()> {
     };
     let format = format(args, &output)?;
     let stats = args.stats.as_deref();
-    apart(&[("the picture", Some(&output)), ("--stats", stats)])?;
+    let outputs = [("the picture", Some(output.as_path())), ("--stats", stats)];
+    apart(&outputs)?;
+    spared(&outputs, &plan.files())?;
     let extras = extras(args, format);
     let per_pixel = bytes_per_pixel(format, args.device == Choice::Cpu);
     if let Some(why) = memory::lacking(plan.size, per_pixel, memory::available()) {
@@ -330,8 +332,9 @@ fn warm_times(executor: &mut Executor, plan: &Plan, frame: &mut Frame) -> Result
     let middle = &runs[AGAIN / 2];
     frame.march_ms = middle.march_ms;
     // What was prepared is kept: only the first time tells what it takes.
-    let passes = frame.passes.iter_mut().zip(&middle.passes);
-    for (pass, warm) in passes.filter(|(pass, _)| pass.marches()) {
+    let passes = frame.passes.iter_mut().filter(|pass| pass.marches());
+    let warm = middle.passes.iter().filter(|pass| pass.marches());
+    for (pass, warm) in passes.zip(warm) {
         pass.gpu_ms = warm.gpu_ms;
         pass.wall_ms = warm.wall_ms;
     }

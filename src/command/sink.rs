@@ -69,6 +69,28 @@ pub fn apart(outputs: &[(&str, Option<&Path>)]) -> Result<()> {
     Ok(())
 }
 
+/// Refuses outputs that would take the place of what the command reads. Each comes with what
+/// it is called.
+///
+/// # Errors
+/// An output is one of the inputs, by whatever name.
+pub fn spared(outputs: &[(&str, Option<&Path>)], inputs: &[(&str, PathBuf)]) -> Result<()> {
+    for (option, path) in outputs {
+        let Some(path) = path.filter(|path| !is_stdout(path)) else {
+            continue;
+        };
+        let file = file_of(path);
+        let taken = inputs.iter().find(|(_, input)| file_of(input) == file);
+        if let Some((what, _)) = taken {
+            return Err(usage(format!(
+                "{option} would take the place of {what}, `{}`; give it another name with -o or its option",
+                path.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// The file behind a name: links and ways around taken out, be it there already or not.
 fn file_of(path: &Path) -> PathBuf {
     if is_stdout(path) {

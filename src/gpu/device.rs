@@ -6,11 +6,14 @@ use std::time::Duration;
 use thiserror::Error;
 use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Features, Instance, Limits};
 
-/// Storage buffers that a program may use: twice as many as WebGPU promises, and fewer than
-/// desktop adapters have. Parameters are among them: steering branches
-/// by uniform buffers makes lavapipe of Mesa 22 inline them, at times past its stack.
+/// Storage buffers that a pass over pixels may use: twice as many as WebGPU promises, and
+/// fewer than desktop adapters have. Parameters are among them: steering branches by uniform
+/// buffers makes lavapipe of Mesa 22 inline them, at times past its stack.
 /// Most are those of a cone level over a painted relief with four cones to a sample, counted.
 pub const STORAGE_BUFFERS: u32 = 16;
+
+/// Storage buffers that WebGPU promises everywhere. To make cone maps takes fewer.
+pub const PROMISED_BUFFERS: u32 = 8;
 
 /// What can go wrong between asking for a device and waiting for its work.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -127,31 +130,40 @@ impl Adapters {
         names.join(", ")
     }
 
+    /// All adapters with the reason to take them where none is asked for: hardware first, the
+    /// fastest kind first, then software.
+    pub fn in_order(&self) -> Vec<(&Adapter, &'static str)> {
+        let rank = |adapter: &&Adapter| match adapter.get_info().device_type {
+            DeviceType::DiscreteGpu => 0,
+            DeviceType::IntegratedGpu => 1,
+            DeviceType::Cpu => 3,
+            _ => 2,
+        };
+        let mut all: Vec<&Adapter> = self.list.iter().collect();
+        all.sort_by_key(rank);
+        let reason = |adapter: &Adapter| match adapter.get_info().device_type {
+            DeviceType::Cpu => "software Vulkan, as there is no hardware adapter",
+            _ => "the best hardware adapter",
+        };
+        all.into_iter().map(|a| (a, reason(a))).collect()
+    }
+
     /// The adapter that a choice means, with the reason; `None` for the CPU executor.
     pub fn choose(&self, choice: &Choice) -> Result<Option<(&Adapter, String)>, DeviceError> {
         let infos: Vec<AdapterInfo> = self.list.iter().map(Adapter::get_info).collect();
         let best = |wanted: fn(&AdapterInfo) -> bool| {
-            let rank = |info: &AdapterInfo| match info.device_type {
-                DeviceType::DiscreteGpu => 0,
-                DeviceType::IntegratedGpu => 1,
-                _ => 2,
-            };
-            let fit = infos.iter().enumerate().filter(|(_, info)| wanted(info));
-            fit.min_by_key(|(_, info)| rank(info)).map(|(i, _)| i)
+            let mut fit = self.in_order().into_iter().map(|(a, _)| a);
+            let found = fit.find(|a| wanted(&a.get_info()))?;
+            self.list.iter().position(|a| std::ptr::eq(a, found))
         };
         let hardware: fn(&AdapterInfo) -> bool = |i| i.device_type != DeviceType::Cpu;
         let software: fn(&AdapterInfo) -> bool = |i| i.device_type == DeviceType::Cpu;
         let (found, reason, asked) = match choice {
             Choice::Cpu => return Ok(None),
-            Choice::Auto => match (best(hardware), best(software)) {
-                (Some(i), _) => (Some(i), "the best hardware adapter", "auto"),
-                (None, Some(i)) => (
-                    Some(i),
-                    "software Vulkan, as there is no hardware adapter",
-                    "auto",
-                ),
-                (None, None) => return Ok(None),
-            },
+            Choice::Auto => {
+                let first = self.in_order().into_iter().next();
+                return Ok(first.map(|(adapter, why)| (adapter, why.to_string())));
+            }
             Choice::Hardware => (best(hardware), "as asked", "hardware adapter"),
             Choice::Software => (best(software), "as asked", "software adapter"),
             Choice::Index(i) => (Some(*i).filter(|i| *i < infos.len()), "as asked", ""),
@@ -201,26 +213,30 @@ pub struct Device {
 }
 
 impl Device {
-    /// Opens an adapter with its own limits, timestamps and f64 where it has them.
-    pub fn open(adapter: &Adapter) -> Result<Self, DeviceError> {
+    /// Opens an adapter with its own limits, timestamps and f64 where it has them, for
+    /// programs that bind up to so many storage buffers.
+    ///
+    /// # Errors
+    /// It has not as many, or does not open.
+    pub fn open(adapter: &Adapter, storage_buffers: u32) -> Result<Self, DeviceError> {
         let info = adapter.get_info();
         let wanted = Features::TIMESTAMP_QUERY | Features::SHADER_F64;
         let features = adapter.features() & wanted;
         let limits = adapter.limits();
         let buffers = limits.max_storage_buffers_per_shader_stage;
         // Told here, where another device or the CPU can still take its place.
-        if buffers < STORAGE_BUFFERS {
+        if buffers < storage_buffers {
             return Err(DeviceError::Open {
                 name: info.name,
                 why: format!(
-                    "it has {buffers} storage buffers to a stage, and {STORAGE_BUFFERS} are needed"
+                    "it has {buffers} storage buffers to a stage, and {storage_buffers} are needed"
                 ),
             });
         }
         let required_limits = Limits {
             max_buffer_size: limits.max_buffer_size,
             max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
-            max_storage_buffers_per_shader_stage: STORAGE_BUFFERS,
+            max_storage_buffers_per_shader_stage: storage_buffers,
             ..Limits::default()
         };
         let descriptor = wgpu::DeviceDescriptor {

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use bytemuck::cast_slice;
 use glam::{DVec2, DVec3};
 
-use super::conemap::ConeMap;
 use super::generate::generator::Generator;
 use super::heights::{Patches, cells};
 use super::kept::Kept;
@@ -150,7 +149,7 @@ impl HeightfieldShape {
             Key::new(
                 "texture",
                 Text(&mut self.texture),
-                "a PNG that colours each tile in place of the palette; none for none",
+                "a PNG that colours each tile in place of the palette, a texel to a sample where sizes are the same; none for none",
             ),
         ]);
         keys.extend(self.tracing.keys());
@@ -187,8 +186,7 @@ impl HeightfieldShape {
             let relief = self.relief()?;
             match self.cones(&relief, &mut on_cpu) {
                 Ok(supply) => {
-                    let map = (*supply).as_ref().map(|supply| supply.map.clone());
-                    self.tracing.tracer(&relief, map, 0.0)?;
+                    self.tracing.tracer(&relief, (*supply).as_ref(), 0.0)?;
                 }
                 Err(PrepareError::Fault(fault)) => return Err(fault),
                 // Nothing is generated for a map that is read.
@@ -211,6 +209,21 @@ impl HeightfieldShape {
         Ok(())
     }
 
+    /// The files that it names, each with the key that does.
+    pub fn files(&self) -> Vec<(&'static str, PathBuf)> {
+        let heights = Named::read(&self.source.field).is_none();
+        let map = self.tracing.map != "auto" && self.tracing.generator().is_none();
+        let named = [
+            (heights, "scene.field", &self.source.field),
+            (map, "scene.map", &self.tracing.map),
+            (self.is_textured(), "scene.texture", &self.texture),
+        ];
+        let given = named.into_iter().filter(|(is, ..)| *is);
+        given
+            .map(|(_, key, name)| (key, self.source.folder.join(name)))
+            .collect()
+    }
+
     /// What is to be told of the files that it names: what was left out of them, and what
     /// is taken on trust. Each with the file's name.
     pub fn notes(&self) -> Vec<String> {
@@ -228,11 +241,9 @@ impl HeightfieldShape {
             notes.extend(supply.iter().filter_map(|s| s.note.clone()));
         }
         if let Ok(Some(texture)) = self.textured() {
-            notes.extend(
-                texture
-                    .note()
-                    .map(|note| format!("{} {note}", self.texture)),
-            );
+            let path = self.source.folder.join(&self.texture);
+            let note = texture.note();
+            notes.extend(note.map(|note| format!("{} {note}", path.display())));
         }
         notes
     }
@@ -256,8 +267,7 @@ impl HeightfieldShape {
         let relief = self.relief()?;
         let cones = self.cones(&relief, &mut on_cpu)?;
         let paint = self.painted(&relief, &mut on_cpu)?;
-        let cones = cones.as_ref().as_ref().map(|supply| supply.map.clone());
-        self.assembled(relief, cones, paint, grain)
+        self.assembled(relief, (*cones).as_ref(), paint, grain)
     }
 
     /// What [`HeightfieldShape::ready`] gives, with maps of no cones in place of those
@@ -275,13 +285,13 @@ impl HeightfieldShape {
             Ok(Arc::new(Paint::new(&map)))
         };
         let paint = self.paint.map(paint).transpose()?;
-        self.assembled(relief, cones.map(|supply| supply.map), paint, grain)
+        self.assembled(relief, cones.as_ref(), paint, grain)
     }
 
     fn assembled(
         &self,
         relief: Arc<Relief>,
-        cones: Option<Arc<ConeMap>>,
+        cones: Option<&Supply>,
         paint: Option<Arc<Paint>>,
         grain: f64,
     ) -> Result<Ready, PrepareError> {

@@ -1,7 +1,8 @@
 //! A picture that colours a relief. Twin: `wgsl/heightfield/texture.wgsl`.
 //!
-//! It lies over the whole map, once to each tile, whatever its own size: a picture as large
-//! as the map has a texel for each sample. Texels are sRGB of 8 bits and become linear
+//! It is stretched over the whole map, once to each tile, whatever its own size: a picture as
+//! large as the map has a texel for each sample, whose middle lies on it. A map that ends does
+//! so at its last samples, and the outer halves of their texels are not seen. Texels are sRGB of 8 bits and become linear
 //! before they are interpolated. Far away none are averaged: render larger and scale down.
 
 use std::path::Path;
@@ -68,13 +69,13 @@ impl Texture {
     pub fn at(&self, relief: &Relief, cell: [i32; 2], uv: [f64; 2]) -> DVec3 {
         let own = relief.tile_cell(cell);
         let heights = relief.heights();
-        // A sample is the middle of its texel: of a box that is its middle, too.
-        let middle = match relief.patches() {
-            Patches::Bilinear => 0.5,
-            Patches::Boxes => 0.0,
-        };
         let place = |a: usize| {
-            let share = (f64::from(own[a]) + uv[a] + middle) / f64::from(heights.size()[a]);
+            let (n, round) = (heights.size()[a], heights.wrap()[a]);
+            // A sample is the middle of its texel: a box is one, and so is the one cell of an
+            // axis with a single sample.
+            let is_one = relief.patches() == Patches::Boxes || n == 1 && !round;
+            let middle = if is_one { 0.0 } else { 0.5 };
+            let share = (f64::from(own[a]) + uv[a] + middle) / f64::from(n);
             share * f64::from(self.size[a]) - 0.5
         };
         let (x, y) = (place(0), place(1));

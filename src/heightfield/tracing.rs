@@ -17,7 +17,7 @@ use super::trace::max_mip::MaxMipTracer;
 use super::trace::refine::Refine;
 use super::trace::relaxed::WalkRelaxed;
 use super::trace::walk::Walk;
-use super::trace::walk_mip::WalkMip;
+use super::trace::walk_mip::{NodeCones, WalkMip, node_cones};
 use super::trace::{AnyTracer, TraceError};
 use crate::key::{AutoCount, AutoNumber, Fault, Key, Number, Text, Word};
 
@@ -25,8 +25,8 @@ use crate::key::{AutoCount, AutoNumber, Fault, Key, Number, Text, Word};
 const LINEAR_STEPS: u32 = 32;
 /// Halvings after them.
 const LINEAR_ROUNDS: u32 = 6;
-/// Most steps of its own, which are no more than shadows may have, and most rounds of
-/// refinement, that a tracer may have.
+/// Most steps of its own that a tracer may be given, as many as shadows have at most, and most
+/// rounds of refinement.
 const MOST_STEPS: u32 = 2048;
 const MOST_ROUNDS: u32 = 32;
 
@@ -92,6 +92,8 @@ impl From<Fault> for PrepareError {
 pub struct Supply {
     /// The map.
     pub map: Arc<ConeMap>,
+    /// The cones of nodes, for the tracer that steps by them.
+    pub nodes: Option<NodeCones>,
     /// What is taken on trust of a file; with the file's name.
     pub note: Option<String>,
 }
@@ -100,6 +102,7 @@ impl From<ConeMap> for Supply {
     fn from(map: ConeMap) -> Self {
         Self {
             map: Arc::new(map),
+            nodes: None,
             note: None,
         }
     }
@@ -302,9 +305,19 @@ impl Tracing {
             return Ok(None);
         }
         let (heights, patches) = (relief.heights(), relief.patches());
-        if let Some(generator) = self.generator() {
-            return Ok(Some(self.made(generator, relief, make)?.into()));
+        let mut supply = match self.generator() {
+            Some(generator) => Supply::from(self.made(generator, relief, make)?),
+            None => self.read(folder, heights, patches)?,
+        };
+        if self.tracer == "cone-mip" {
+            let nodes = node_cones(relief, &supply.map).map_err(|e| fault(e.to_string()))?;
+            supply.nodes = Some(nodes);
         }
+        Ok(Some(supply))
+    }
+
+    /// The cones of a file.
+    fn read(&self, folder: &Path, heights: &Heights, patches: Patches) -> Result<Supply, Fault> {
         let path = folder.join(&self.map);
         let file = read_map(&path).map_err(|e| fault(e.to_string()))?;
         let wanted = Wanted {
@@ -315,10 +328,10 @@ impl Tracing {
         };
         file.fit(&path, &wanted).map_err(|e| fault(e.to_string()))?;
         let note = file.unknown();
-        Ok(Some(Supply {
+        Ok(Supply {
             note: note.map(|note| format!("{} {note}", path.display())),
-            map: Arc::new(file.map),
-        }))
+            ..Supply::from(file.map)
+        })
     }
 
     /// The cones of a generator.
@@ -343,11 +356,11 @@ impl Tracing {
     pub fn tracer(
         &self,
         relief: &Arc<Relief>,
-        cones: Option<Arc<ConeMap>>,
+        cones: Option<&Supply>,
         pixel: f64,
     ) -> Result<AnyTracer, Fault> {
         let relief = relief.clone();
-        let Some(map) = cones else {
+        let Some(Supply { map, nodes, .. }) = cones.cloned() else {
             return Ok(match self.tracer {
                 "linear-binary" => AnyTracer::LinearBinary(LinearBinary::new(
                     relief,
@@ -360,13 +373,13 @@ impl Tracing {
         let made = match (self.manner(), self.tracer) {
             (Some(manner), _) => Cones::new(relief, map, manner).map(AnyTracer::Cones),
             (None, "walk") => Walk::new(relief, map).map(AnyTracer::Walk),
-            (None, "walk-mip") => {
+            (None, "walk-mip" | "cone-mip") => {
                 let lod = self.lod.unwrap_or(pixel);
-                WalkMip::new(relief, map, lod).map(AnyTracer::WalkMip)
-            }
-            (None, "cone-mip") => {
-                let lod = self.lod.unwrap_or(pixel);
-                WalkMip::of_nodes(relief, map, lod).map(AnyTracer::WalkMip)
+                let made = match nodes {
+                    Some(nodes) => WalkMip::of_nodes(relief, map, nodes, lod),
+                    None => WalkMip::new(relief, map, lod),
+                };
+                made.map(AnyTracer::WalkMip)
             }
             (None, _) => WalkRelaxed::new(relief, map).map(AnyTracer::WalkRelaxed),
         };

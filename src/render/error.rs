@@ -21,7 +21,8 @@ pub enum RenderError {
     Prepare(PrepareError),
     /// Something that the scene brings has no room in a buffer of the device.
     #[error(
-        "the device `{device}` binds at most {most} bytes at once, and `{what}` of the scene needs {needed}; a smaller height map, another --device, or --device cpu would do"
+        "the device `{device}` binds at most {most} bytes at once, and `{what}` of the scene needs {needed}; {}, another --device, or --device cpu would do",
+        smaller(.what)
     )]
     TooLarge {
         /// Its name.
@@ -58,5 +59,13 @@ impl From<PrepareError> for RenderError {
             PrepareError::Generate(GenerateError::Kernel(e)) => Self::Kernel(e),
             other => Self::Prepare(other),
         }
+    }
+}
+
+/// What would be smaller in a buffer of the scene.
+fn smaller(what: &str) -> &'static str {
+    match what {
+        "texels" => "a smaller scene.texture",
+        _ => "a smaller height map",
     }
 }

@@ -11,7 +11,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{LazyLock, Mutex};
 
 use conemarch::frame::Frame;
-use conemarch::gpu::device::{Adapters, Choice, Device};
+use conemarch::gpu::device::{Adapters, Choice, Device, STORAGE_BUFFERS};
 use conemarch::plan::{Extras, Plan};
 use conemarch::render::{Cutting, Renderer};
 
@@ -23,7 +23,7 @@ fn try_open() -> Result<Renderer, String> {
     let adapters = Adapters::find();
     let chosen = adapters.choose(&Choice::Auto).map_err(|e| e.to_string())?;
     let (adapter, _) = chosen.ok_or("there is no adapter")?;
-    let device = Device::open(adapter).map_err(|e| e.to_string())?;
+    let device = Device::open(adapter, STORAGE_BUFFERS).map_err(|e| e.to_string())?;
     Ok(Renderer::new(device))
 }
 

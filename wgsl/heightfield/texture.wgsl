@@ -23,8 +23,10 @@ fn texture_texel(place: vec2<i32>) -> vec3<f32> {
 
 /// The colour at a place in 0..1 of a cell of the domain.
 fn relief_paint(cell: vec2<i32>, at: vec2<f32>, height: f32, up: f32) -> vec3<f32> {
-    // A sample is the middle of its texel: of a box that is its middle, too.
-    let middle = select(0.5, 0.0, RELIEF_BOXES);
+    // A sample is the middle of its texel: a box is one, and so is the one cell of an axis
+    // with a single sample.
+    let alone = (relief.samples == vec2<i32>(1)) & (relief.wrap == vec2<u32>(0u));
+    let middle = select(vec2<f32>(0.5), vec2<f32>(0.0), alone | vec2<bool>(RELIEF_BOXES));
     let own = vec2<f32>(relief_tile_cell(cell)) + at + middle;
     let size = vec2<f32>(f32(texels[0]), f32(texels[1]));
     let place = own / vec2<f32>(relief.samples) * size - 0.5;

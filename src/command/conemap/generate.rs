@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::command::interrupt;
-use crate::gpu::device::{Adapters, Choice, Device, DeviceError};
+use crate::gpu::device::{Adapters, Choice, Device, DeviceError, PROMISED_BUFFERS};
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::generate::generator::{GenerateError, Generator, Options};
 use crate::heightfield::generate::{cpu, device, slopes as on_cpu};
@@ -47,7 +47,7 @@ impl Maker {
             Err(_) if auto => return cpu("as there is no hardware adapter"),
             Err(e) => return Err(e),
         };
-        match Device::open(adapter) {
+        match Device::open(adapter, PROMISED_BUFFERS) {
             Ok(device) => {
                 let who = format!("{} ({why})", device.info.name);
                 Ok((Self::Gpu(Box::new(device)), who))

@@ -10,7 +10,7 @@ use super::describe::{describe_heights, describe_map};
 use super::panels::{heights_panels, map_panels};
 use crate::command::failure::usage;
 use crate::command::print::{print, say};
-use crate::command::sink::Sink;
+use crate::command::sink::{Sink, spared};
 use crate::heightfield::mapfile::{MapFile, Wanted, has_map};
 
 /// What `inspect` takes.
@@ -40,6 +40,15 @@ pub struct Inspect {
 /// # Errors
 /// Neither a map nor heights, a map of other heights, an unwritable picture.
 pub fn run(args: &Inspect) -> Result<()> {
+    let heights = args
+        .heights
+        .iter()
+        .map(|h| ("the heights", PathBuf::from(h)));
+    let read = std::iter::once(("what it shows", PathBuf::from(&args.file)));
+    spared(
+        &[("the picture", args.output.as_deref())],
+        &read.chain(heights).collect::<Vec<_>>(),
+    )?;
     let picture = args.output.as_deref().map(prepared).transpose()?;
     let path = Path::new(&args.file);
     // Fields have no file; what is neither is told by the reader of heights.

@@ -1,6 +1,6 @@
 //! `conemarch conemap make HEIGHTS`
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
@@ -13,13 +13,13 @@ use super::generate::{Maker, generate, slopes};
 use crate::command::executor::device;
 use crate::command::failure::usage;
 use crate::command::print::say;
-use crate::command::sink::Sink;
+use crate::command::sink::{Sink, spared};
 use crate::command::{interrupt, memory};
 use crate::gpu::device::Choice;
 use crate::heightfield::generate::generator::{Generator, Options};
 use crate::heightfield::heights::Patches;
 use crate::heightfield::load::Named;
-use crate::heightfield::mapfile::{MapFile, decode_bytes, encode, kind_word};
+use crate::heightfield::mapfile::{MapFile, Slopes, decode_bytes, encode, kind_word};
 
 /// What `make` takes.
 #[derive(Args, Debug)]
@@ -96,12 +96,10 @@ pub fn run(args: &Make) -> Result<()> {
         // Never the name of the heights themselves, and the format that keeps all.
         None => PathBuf::from(format!("{}-cones.exr", loaded.name)),
     };
-    if is_same(&output, &args.heights) {
-        return Err(usage(format!(
-            "the map would take the place of its heights, {}; give -o another name",
-            args.heights
-        )));
-    }
+    spared(
+        &[("the map", Some(&output))],
+        &[("its heights", PathBuf::from(&args.heights))],
+    )?;
     let form = args.writing.form(&output, generator.kind())?;
     interrupt::listen();
     let sink = Sink::prepare(&output)?;
@@ -116,7 +114,7 @@ pub fn run(args: &Make) -> Result<()> {
     let map = generate(&maker, generator, heights, patches, &options)?;
     let took = start.elapsed().as_secs_f64() * 1e3;
     let mut file = MapFile::new(map, heights, patches, &made_by(generator, &options));
-    if form.layout.has_slopes() {
+    if form.layout.has_slopes() && form.slopes == Slopes::Whole {
         file.slopes = Some(slopes(&maker, heights)?);
     }
     let bytes = encode(&file, &form).map_err(of_map)?;
@@ -136,12 +134,6 @@ pub fn run(args: &Make) -> Result<()> {
         kept(&file, &again)
     ));
     Ok(())
-}
-
-/// Whether a path and an argument name the same file.
-fn is_same(path: &Path, argument: &str) -> bool {
-    let found = |path: &Path| path.canonicalize().ok();
-    found(path).is_some_and(|path| found(Path::new(argument)) == Some(path))
 }
 
 /// That there is memory for a map of heights of a size.

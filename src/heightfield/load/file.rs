@@ -196,6 +196,8 @@ fn read_raw(path: &Path, mut opened: Opened, size: Option<[u32; 2]>) -> Result<G
     if opened.bytes != wanted {
         let hint = if opened.bytes * 2 == wanted {
             "; it may hold 16-bit numbers, which a 16-bit PNG or TIFF would carry"
+        } else if named.is_some() {
+            "; its name tells the wrong size"
         } else {
             "; give the right --size"
         };

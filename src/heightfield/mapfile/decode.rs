@@ -102,11 +102,14 @@ fn from_png(file: impl BufRead + Seek, foreign: Option<&Foreign>) -> Result<MapF
         (None, Some(foreign)) => taken_for(foreign, pixels.size)?,
         (None, None) => return Err(unlabelled(true)),
     };
+    if read.layout == Layout::Full {
+        return Err("says that it is an EXR, and is a PNG; make the map again".into());
+    }
     let channels = match read.layout {
         Layout::Pair => 2,
         _ => 4,
     };
-    if read.layout == Layout::Full || pixels.channels != channels {
+    if pixels.channels != channels {
         return Err(format!(
             "has {} channels, and the layout `{}` has {channels}; was it saved again without alpha?",
             pixels.channels,
@@ -194,6 +197,9 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
     let head = exr::head(&mut file, KEYWORD)?;
     let text = head.text.as_ref().ok_or_else(|| unlabelled(false))?;
     let read = label::read(text)?;
+    if read.layout != Layout::Full {
+        return Err("says that it is a PNG, and is an EXR; make the map again".into());
+    }
     check_places(&read, head.size)?;
     let mut channel = |name: &str| {
         if !head.channels.iter().any(|c| c == name) {

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::form::{Form, Label, Layout, MapFile, Slopes, scale};
 use super::words::{is_walk, kind_named, kind_word, wrap_named, wrap_word};
-use crate::heightfield::conemap::{MapKind, WIDEST};
+use crate::heightfield::conemap::MapKind;
+use crate::heightfield::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
 use crate::heightfield::heights::{MOST_SAMPLES, Patches};
 
 /// Keyword of the text chunk and name of the attribute.
@@ -148,8 +149,19 @@ pub(super) fn read(text: &str) -> Result<Read, String> {
         let both = format!("{} in the layout {}", text.kind, text.layout);
         return Err(wrong("kind", &both));
     }
-    if !(0.0..=WIDEST).contains(&text.offset) {
+    let room = if is_walk(kind) {
+        (LEAST_OFFSET..=MOST_OFFSET).contains(&text.offset)
+    } else {
+        text.offset == 0.0
+    };
+    if !room {
         return Err(wrong("offset", &text.offset.to_string()));
+    }
+    if text.slopes.is_some() && layout != Layout::Dummer {
+        return Err(wrong("slopes", "for a layout without"));
+    }
+    if origin.is_some() && layout != Layout::Full {
+        return Err(wrong("from_ratio", "for a layout of numbers"));
     }
     if text.samples.iter().any(|n| !(1..=MOST_SAMPLES).contains(n)) {
         return Err(wrong("samples", &format!("{:?}", text.samples)));

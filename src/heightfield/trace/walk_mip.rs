@@ -34,13 +34,27 @@ use crate::frame::Work;
 use crate::shader::Module;
 use crate::wgsl;
 
+/// The cones of all nodes over a relief, level by level.
+pub type NodeCones = Arc<Vec<ConeLevel>>;
+
+/// The cones of nodes, made from those of a walk's map of the relief.
+///
+/// # Errors
+/// The map is of another kind, or of another relief.
+pub fn node_cones(relief: &Relief, map: &ConeMap) -> Result<NodeCones, TraceError> {
+    check_map("cone-mip", &[MapKind::Walk], relief, map)?;
+    let levels = mips(&relief.maxima().levels[0].max, map);
+    // A map that passes has a ratio for each cell.
+    Ok(Arc::new(levels.unwrap_or_default()))
+}
+
 /// Cone walk over nodes of a relief.
 #[derive(Clone, Debug)]
 pub struct WalkMip {
     relief: Arc<Relief>,
     map: Arc<ConeMap>,
     /// The cones of nodes, level by level; none to take those of cells.
-    nodes: Option<Arc<Vec<ConeLevel>>>,
+    nodes: Option<NodeCones>,
     lod: f64,
 }
 
@@ -60,18 +74,22 @@ impl WalkMip {
         })
     }
 
-    /// A walk with the cones of nodes, made from those of a map: `cone-mip`. As
-    /// [`WalkMip::new`] otherwise.
+    /// A walk with the cones of nodes, which [`node_cones`] makes from those of the map:
+    /// `cone-mip`. As [`WalkMip::new`] otherwise.
     ///
     /// # Errors
     /// The map is of another kind, or of another relief.
-    pub fn of_nodes(relief: Arc<Relief>, map: Arc<ConeMap>, lod: f64) -> Result<Self, TraceError> {
+    pub fn of_nodes(
+        relief: Arc<Relief>,
+        map: Arc<ConeMap>,
+        nodes: NodeCones,
+        lod: f64,
+    ) -> Result<Self, TraceError> {
         check_map("cone-mip", &[MapKind::Walk], &relief, &map)?;
-        let nodes = mips(&relief.maxima().levels[0].max, &map).map(Arc::new);
         Ok(Self {
             relief,
             map,
-            nodes,
+            nodes: Some(nodes),
             lod,
         })
     }
