@@ -417,6 +417,11 @@ fn a_map_never_takes_the_place_of_its_heights() {
     folder.fails(&make("rock.png", &["-o", "rock.png"]), 2, &words);
     folder.fails(&make("rock.png", &["-o", "./rock.png"]), 2, &words);
     folder.fails(&inspect("rock.png", &["-o", "rock.png"]), 2, &words);
+    folder.done(&make("rock.png", &["-o", "m.png"]));
+    let before = folder.bytes("m.png");
+    let convert = ["conemap", "convert", "m.png", "-o", "m.png"];
+    folder.fails(&convert, 2, &["m.png", "another name"]);
+    assert_eq!(folder.bytes("m.png"), before);
     assert_eq!(folder.bytes("rock.png"), slope());
 }
 

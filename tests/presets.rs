@@ -367,6 +367,10 @@ fn heightfields_say_what_does_not_fit() {
             "p.toml:4: scene.map = \"exact\": the tracer max-mip needs no cones",
         ),
         (
+            "tracer = \"linear-binary\"\nmap = \"none/there.exr\"",
+            "p.toml:4: scene.map = \"none/there.exr\": the tracer linear-binary needs no cones",
+        ),
+        (
             "map = \"none/there.exr\"",
             "p.toml:3: scene.map = \"none/there.exr\": none/there.exr: ",
         ),

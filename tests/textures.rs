@@ -238,6 +238,19 @@ fn what_colors_nothing_is_refused_or_told() {
     }
     let stats = [&over("b.png")[..], &["--stats", "t.png"]].concat();
     folder.fails(&stats, 2, &["--stats", "scene.texture"]);
+    let text = "[scene]\nkind = \"heightfield\"\nfield = \"t.png\"\n[image]\nsize = [16, 9]\n";
+    folder.write("p.toml", text);
+    let own = [
+        "render", "p.toml", "--device", "cpu", "-o", "b.png", "--stats", "p.toml",
+    ];
+    folder.fails(&own, 2, &["--stats", "the preset"]);
+    for (file, what) in [("t.png", "scene.field"), ("p.toml", "a preset")] {
+        let bench = [
+            "bench", "steps", "p.toml", "--device", "cpu", "--json", file,
+        ];
+        folder.fails(&bench, 2, &["--json", what]);
+    }
+    assert_eq!(folder.bytes("p.toml"), text.as_bytes());
     assert_eq!(folder.bytes("t.png"), before);
     // Depths need no colours.
     let explain = [&render("scene.texture=t.png")[..], &["--explain"]].concat();

@@ -15,7 +15,7 @@ use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{Override, load};
 use serde::{Deserialize, Serialize};
 
-use crate::frames::{frame_ms, median};
+use crate::frames::{frame_ms, median, skipped};
 
 /// Samples along either axis.
 const SAMPLES: [u32; 4] = [512, 1024, 2048, 4096];
@@ -55,6 +55,9 @@ pub struct DistanceRow {
     pub after_cones: f64,
     /// Median time of the device over that of the walk, rays alone.
     pub of_walk: f64,
+    /// Share of the pixels that show a hit over a texel behind that of the walk, or sky where
+    /// the walk has a hit.
+    pub skipped: f64,
     /// Share of the pixels with ground that only one of it and the walk shows.
     pub in_one: f64,
     /// How far apart their depths are elsewhere, in pixel widths: the median, and for 95 of
@@ -103,6 +106,7 @@ pub fn measure() -> Result<Vec<DistanceRow>> {
                 alone: steps(&alone[i]),
                 after_cones: steps(&after_cones[i]),
                 of_walk: median(ratios.collect()),
+                skipped: skipped(&alone[i], &alone[0], texel),
                 in_one,
                 apart: [0.5, 0.95].map(|q| quantile(&apart, q)),
             });

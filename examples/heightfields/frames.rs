@@ -86,10 +86,10 @@ pub fn frame_ms(frame: &Frame) -> f64 {
 }
 
 /// Share of the pixels that are skipped, the walk's frame being the truth.
-fn skipped(frame: &Frame, truth: &Frame) -> f64 {
+pub fn skipped(frame: &Frame, truth: &Frame, texel: f64) -> f64 {
     let state = |f: &Frame, i: usize| State::from_code(f.state[i].into());
     let behind = |i: &usize| {
-        let past = f64::from(frame.depth[*i] - truth.depth[*i]) > WIDTH / TEXELS;
+        let past = f64::from(frame.depth[*i] - truth.depth[*i]) > texel;
         let own = state(frame, *i);
         let lost = own == Some(State::Sky) || own == Some(State::Hit) && past;
         lost && state(truth, *i) == Some(State::Hit)
@@ -135,7 +135,7 @@ pub fn measure(field: &str, relaxed: &str) -> Result<Vec<FrameRow>> {
                 ms: median(times[i].clone()),
                 of_first: median(ratios.collect()),
                 unconverged: frame.census()[2] as f64 / frame.state.len().max(1) as f64,
-                skipped: skipped(frame, &truth),
+                skipped: skipped(frame, &truth, WIDTH / TEXELS),
             });
         }
     }

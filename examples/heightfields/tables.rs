@@ -314,16 +314,20 @@ pub fn aims(cones: &[ConesRow], nodes: &[NodesRow], times: &[TimesRow]) -> Strin
         rough.iter().all(|(_, n)| *n <= MOST_NODES),
     );
     let size = times.first().map_or(0, |r| r.size);
+    let cpu = |generator: &str| time_of(times, generator).map_or(f64::NAN, |r| r.cpu_ms);
     let brute = over(times, "brute", "exact");
     row(
-        &format!("`exact` at least {OVER_BRUTE} times as fast as brute force, {size} x {size}"),
         &format!(
-            "{}{brute:.0} times",
+            "`exact` at least {OVER_BRUTE} times as fast as brute force on one device, {size} x {size}"
+        ),
+        &format!(
+            "{}{brute:.0} times on this device, {:.1} on the CPU",
             if time_of(times, "brute").is_some_and(|r| r.estimated) {
                 "about "
             } else {
                 ""
-            }
+            },
+            cpu("brute") / cpu("exact")
         ),
         brute >= OVER_BRUTE,
     );
@@ -420,17 +424,18 @@ pub fn sizes(rows: &[SizesRow]) -> String {
 /// The walks for distant views beside the walk.
 pub fn distances(rows: &[DistanceRow]) -> String {
     let mut text = String::from(
-        "| samples | texels to a pixel | tracer | steps, rays alone | after cones | time of `walk`'s | in one only % | apart, pixels: median | 95 % |\n|:--|--:|:--|--:|--:|--:|--:|--:|--:|\n",
+        "| samples | texels to a pixel | tracer | steps, rays alone | after cones | time of `walk`'s | skipped % | in one only % | apart, pixels: median | 95 % |\n|:--|--:|:--|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     for row in rows {
         let [half, most] = row.apart;
         text += &format!(
-            "| {n} x {n} | {:.1} | {} | {:.1} | {:.1} | {:.2} | {} | {half:.2} | {most:.2} |\n",
+            "| {n} x {n} | {:.1} | {} | {:.1} | {:.1} | {:.2} | {} | {} | {half:.2} | {most:.2} |\n",
             row.texels,
             row.tracer,
             row.alone,
             row.after_cones,
             row.of_walk,
+            percent(row.skipped),
             percent(row.in_one),
             n = row.samples,
         );

@@ -43,25 +43,34 @@ impl Executor {
     /// The choice matches nothing, or the adapter does not open. `auto` has the CPU
     /// executor left for both.
     pub fn open(choice: &Choice) -> Result<(Self, String), DeviceError> {
+        Self::open_with(choice, STORAGE_BUFFERS)
+    }
+
+    /// As [`Executor::open`], for programs that bind up to so many storage buffers: those of
+    /// cone maps need fewer than those of pictures.
+    ///
+    /// # Errors
+    /// As [`Executor::open`].
+    pub fn open_with(choice: &Choice, storage_buffers: u32) -> Result<(Self, String), DeviceError> {
         if *choice == Choice::Cpu {
             return Ok(Self::cpu("as asked"));
         }
         let adapters = Adapters::find();
         if *choice == Choice::Auto {
-            return Ok(Self::first_that_opens(&adapters));
+            return Ok(Self::first_that_opens(&adapters, storage_buffers));
         }
         let Some((adapter, why)) = adapters.choose(choice)? else {
             return Ok(Self::cpu("as there is no adapter"));
         };
-        let device = Device::open(adapter, STORAGE_BUFFERS)?;
+        let device = Device::open(adapter, storage_buffers)?;
         Ok(Self::gpu(device, &why))
     }
 
     /// The best adapter that opens, else the CPU.
-    fn first_that_opens(adapters: &Adapters) -> (Self, String) {
+    fn first_that_opens(adapters: &Adapters, storage_buffers: u32) -> (Self, String) {
         let mut failed = None;
         for (adapter, why) in adapters.in_order() {
-            match Device::open(adapter, STORAGE_BUFFERS) {
+            match Device::open(adapter, storage_buffers) {
                 Ok(device) => return Self::gpu(device, failed.as_deref().unwrap_or(why)),
                 Err(e) => {
                     let name = adapter.get_info().name;

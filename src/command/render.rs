@@ -144,6 +144,8 @@ pub fn run(args: &Render) -> Result<()> {
     let outputs = [("the picture", Some(output.as_path())), ("--stats", stats)];
     apart(&outputs)?;
     spared(&outputs, &plan.files())?;
+    // A picture may take the place of the one whose preset it was rendered from.
+    spared(&outputs[1..], &[("the preset", args.preset.clone().into())])?;
     let extras = extras(args, format);
     let per_pixel = bytes_per_pixel(format, args.device == Choice::Cpu);
     if let Some(why) = memory::lacking(plan.size, per_pixel, memory::available()) {

@@ -268,10 +268,12 @@ impl Tracing {
     /// Whether tracer and cones fit together, as far as names tell.
     pub fn check(&self) -> Result<(), Fault> {
         let kinds = self.kinds();
-        let Some(generator) = self.generator().filter(|_| self.map != "auto") else {
+        if self.map == "auto" {
             return Ok(());
-        };
-        if kinds.contains(&generator.kind()) {
+        }
+        let fits = |generator: Generator| kinds.contains(&generator.kind());
+        // What a file holds is asked when it is read, if anybody reads it.
+        if self.generator().map_or(!kinds.is_empty(), fits) {
             return Ok(());
         }
         let fit = Generator::ALL.iter().filter(|g| kinds.contains(&g.kind()));

@@ -70,7 +70,7 @@ struct CalibrateRow {
 pub fn run(args: &CalibrateBench) -> Result<()> {
     interrupt::listen();
     let plans = args.common.plans()?;
-    let files = args.common.files(None)?;
+    let files = args.common.files(None, &plans)?;
     let mut executor = args.common.executor()?;
     let mut rows = Vec::new();
     for (name, plan) in &plans {

@@ -10,9 +10,9 @@ use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::memory;
 use crate::command::print::{print, say, tell};
-use crate::command::sink::{Parcel, Sink, apart, is_stdout};
+use crate::command::sink::{Parcel, Sink, apart, is_stdout, spared};
 use crate::command::size;
-use crate::gpu::device::{Choice, DeviceError};
+use crate::gpu::device::{Choice, DeviceError, STORAGE_BUFFERS};
 use crate::plan::Plan;
 use crate::preset;
 
@@ -82,7 +82,15 @@ impl Common {
     /// # Errors
     /// The choice matches nothing, or the adapter does not open.
     pub fn executor(&self) -> Result<Executor, DeviceError> {
-        let (executor, who) = Executor::open(&self.device)?;
+        self.executor_with(STORAGE_BUFFERS)
+    }
+
+    /// An executor whose programs bind up to so many storage buffers.
+    ///
+    /// # Errors
+    /// As [`Common::executor`].
+    pub fn executor_with(&self, storage_buffers: u32) -> Result<Executor, DeviceError> {
+        let (executor, who) = Executor::open_with(&self.device, storage_buffers)?;
         say(&format!("measuring on {who}"));
         if executor.is_untimed() {
             say("this device has no timestamps: times are wall time");
@@ -94,14 +102,17 @@ impl Common {
     /// `plot` is that of a measurement that draws.
     ///
     /// # Errors
-    /// One of them cannot, or two are the same.
-    pub fn files(&self, plot: Option<&Path>) -> Result<Files> {
+    /// One of them cannot, two are the same, or one is a preset or a file that a plan names.
+    pub fn files(&self, plot: Option<&Path>, plans: &[(String, Plan)]) -> Result<Files> {
         let named = [
             ("--json", self.json.as_deref()),
             ("--csv", self.csv.as_deref()),
             ("--plot", plot),
         ];
         apart(&named)?;
+        let presets = self.names.iter().map(|name| ("a preset", name.into()));
+        let read = plans.iter().flat_map(|(_, plan)| plan.files());
+        spared(&named, &presets.chain(read).collect::<Vec<_>>())?;
         let [json, csv, plot] = named.map(|(_, path)| path.map(Sink::prepare).transpose());
         Ok(Files {
             json: json?,

@@ -17,7 +17,7 @@ use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::print::say;
 use crate::command::{interrupt, size};
-use crate::gpu::device::{Choice, Device};
+use crate::gpu::device::{Choice, Device, PROMISED_BUFFERS};
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::field::Field;
 use crate::heightfield::generate::cpu;
@@ -115,8 +115,8 @@ pub fn run(args: &ConesBench) -> Result<()> {
     } else {
         Patches::Bilinear
     };
-    let files = common.files(None)?;
-    let executor = common.executor()?;
+    let files = common.files(None, &[])?;
+    let executor = common.executor_with(PROMISED_BUFFERS)?;
     let mut generators = Vec::new();
     let mut tracers = Vec::new();
     for size in sizes {

@@ -58,7 +58,7 @@ pub fn run(args: &ErrorBench) -> Result<()> {
             path.display()
         )));
     }
-    let mut files = args.common.files(args.plot.as_deref())?;
+    let mut files = args.common.files(args.plot.as_deref(), &plans)?;
     let mut executor = args.common.executor()?;
     let cache = Cache::user();
     let mut settings = baselines();

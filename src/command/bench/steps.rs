@@ -46,7 +46,7 @@ pub fn run(args: &StepsBench) -> Result<()> {
     let settings = modes(args.mode.as_deref())?;
     // Kept until the end: a folder that was made goes again if no map comes into it.
     let _folder = args.heat.as_deref().map(Folder::prepare).transpose()?;
-    let mut files = args.common.files(None)?;
+    let mut files = args.common.files(None, &plans)?;
     let mut executor = args.common.executor()?;
     let mut rows = Vec::new();
     for (name, plan) in &plans {

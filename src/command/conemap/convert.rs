@@ -9,7 +9,7 @@ use super::common::{Output, Strange, Writing, of_map, shown, wraps};
 use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
-use crate::command::sink::Sink;
+use crate::command::sink::{Sink, spared};
 use crate::heightfield::mapfile::{MapFile, decode_bytes, encode, kind_word};
 
 /// What `convert` takes.
@@ -43,6 +43,10 @@ pub fn run(args: &Convert) -> Result<()> {
             "there is nowhere to write to; give -o MAP.png or -o MAP.exr",
         ));
     };
+    spared(
+        &[("the new map", Some(output))],
+        &[("the one that is read", args.map.clone())],
+    )?;
     let file = args.strange.decode(&args.map, args.wrap)?;
     let form = args.writing.form(output, file.map.kind)?;
     interrupt::listen();

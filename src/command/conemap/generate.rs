@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
+use wgpu::DeviceType;
 
 use crate::command::interrupt;
 use crate::gpu::device::{Adapters, Choice, Device, DeviceError, PROMISED_BUFFERS};
@@ -35,29 +36,36 @@ impl Maker {
             let who = format!("the CPU, f64 on {threads} threads ({why})");
             Ok((Self::Cpu, who))
         };
-        let auto = *choice == Choice::Auto;
-        let wanted = if auto { &Choice::Hardware } else { choice };
-        if *wanted == Choice::Cpu {
+        if *choice == Choice::Cpu {
             return cpu("as asked");
         }
         let adapters = Adapters::find();
-        let (adapter, why) = match adapters.choose(wanted) {
-            Ok(Some(found)) => found,
-            Ok(None) => return cpu("as there is no adapter"),
-            Err(_) if auto => return cpu("as there is no hardware adapter"),
-            Err(e) => return Err(e),
-        };
-        match Device::open(adapter, PROMISED_BUFFERS) {
-            Ok(device) => {
-                let who = format!("{} ({why})", device.info.name);
-                Ok((Self::Gpu(Box::new(device)), who))
+        if *choice == Choice::Auto {
+            let mut why = "as there is no hardware adapter".to_string();
+            for (adapter, reason) in adapters.in_order() {
+                let info = adapter.get_info();
+                if info.device_type == DeviceType::Cpu {
+                    continue;
+                }
+                match Device::open(adapter, PROMISED_BUFFERS) {
+                    Ok(device) => return Ok(Self::gpu(device, reason)),
+                    Err(e) => why = format!("as {} did not open: {e}", info.name),
+                }
             }
-            Err(e) if auto => {
-                let name = adapter.get_info().name;
-                cpu(&format!("as {name} did not open: {e}"))
-            }
-            Err(e) => Err(e),
+            return cpu(&why);
         }
+        match adapters.choose(choice)? {
+            Some((adapter, why)) => {
+                let device = Device::open(adapter, PROMISED_BUFFERS)?;
+                Ok(Self::gpu(device, &why))
+            }
+            None => cpu("as there is no adapter"),
+        }
+    }
+
+    fn gpu(device: Device, why: &str) -> (Self, String) {
+        let who = format!("{} ({why})", device.info.name);
+        (Self::Gpu(Box::new(device)), who)
     }
 }
 
