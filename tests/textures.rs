@@ -251,6 +251,9 @@ fn what_colors_nothing_is_refused_or_told() {
         folder.fails(&bench, 2, &["--json", what]);
     }
     assert_eq!(folder.bytes("p.toml"), text.as_bytes());
+    // A built-in preset is no file, whatever an output is called.
+    let own = ["render", "mandelbox", "--device", "cpu", "--size", "8x8"];
+    folder.done(&[&own[..], &["-o", "b.png", "--stats", "mandelbox"]].concat());
     assert_eq!(folder.bytes("t.png"), before);
     // Depths need no colours.
     let explain = [&render("scene.texture=t.png")[..], &["--explain"]].concat();

@@ -57,28 +57,16 @@ impl Executor {
         }
         let adapters = Adapters::find();
         if *choice == Choice::Auto {
-            return Ok(Self::first_that_opens(&adapters, storage_buffers));
+            return Ok(match adapters.open_first(storage_buffers, true) {
+                Ok((device, why)) => Self::gpu(device, &why),
+                Err(why) => Self::cpu(&why),
+            });
         }
         let Some((adapter, why)) = adapters.choose(choice)? else {
             return Ok(Self::cpu("as there is no adapter"));
         };
         let device = Device::open(adapter, storage_buffers)?;
         Ok(Self::gpu(device, &why))
-    }
-
-    /// The best adapter that opens, else the CPU.
-    fn first_that_opens(adapters: &Adapters, storage_buffers: u32) -> (Self, String) {
-        let mut failed = None;
-        for (adapter, why) in adapters.in_order() {
-            match Device::open(adapter, storage_buffers) {
-                Ok(device) => return Self::gpu(device, failed.as_deref().unwrap_or(why)),
-                Err(e) => {
-                    let name = adapter.get_info().name;
-                    failed.get_or_insert(format!("as {name} did not open: {e}"));
-                }
-            }
-        }
-        Self::cpu(failed.as_deref().unwrap_or("as there is no adapter"))
     }
 
     fn gpu(device: Device, why: &str) -> (Self, String) {

@@ -145,7 +145,8 @@ pub fn run(args: &Render) -> Result<()> {
     apart(&outputs)?;
     spared(&outputs, &plan.files())?;
     // A picture may take the place of the one whose preset it was rendered from.
-    spared(&outputs[1..], &[("the preset", args.preset.clone().into())])?;
+    let preset = preset::file(&args.preset).map(|file| ("the preset", file));
+    spared(&outputs[1..], preset.as_slice())?;
     let extras = extras(args, format);
     let per_pixel = bytes_per_pixel(format, args.device == Choice::Cpu);
     if let Some(why) = memory::lacking(plan.size, per_pixel, memory::available()) {

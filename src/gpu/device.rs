@@ -148,6 +148,33 @@ impl Adapters {
         all.into_iter().map(|a| (a, reason(a))).collect()
     }
 
+    /// Opens the first adapter in order that does, for programs that bind up to so many
+    /// storage buffers; software ones are passed over unless they may serve. With the reason
+    /// to take it, or that why none is.
+    pub fn open_first(
+        &self,
+        storage_buffers: u32,
+        software: bool,
+    ) -> Result<(Device, String), String> {
+        let mut failed = None;
+        let serves = |a: &&Adapter| software || a.get_info().device_type != DeviceType::Cpu;
+        for (adapter, why) in self.in_order().into_iter().filter(|(a, _)| serves(a)) {
+            match Device::open(adapter, storage_buffers) {
+                Ok(device) => return Ok((device, failed.unwrap_or_else(|| why.to_string()))),
+                Err(e) => {
+                    let name = adapter.get_info().name;
+                    failed.get_or_insert(format!("as {name} did not open: {e}"));
+                }
+            }
+        }
+        let kind = if software {
+            "adapter"
+        } else {
+            "hardware adapter"
+        };
+        Err(failed.unwrap_or_else(|| format!("as there is no {kind}")))
+    }
+
     /// The adapter that a choice means, with the reason; `None` for the CPU executor.
     pub fn choose(&self, choice: &Choice) -> Result<Option<(&Adapter, String)>, DeviceError> {
         let infos: Vec<AdapterInfo> = self.list.iter().map(Adapter::get_info).collect();

@@ -109,13 +109,7 @@ impl Heights {
     /// The sample that an index names: beyond the ends the last one, or on a wrapping
     /// axis the one that comes round.
     pub fn index(&self, axis: usize, i: i64) -> u32 {
-        let n = i64::from(self.size[axis]);
-        let i = if self.wrap[axis] {
-            i.rem_euclid(n)
-        } else {
-            i.clamp(0, n - 1)
-        };
-        i as u32
+        brought_in(i, self.size[axis], self.wrap[axis])
     }
 
     /// The height of a sample, its indices brought into the grid by [`Self::index`].
@@ -169,6 +163,18 @@ impl Heights {
         let high = c[2] + f.x * (c[3] - c[2]);
         low + f.y * (high - low)
     }
+}
+
+/// The place of an index on an axis with so many: beyond the ends the last one, or where it
+/// wraps the one that comes round.
+pub fn brought_in(i: i64, count: u32, wraps: bool) -> u32 {
+    let n = i64::from(count);
+    let i = if wraps {
+        i.rem_euclid(n)
+    } else {
+        i.clamp(0, n - 1)
+    };
+    i as u32
 }
 
 /// What [`Heights::cells`] gives for heights of a size and wrapping.

@@ -2,14 +2,15 @@
 //!
 //! It is stretched over the whole map, once to each tile, whatever its own size: a picture as
 //! large as the map has a texel for each sample, whose middle lies on it. A map that ends does
-//! so at its last samples, and the outer halves of their texels are not seen. Texels are sRGB of 8 bits and become linear
-//! before they are interpolated. Far away none are averaged: render larger and scale down.
+//! so at its last samples, and the outer halves of their texels are not seen. Texels are sRGB
+//! of 8 bits and become linear before they are interpolated. Far away none are averaged: render
+//! larger and scale down.
 
 use std::path::Path;
 
 use glam::DVec3;
 
-use super::heights::Patches;
+use super::heights::{Patches, brought_in};
 use super::raster::open::{Format, open};
 use super::raster::png;
 use super::relief::Relief;
@@ -80,25 +81,16 @@ impl Texture {
         };
         let (x, y) = (place(0), place(1));
         let (fx, fy) = (x - x.floor(), y - y.floor());
+        let index = |a: usize, i: f64, step: i64| {
+            brought_in(i.floor() as i64 + step, self.size[a], heights.wrap()[a]) as usize
+        };
         let texel = |dx: i64, dy: i64| {
-            let column = self.index(0, x.floor() as i64 + dx, heights.wrap());
-            let row = self.index(1, y.floor() as i64 + dy, heights.wrap());
+            let (column, row) = (index(0, x, dx), index(1, y, dy));
             let [r, g, b] = self.texels[row * self.size[0] as usize + column].map(f64::from);
             linear(DVec3::new(r, g, b) / 255.0)
         };
         let low = texel(0, 0).lerp(texel(1, 0), fx);
         low.lerp(texel(0, 1).lerp(texel(1, 1), fx), fy)
-    }
-
-    /// The texel of an index: beyond the ends the last one, or the one that comes round.
-    fn index(&self, axis: usize, i: i64, wrap: [bool; 2]) -> usize {
-        let n = i64::from(self.size[axis]);
-        let i = if wrap[axis] {
-            i.rem_euclid(n)
-        } else {
-            i.clamp(0, n - 1)
-        };
-        i as usize
     }
 
     /// The module to join.

@@ -15,5 +15,5 @@ pub use error::PresetError;
 pub use nearest::nearest;
 pub use read::{read, read_with};
 pub use reference::reference;
-pub use source::{MOST_BYTES, PNG_KEYWORD, Preset, load};
+pub use source::{MOST_BYTES, PNG_KEYWORD, Preset, file, load};
 pub use write::write;

@@ -3,7 +3,7 @@
 
 use std::fs::{self, File};
 use std::io::{BufReader, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::builtin::{BUILTIN, builtin};
 use super::document::{Override, brief};
@@ -29,6 +29,11 @@ pub struct Preset {
     pub name: String,
     /// The plan.
     pub plan: Plan,
+}
+
+/// The file that an argument of [`load`] names; none for a built-in preset.
+pub fn file(argument: &str) -> Option<PathBuf> {
+    builtin(argument).is_none().then(|| argument.into())
 }
 
 /// Finds and reads what an argument means, with overrides.

@@ -110,7 +110,8 @@ impl Common {
             ("--plot", plot),
         ];
         apart(&named)?;
-        let presets = self.names.iter().map(|name| ("a preset", name.into()));
+        let presets = self.names.iter().filter_map(|name| preset::file(name));
+        let presets = presets.map(|file| ("a preset", file));
         let read = plans.iter().flat_map(|(_, plan)| plan.files());
         spared(&named, &presets.chain(read).collect::<Vec<_>>())?;
         let [json, csv, plot] = named.map(|(_, path)| path.map(Sink::prepare).transpose());

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
-use wgpu::DeviceType;
 
 use crate::command::interrupt;
 use crate::gpu::device::{Adapters, Choice, Device, DeviceError, PROMISED_BUFFERS};
@@ -41,18 +40,10 @@ impl Maker {
         }
         let adapters = Adapters::find();
         if *choice == Choice::Auto {
-            let mut why = "as there is no hardware adapter".to_string();
-            for (adapter, reason) in adapters.in_order() {
-                let info = adapter.get_info();
-                if info.device_type == DeviceType::Cpu {
-                    continue;
-                }
-                match Device::open(adapter, PROMISED_BUFFERS) {
-                    Ok(device) => return Ok(Self::gpu(device, reason)),
-                    Err(e) => why = format!("as {} did not open: {e}", info.name),
-                }
-            }
-            return cpu(&why);
+            return match adapters.open_first(PROMISED_BUFFERS, false) {
+                Ok((device, why)) => Ok(Self::gpu(device, &why)),
+                Err(why) => cpu(&why),
+            };
         }
         match adapters.choose(choice)? {
             Some((adapter, why)) => {

@@ -5,19 +5,14 @@
 use rayon::prelude::*;
 
 use crate::heightfield::conemap::ConeMap;
+use crate::heightfield::heights::brought_in;
 use crate::shader::Program;
 use crate::wgsl;
 
 /// A place or the one next to it along an axis: beyond the ends the last one, or the one
 /// that comes round.
 pub(super) fn beside(map: &ConeMap, axis: usize, i: i64) -> usize {
-    let n = i64::from(map.size[axis]);
-    let i = if map.wrap[axis] {
-        i.rem_euclid(n)
-    } else {
-        i.clamp(0, n - 1)
-    };
-    i as usize
+    brought_in(i, map.size[axis], map.wrap[axis]) as usize
 }
 
 /// A map whose cones are as narrow as the narrowest among each place and its eight

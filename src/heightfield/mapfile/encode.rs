@@ -1,5 +1,7 @@
 //! A cone map to the bytes of a file.
 
+use std::borrow::Cow;
+
 use super::error::MapError;
 use super::form::{Form, Layout, MapFile, Slopes};
 use super::label::{self, KEYWORD};
@@ -122,23 +124,22 @@ fn numbers(file: &MapFile, form: &Form) -> Result<(usize, Vec<u16>), String> {
         return Ok((4, all.collect()));
     }
     let depth = form.depth * file.label.scale;
-    let all = both
-        .zip(slopes(file, heights)?)
-        .flat_map(|((z, r), slope)| {
-            let [x, y] = normal_shares(slope, depth).map(|n| steps.nearest(n));
-            [x, y, r, steps.most - z]
-        });
+    let slopes = slopes(file, heights)?;
+    let all = both.zip(slopes.iter()).flat_map(|((z, r), slope)| {
+        let [x, y] = normal_shares(*slope, depth).map(|n| steps.nearest(n));
+        [x, y, r, steps.most - z]
+    });
     Ok((4, all.collect()))
 }
 
 /// The slopes of the heights themselves, not of their rounding.
-fn slopes(file: &MapFile, heights: &[f32]) -> Result<Vec<[f32; 2]>, String> {
+fn slopes<'a>(file: &'a MapFile, heights: &[f32]) -> Result<Cow<'a, [[f32; 2]]>, String> {
     if let Some(made) = &file.slopes {
-        return Ok(made.clone());
+        return Ok(Cow::Borrowed(made));
     }
     let map = &file.map;
     let surface = Heights::new(map.size, map.wrap, heights.to_vec()).map_err(|e| e.to_string())?;
-    Ok(slopes::slopes(&surface))
+    Ok(Cow::Owned(slopes::slopes(&surface)))
 }
 
 /// Ratios that stay clear when heights rise to their numbers.
