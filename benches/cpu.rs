@@ -5,12 +5,13 @@
 
 use std::hint::black_box;
 
-use conemarch::cone::ConeRule;
-use conemarch::flip::{Picture, flip};
-use conemarch::formula::{Formula as _, mandelbox::Mandelbox};
-use conemarch::mode::Mode;
+use conemarch::base::cone::ConeRule;
+use conemarch::formula::{DistanceEstimate as _, mandelbox::Mandelbox};
+use conemarch::measure::flip::{Picture, flip};
+use conemarch::measure::{compare, truth};
+use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
-use conemarch::{compare, cpu, preset, truth};
+use conemarch::{cpu, preset};
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 
@@ -23,7 +24,7 @@ fn plan(mode: Mode) -> Plan {
     plan
 }
 
-fn depth(mode: Mode) -> conemarch::frame::Frame {
+fn depth(mode: Mode) -> conemarch::picture::frame::Frame {
     let extras = Extras {
         depth_only: true,
         ..Extras::default()

@@ -6,8 +6,8 @@
 
 use anyhow::{Result, bail};
 use conemarch::command::executor::Executor;
-use conemarch::frame::Frame;
 use conemarch::gpu::device::Choice;
+use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset;
 
@@ -36,9 +36,9 @@ const SWITCHES: &[Switch] = &[
 const RUNS: usize = 21;
 
 fn rotate(plan: &mut Plan, degrees: f64) {
-    use conemarch::{formula::Shape, plan::Subject};
+    use conemarch::{formula::Formula, plan::Subject};
     if let Subject::Distance {
-        shape: Shape::Mandelbox(mandelbox),
+        shape: Formula::Mandelbox(mandelbox),
         ..
     } = &mut plan.subject
     {

@@ -12,14 +12,14 @@ use std::fs;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use conemarch::gpu::conemap::generate::Maker;
 use conemarch::gpu::device::{Adapters, Choice, Device, PROMISED_BUFFERS};
 use conemarch::heightfield::conemap::ConeMap;
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::cpu;
-use conemarch::heightfield::generate::device::Maker;
-use conemarch::heightfield::generate::generator::{GenerateError, Generator, Options};
-use conemarch::heightfield::generate::pyramid::Tiles;
+use conemarch::heightfield::conemap::generate::cpu;
+use conemarch::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
+use conemarch::heightfield::conemap::generate::pyramid::Tiles;
 use conemarch::heightfield::heights::{Heights, Patches};
+use conemarch::heightfield::pattern::Pattern;
 
 #[path = "common/rows.rs"]
 mod rows;
@@ -72,7 +72,7 @@ fn write<T: serde::Serialize>(file: Option<&str>, rows: &[T]) -> Result<()> {
     Ok(())
 }
 
-fn field(field: Field, size: u32) -> Result<Heights> {
+fn field(field: Pattern, size: u32) -> Result<Heights> {
     let size = [size, size];
     let data = field.heights(size, 7, POWER);
     Ok(Heights::new(size, [false, false], data)?)
@@ -93,7 +93,7 @@ fn nodes() -> Result<Vec<NodesRow>> {
             generator.name()
         );
         println!("| field | 64 | 128 | 256 | 512 |\n|---|---:|---:|---:|---:|");
-        for f in Field::ALL {
+        for f in Pattern::ALL {
             let mut row = format!("| {} |", f.name());
             for size in [64, 128, 256, 512] {
                 let heights = field(f, size)?;
@@ -134,7 +134,7 @@ fn quality() -> Result<()> {
         names.join(" | "),
         "---:|".repeat(5)
     );
-    for f in Field::ALL {
+    for f in Pattern::ALL {
         let heights = field(f, 128)?;
         let options = Options {
             search_steps: 64,
@@ -177,7 +177,7 @@ fn sizes() -> Result<Vec<SizesRow>> {
     };
     let mut rows: Vec<SizesRow> = Vec::new();
     for size in [256, 512, 1024, 2048, 4096] {
-        let heights = field(Field::Fbm, size)?;
+        let heights = field(Pattern::Fbm, size)?;
         let generators = [
             Generator::Brute,
             Generator::RelaxedSearch,
@@ -222,7 +222,7 @@ fn sizes() -> Result<Vec<SizesRow>> {
 fn device(size: u32, generators: &[Generator]) -> Result<Vec<TimesRow>> {
     let device = open()?;
     let mut maker = Maker::new(&device);
-    let heights = field(Field::Fbm, size)?;
+    let heights = field(Pattern::Fbm, size)?;
     println!(
         "\n`fbm` {size} x {size} on {}, milliseconds\n",
         device.info.name
@@ -233,7 +233,8 @@ fn device(size: u32, generators: &[Generator]) -> Result<Vec<TimesRow>> {
     maker.max_mip(heights.size(), heights.data())?;
     let there = ms(start);
     let start = Instant::now();
-    let here = conemarch::heightfield::maxmip::MaxMip::new(heights.size(), heights.data().to_vec());
+    let here =
+        conemarch::heightfield::max_mip::MaxMip::new(heights.size(), heights.data().to_vec());
     println!("| max-mip | {there:.0} | | | {:.0} |", ms(start));
     drop(here);
     let mut rows = Vec::new();

@@ -4,12 +4,12 @@
 use std::fs;
 
 use conemarch::heightfield::conemap::MapKind;
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::cpu;
-use conemarch::heightfield::generate::generator::{Generator, Options};
+use conemarch::heightfield::conemap::file::{Bits, Layout, MapFile, Slopes, read_map};
+use conemarch::heightfield::conemap::generate::cpu;
+use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::load::{LoadOptions, load};
-use conemarch::heightfield::mapfile::{Bits, Layout, MapFile, Slopes, read_map};
+use conemarch::heightfield::pattern::Pattern;
 use exr::prelude::FlatSamples;
 use png::{BitDepth, ColorType};
 
@@ -78,7 +78,7 @@ fn help_lists_verbs_generators_and_layouts() {
     ] {
         assert!(help.contains(word), "{word}: {help}");
     }
-    for word in Field::ALL.map(Field::name) {
+    for word in Pattern::ALL.map(Pattern::name) {
         assert!(help.contains(word), "{word}: {help}");
     }
     folder.fails(&["conemap"], 2, &["a command is missing"]);

@@ -19,18 +19,18 @@ use common::exhaustive;
 use common::maps::{
     PATCHES, WRAPS, any_heights, assert_same, difference, field, large, make, plain, small,
 };
+use conemarch::heightfield::conemap::generate::cpu;
+use conemarch::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
+use conemarch::heightfield::conemap::generate::min3x3::min3x3;
+use conemarch::heightfield::conemap::generate::mips::{self, rounded_down};
+use conemarch::heightfield::conemap::generate::planes::Planes;
+use conemarch::heightfield::conemap::generate::slopes::slopes;
+use conemarch::heightfield::conemap::generate::task::MapTask;
 use conemarch::heightfield::conemap::{ConeMap, MapKind, WIDEST};
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::cpu;
-use conemarch::heightfield::generate::generator::{GenerateError, Generator, Options};
-use conemarch::heightfield::generate::mips::{self, rounded_down};
-use conemarch::heightfield::generate::nine::least_of_nine;
-use conemarch::heightfield::generate::planes::Planes;
-use conemarch::heightfield::generate::prepared::Prepared;
-use conemarch::heightfield::generate::slopes::slopes;
+use conemarch::heightfield::height_surface::{HeightSurface, Numbers};
 use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::maxmip::MaxMip;
-use conemarch::heightfield::relief::{Numbers, Relief};
+use conemarch::heightfield::max_mip::MaxMip;
+use conemarch::heightfield::pattern::Pattern;
 use proptest::prelude::*;
 
 #[test]
@@ -146,7 +146,7 @@ fn a_search_along_rays_is_wider_than_the_exact_relaxed_map() {
         ..Options::default()
     };
     let mut shares = Vec::new();
-    for f in [Field::Fbm, Field::Ridges, Field::Noise, Field::Sine] {
+    for f in [Pattern::Fbm, Pattern::Ridges, Pattern::Noise, Pattern::Sine] {
         let heights = field(f, [32, 32], [false, false]);
         let search = make(
             Generator::RelaxedSearch,
@@ -208,7 +208,12 @@ proptest! {
 #[test]
 fn rough_fields_take_at_most_65_nodes_to_the_place() {
     // Measured 56, 42, 31 and 53; the goal was 110.
-    for f in [Field::Fbm, Field::Ridges, Field::Noise, Field::Spikes] {
+    for f in [
+        Pattern::Fbm,
+        Pattern::Ridges,
+        Pattern::Noise,
+        Pattern::Spikes,
+    ] {
         let heights = field(f, [256, 256], [false, false]);
         let (patches, options) = (Patches::default(), Options::default());
         let made =
@@ -224,7 +229,7 @@ fn rough_fields_take_at_most_65_nodes_to_the_place() {
 fn planes_keep_the_search_of_a_smooth_field_short() {
     // 310 nodes without planes, at most 1874; the bits are those of brute force, which
     // another test asks of this field, too.
-    let heights = field(Field::Sine, [256, 256], [false, false]);
+    let heights = field(Pattern::Sine, [256, 256], [false, false]);
     let (patches, options) = (Patches::default(), Options::default());
     let made = cpu::generate_counted(Generator::Exact, &heights, patches, &options, &mut |_| true);
     let (_, work) = made.unwrap();
@@ -261,15 +266,15 @@ fn planes_lie_above_all_heights() {
 #[test]
 fn the_least_of_nine_is_what_it_says() {
     for wrap in WRAPS {
-        let heights = field(Field::Spikes, [7, 5], wrap);
+        let heights = field(Pattern::Spikes, [7, 5], wrap);
         for generator in [Generator::Exact, Generator::Quad, Generator::Walk] {
             let options = Options {
-                least_of_nine: true,
+                min3x3: true,
                 ..Options::default()
             };
             let raw = plain(generator, &heights);
             let map = make(generator, &heights, Patches::default(), &options);
-            assert_eq!(map, least_of_nine(&raw));
+            assert_eq!(map, min3x3(&raw));
             let channels = generator.channels();
             let [w, h] = raw.size.map(i64::from);
             for i in 0..map.ratios.len() as i64 {
@@ -296,7 +301,7 @@ fn the_least_of_nine_is_what_it_says() {
 #[test]
 fn mips_have_the_highest_apex_and_the_narrowest_cone_of_all_below() {
     for size in [[1, 1], [1, 7], [9, 5], [16, 16], [33, 20]] {
-        let heights = field(Field::Fbm, size, [false, true]);
+        let heights = field(Pattern::Fbm, size, [false, true]);
         for generator in [Generator::Exact, Generator::Quad] {
             let map = plain(generator, &heights);
             let channels = generator.channels();
@@ -330,7 +335,7 @@ fn mips_have_the_highest_apex_and_the_narrowest_cone_of_all_below() {
 
 #[test]
 fn ratios_are_stored_rounded_down() {
-    let heights = field(Field::Noise, [64, 64], [false, false]);
+    let heights = field(Pattern::Noise, [64, 64], [false, false]);
     let mut below = 0;
     for r in plain(Generator::Exact, &heights).ratios {
         let stored = rounded_down(r);
@@ -343,7 +348,7 @@ fn ratios_are_stored_rounded_down() {
     assert!(below > 2000, "too few ratios need rounding: {below}");
     // So they reach a device, too.
     let map = plain(Generator::Walk, &heights);
-    let relief = Relief::new(heights, Patches::Bilinear, [1, 1]).unwrap();
+    let relief = HeightSurface::new(heights, Patches::Bilinear, [1, 1]).unwrap();
     let buffers = relief.buffers(Some(&map), Numbers::default());
     let (_, bytes) = buffers.iter().find(|(name, _)| *name == "ratios").unwrap();
     let there: &[f32] = bytemuck::cast_slice(bytes);
@@ -374,7 +379,7 @@ fn slopes_are_those_of_a_plane() {
 
 #[test]
 fn options_out_of_range_are_refused_and_watches_can_cancel() {
-    let heights = field(Field::Fbm, [200, 100], [false, false]);
+    let heights = field(Pattern::Fbm, [200, 100], [false, false]);
     let make = |options: Options, watch: &mut dyn FnMut(f64) -> bool| {
         cpu::generate(
             Generator::Walk,
@@ -416,10 +421,10 @@ fn options_out_of_range_are_refused_and_watches_can_cancel() {
 
 #[test]
 fn what_is_prepared_is_what_is_searched() {
-    let heights = field(Field::Fbm, [9, 7], [false, false]);
+    let heights = field(Pattern::Fbm, [9, 7], [false, false]);
     let (patches, options) = (Patches::default(), Options::default());
     for generator in Generator::ALL {
-        let prepared = Prepared::new(generator, &heights, patches, &options).unwrap();
+        let prepared = MapTask::new(generator, &heights, patches, &options).unwrap();
         let map = plain(generator, &heights);
         let channels = generator.channels();
         let last = prepared.values.len() - 1;

@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use conemarch::gpu::device::{Adapters, Choice, DeviceError, kind};
+use conemarch::gpu::render::{RenderError, Renderer};
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::load;
-use conemarch::render::{RenderError, Renderer};
 
 fn small() -> Plan {
     let mut plan = load("mandelbox", &[]).unwrap().plan;
@@ -110,7 +110,7 @@ fn a_choice_that_matches_nothing_lists_what_there_is() {
     let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
     let hardware = adapters.iter().any(|a| kind(&a.get_info()) != "software");
     let mut wrong = vec![
-        (Choice::Named("no-such".into()), "no-such"),
+        (Choice::PatternSpec("no-such".into()), "no-such"),
         (Choice::Index(99), "99"),
     ];
     if !hardware {
@@ -140,7 +140,7 @@ fn every_adapter_can_be_chosen_by_index_and_by_part_of_its_name() {
         };
         assert_eq!(chosen(Choice::Index(i)), Some(info.name.clone()));
         let part = info.name.to_uppercase().chars().take(6).collect();
-        let found = chosen(Choice::Named(part)).unwrap();
+        let found = chosen(Choice::PatternSpec(part)).unwrap();
         assert_eq!(found[..6], info.name[..6]);
     }
     assert!(adapters.choose(&Choice::Cpu).unwrap().is_none());
@@ -158,9 +158,9 @@ fn choices_are_read_from_words() {
         ("cpu", Choice::Cpu),
         ("0", Choice::Index(0)),
         ("17", Choice::Index(17)),
-        ("-1", Choice::Named("-1".into())),
-        ("RTX 40", Choice::Named("RTX 40".into())),
-        ("gpus", Choice::Named("gpus".into())),
+        ("-1", Choice::PatternSpec("-1".into())),
+        ("RTX 40", Choice::PatternSpec("RTX 40".into())),
+        ("gpus", Choice::PatternSpec("gpus".into())),
     ];
     for (text, choice) in cases {
         assert_eq!(Choice::read(text), Some(choice), "`{text}`");

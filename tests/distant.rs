@@ -16,33 +16,33 @@ mod common {
 use std::sync::Arc;
 
 use common::relief_rays::{Case, END, case, cases, made, rays, run};
-use conemarch::frame::Work;
+use conemarch::base::work::Work;
 use conemarch::heightfield::conemap::ConeMap;
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::generator::Generator;
+use conemarch::heightfield::conemap::generate::generator::Generator;
+use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
-use conemarch::heightfield::relief::Relief;
-use conemarch::heightfield::survey::{first_hits, survey, view_rays};
-use conemarch::heightfield::trace::oracle::Oracle;
-use conemarch::heightfield::trace::walk::Walk;
-use conemarch::heightfield::trace::walk_mip::{WalkMip, node_cones};
-use conemarch::heightfield::trace::{LocalRay, SURFACE, Step, Trace, Tracer};
+use conemarch::heightfield::pattern::Pattern;
+use conemarch::heightfield::tracer::oracle::Oracle;
+use conemarch::heightfield::tracer::walk::Walk;
+use conemarch::heightfield::tracer::walk_mip::{WalkMip, node_cones};
+use conemarch::heightfield::tracer::{LocalRay, SURFACE, Step, Trace, Tracer};
+use conemarch::measure::tracer_stats::{first_hits, survey, view_rays};
 use rayon::prelude::*;
 
 /// A parameter that no ray of a test comes to.
 const NEVER: f64 = 2.0 * END;
 
-fn walk_mip(relief: &Arc<Relief>, map: &Arc<ConeMap>, lod: f64) -> WalkMip {
+fn walk_mip(relief: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> WalkMip {
     WalkMip::new(relief.clone(), map.clone(), lod).unwrap()
 }
 
-fn cone_mip(relief: &Arc<Relief>, map: &Arc<ConeMap>, lod: f64) -> WalkMip {
+fn cone_mip(relief: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> WalkMip {
     let nodes = node_cones(relief, map).unwrap();
     WalkMip::of_nodes(relief.clone(), map.clone(), nodes, lod).unwrap()
 }
 
 /// By the cones of cells, and by those of nodes.
-fn both(relief: &Arc<Relief>, map: &Arc<ConeMap>, lod: f64) -> [WalkMip; 2] {
+fn both(relief: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> [WalkMip; 2] {
     [walk_mip(relief, map, lod), cone_mip(relief, map, lod)]
 }
 
@@ -76,7 +76,13 @@ fn as_long_as_texels_are_wider_than_pixels_it_is_the_walk() {
 
 #[test]
 fn levels_double_with_the_distance_and_end_with_the_pyramid() {
-    let case = case(Field::Sine, [40, 33], [true; 2], [1, 1], Patches::Bilinear);
+    let case = case(
+        Pattern::Sine,
+        [40, 33],
+        [true; 2],
+        [1, 1],
+        Patches::Bilinear,
+    );
     let map = made(Generator::Walk, &case.relief, 2.0);
     let own = walk_mip(&case.relief, &map, 0.75);
     let levels = [-3.0, 0.0, 0.74, 0.75, 1.49, 1.5, 2.99, 3.0, 5.99, 6.0, 1e30];
@@ -89,7 +95,12 @@ fn levels_double_with_the_distance_and_end_with_the_pyramid() {
 }
 
 /// What is wrong with where a ray ended, the truth being a parameter, or none for no hit.
-fn wrong(own: &WalkMip, relief: &Relief, ray: &LocalRay, truth: Option<f64>) -> Option<String> {
+fn wrong(
+    own: &WalkMip,
+    relief: &HeightSurface,
+    ray: &LocalRay,
+    truth: Option<f64>,
+) -> Option<String> {
     let end = traced(own, ray);
     let hit = end.hit();
     if let Some(truth) = truth {
@@ -155,7 +166,7 @@ fn no_first_hit_is_passed_and_every_hit_is_of_the_node_under_it() {
 #[test]
 fn distant_views_take_fewer_steps_than_with_the_walk() {
     let case = case(
-        Field::Fbm,
+        Pattern::Fbm,
         [512, 512],
         [false; 2],
         [1, 1],

@@ -4,8 +4,8 @@
 
 mod adapter;
 
-use conemarch::mode::Mode;
 use conemarch::plan::Extras;
+use conemarch::plan::march::Mode;
 use conemarch::preset::load;
 
 const BENCHMARKS: [&str; 5] = [

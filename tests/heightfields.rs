@@ -19,13 +19,13 @@ use common::random::Random;
 use common::reference_maps;
 use common::relief_rays::{Case, END, block, cases, exact, rays, run};
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
-use conemarch::heightfield::field::Field;
+use conemarch::heightfield::height_surface::{HeightSurface, HeightSurfaceError};
 use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::relief::{Relief, ReliefError};
-use conemarch::heightfield::trace::oracle::Oracle;
-use conemarch::heightfield::trace::relaxed::WalkRelaxed;
-use conemarch::heightfield::trace::walk::Walk;
-use conemarch::heightfield::trace::{
+use conemarch::heightfield::pattern::Pattern;
+use conemarch::heightfield::tracer::oracle::Oracle;
+use conemarch::heightfield::tracer::relaxed::WalkRelaxed;
+use conemarch::heightfield::tracer::walk::Walk;
+use conemarch::heightfield::tracer::{
     AnyTracer, BASE, LocalRay, SURFACE, Step, TraceError, TraceHit, Tracer, WALL_X_HIGH,
     WALL_X_LOW, WALL_Y_LOW,
 };
@@ -215,7 +215,7 @@ fn wrong(ray: &LocalRay, truth: &End, own: Option<End>) -> Option<String> {
 
 /// Whether a hit earlier than the truth's is one all the same: a point of the surface, or of
 /// the side of a box, that the ray touches, and rounding hid from the oracle.
-fn touches(relief: &Relief, ray: &LocalRay, truth: &End, own: Option<End>) -> bool {
+fn touches(relief: &HeightSurface, ray: &LocalRay, truth: &End, own: Option<End>) -> bool {
     let Some((Step::Hit, hit, _)) = own else {
         return false;
     };
@@ -278,7 +278,7 @@ fn exact_tracers_find_the_first_hit() {
 
 #[test]
 fn rising_rays_pass_over_what_lies_under_them() {
-    let field = Field::Fbm.heights([128, 128], 7, 2.6);
+    let field = Pattern::Fbm.heights([128, 128], 7, 2.6);
     let relief = block([128, 128], [false; 2], [1, 1], Patches::Bilinear, field);
     let mut random = Random::new(12);
     let rays: Vec<_> = (0..500)
@@ -487,7 +487,7 @@ fn rays_of_no_numbers_end() {
         };
         for (_, tracer) in &tracers {
             // A caller counts: a number of steps is enough, and none panics.
-            let mut work = conemarch::frame::Work::default();
+            let mut work = conemarch::base::work::Work::default();
             let mut walk = tracer.begin(&ray, any(), any(), &mut work);
             for _ in 0..200 {
                 tracer.step(&ray, &mut walk, &mut work);
@@ -499,16 +499,16 @@ fn rays_of_no_numbers_end() {
 #[test]
 fn what_does_not_fit_is_refused() {
     let heights = Heights::new([4, 3], [true, false], vec![0.5; 12]).unwrap();
-    let tiled = |tiles| Relief::new(heights.clone(), Patches::Bilinear, tiles);
+    let tiled = |tiles| HeightSurface::new(heights.clone(), Patches::Bilinear, tiles);
     assert!(tiled([7, 1]).is_ok());
-    assert_eq!(tiled([1, 2]).unwrap_err(), ReliefError::Unwrapped(1));
+    assert_eq!(tiled([1, 2]).unwrap_err(), HeightSurfaceError::Unwrapped(1));
     assert!(matches!(
         tiled([0, 1]),
-        Err(ReliefError::Tiles { axis: 0, .. })
+        Err(HeightSurfaceError::Tiles { axis: 0, .. })
     ));
     assert!(matches!(
         tiled([1 << 20, 1]),
-        Err(ReliefError::Tiles { .. })
+        Err(HeightSurfaceError::Tiles { .. })
     ));
     let relief = Arc::new(tiled([2, 1]).unwrap());
     let good = reference_maps::walk(&relief, 1.5);

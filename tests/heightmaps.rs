@@ -1,11 +1,11 @@
 //! Height maps from files: every format, and a sentence for everything that is wrong.
 
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::cpu;
-use conemarch::heightfield::generate::generator::{Generator, Options};
+use conemarch::heightfield::conemap::file::{Bits, Form, Layout, MapFile, decode_bytes, encode};
+use conemarch::heightfield::conemap::generate::cpu;
+use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::load::{LoadOptions, Loaded, load};
-use conemarch::heightfield::mapfile::{Bits, Form, Layout, MapFile, decode_bytes, encode};
+use conemarch::heightfield::pattern::Pattern;
 use exr::prelude::FlatSamples;
 use png::{BitDepth, ColorType};
 use tiff::encoder::colortype;
@@ -142,14 +142,24 @@ fn map_of(heights: &Heights, generator: Generator, patches: Patches) -> MapFile 
 #[test]
 fn a_cone_map_has_its_heights_where_its_layout_has_them() {
     let folder = Folder::new();
-    let heights = Field::Fbm.heights([9, 7], 5, 2.6);
+    let heights = Pattern::Fbm.heights([9, 7], 5, 2.6);
     let heights = Heights::new([9, 7], [false; 2], heights).expect("heights");
     let flat = Patches::Bilinear;
     for (generator, layout, name, words) in [
         (Generator::Exact, Layout::Dummer, "a.png", "from red"),
         (Generator::Exact, Layout::Pair, "a.png", "from grey"),
-        (Generator::Exact, Layout::Relief, "a.png", "from alpha"),
-        (Generator::RelaxedExact, Layout::Relief, "a.png", "depths"),
+        (
+            Generator::Exact,
+            Layout::HeightSurface,
+            "a.png",
+            "from alpha",
+        ),
+        (
+            Generator::RelaxedExact,
+            Layout::HeightSurface,
+            "a.png",
+            "depths",
+        ),
         (
             Generator::Exact,
             Layout::Full,
@@ -196,7 +206,7 @@ fn a_cone_map_has_its_heights_where_its_layout_has_them() {
 #[test]
 fn a_cone_map_without_heights_of_samples_is_refused() {
     let folder = Folder::new();
-    let tile = Field::Fbm.heights([8, 8], 5, 2.6);
+    let tile = Pattern::Fbm.heights([8, 8], 5, 2.6);
     let tile = Heights::new([8, 8], [true; 2], tile).expect("heights");
     let of = |generator| map_of(&tile, generator, Patches::Bilinear);
     let quad = encode(&of(Generator::Quad), &Form::new(Layout::Quad)).expect("a file");
@@ -320,14 +330,14 @@ fn a_raw_file_needs_the_size_that_it_has() {
 
 #[test]
 fn no_field_is_flat_however_few_its_samples() {
-    for field in Field::ALL {
+    for field in Pattern::ALL {
         for n in [4, 8, 12, 16, 40] {
             let heights = field.heights([n, n], 1, 2.6);
             let row = |y: u32| &heights[(y * n) as usize..][..n as usize];
             let moves = |own: &[f32]| own.iter().any(|z| *z != own[0]);
             assert!(moves(&heights), "{field:?} {n}");
             // A checker changes along either axis.
-            let across = field != Field::Checker || moves(row(0)) && row(0) != row(n - 1);
+            let across = field != Pattern::Checker || moves(row(0)) && row(0) != row(n - 1);
             assert!(across, "{n}");
         }
     }
@@ -459,5 +469,5 @@ fn what_is_no_height_map_is_told_so() {
         assert!(why.is_usage() && why.to_string().contains(words), "{why}");
     }
     let named = load("noise:9x5,seed=3", &LoadOptions::default()).expect("a field");
-    assert_eq!(named.heights.data(), Field::Noise.heights([9, 5], 3, 2.6));
+    assert_eq!(named.heights.data(), Pattern::Noise.heights([9, 5], 3, 2.6));
 }

@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use conemarch::heightfield::conemap::MapKind;
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::mapfile::{
+use conemarch::heightfield::conemap::file::{
     Bits, Foreign, Form, Layout, MapFile, Ratios, Slopes, Wanted, decode, decode_bytes, encode,
     has_map, read_map,
 };
-use conemarch::output::write_map;
+use conemarch::heightfield::heights::{Heights, Patches};
+use conemarch::heightfield::pattern::Pattern;
+use conemarch::picture::write_map;
 use png::{BitDepth, ColorType};
 use proptest::prelude::*;
 
@@ -38,7 +38,7 @@ fn made(heights: &Heights, kind: MapKind) -> MapFile {
 }
 
 fn field(size: [u32; 2], wrap: [bool; 2]) -> Heights {
-    Heights::new(size, wrap, Field::Fbm.heights(size, 5, 2.6)).expect("heights")
+    Heights::new(size, wrap, Pattern::Fbm.heights(size, 5, 2.6)).expect("heights")
 }
 
 /// Every form that can hold a kind.
@@ -205,7 +205,7 @@ fn channels_are_those_of_the_papers() {
     assert_eq!(rgba[4 * 3..4 * 4], [0, root, 128, 0]);
     // The peak: nothing is higher, so the cone is as wide as the channel goes.
     assert_eq!(rgba[4 * 11..4 * 11 + 2], [255, 255]);
-    let (color, relief) = pixels(Form::new(Layout::Relief));
+    let (color, relief) = pixels(Form::new(Layout::HeightSurface));
     assert_eq!(color, ColorType::Rgba);
     // Normal, ratio as it is, depth: the normal leans left by the slope of 0.5 x 2 texels.
     let lean = (0.5 - 0.5 * 0.5f64.sqrt()) * 255.0;
@@ -378,7 +378,7 @@ fn a_map_goes_with_the_heights_in_its_own_file() {
     for (kind, layout) in [
         (MapKind::Samples, Layout::Dummer),
         (MapKind::Samples, Layout::Pair),
-        (MapKind::Relaxed, Layout::Relief),
+        (MapKind::Relaxed, Layout::HeightSurface),
     ] {
         let form = Form {
             bits: Bits::Eight,
@@ -476,7 +476,7 @@ fn a_map_of_another_program_is_read_as_what_it_is_said_to_be() {
         patches: Patches::Bilinear,
     };
     read.fit(&path, &wanted(&heights)).expect("its heights");
-    let other = Field::Noise.heights([8, 8], 1, 0.0);
+    let other = Pattern::Noise.heights([8, 8], 1, 0.0);
     let other = Heights::new([8, 8], [false; 2], other).expect("heights");
     assert!(read.fit(&path, &wanted(&other)).is_err());
     // A map is four channels wide.
@@ -657,7 +657,11 @@ fn layouts_say_what_they_cannot_hold() {
     for (kind, layout, words) in [
         (MapKind::Quad, Layout::Dummer, "take quad or full"),
         (MapKind::Walk, Layout::Dummer, "take pair or full"),
-        (MapKind::WalkRelaxed, Layout::Relief, "take pair or full"),
+        (
+            MapKind::WalkRelaxed,
+            Layout::HeightSurface,
+            "take pair or full",
+        ),
         (MapKind::Samples, Layout::Quad, "four ratios"),
     ] {
         let why = encode(&made(&heights, kind), &Form::new(layout)).expect_err("no place");

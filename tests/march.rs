@@ -19,14 +19,15 @@ mod common {
 use adapter::{render, render_cut};
 use common::overclaims::{brought_near, overclaims};
 use common::solved::{balls, camera, cameras, meet, slab, solved};
-use conemarch::compare::compare;
+use conemarch::base::work::{State, Work};
 use conemarch::cpu;
-use conemarch::frame::{Frame, State, Work};
-use conemarch::mode::Mode;
+use conemarch::gpu::render::Cutting;
+use conemarch::measure::compare::compare;
+use conemarch::picture::frame::Frame;
+use conemarch::plan::camera::Camera;
+use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan, Subject};
 use conemarch::preset::load;
-use conemarch::render::Cutting;
-use conemarch::view::Camera;
 
 const SKY: u8 = State::Sky as u8;
 const HIT: u8 = State::Hit as u8;

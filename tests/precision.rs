@@ -16,9 +16,9 @@ mod common {
 }
 
 use common::precision::{Sample, asker, has_f64, quantiles, samples};
+use conemarch::base::shader::Program;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::gpu::kernel::Kernel;
-use conemarch::shader::Program;
 
 fn of(scale: f64) -> Vec<Sample> {
     let m = Mandelbox {

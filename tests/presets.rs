@@ -3,7 +3,7 @@
 
 use conemarch::plan::{Plan, Subject};
 use conemarch::preset::{BUILTIN, Override, PresetError, builtin, load, read, read_with, write};
-use conemarch::scene::slab::SlabShape;
+use conemarch::scene::slab::SlabSettings;
 use proptest::prelude::*;
 use toml::Value;
 
@@ -529,7 +529,7 @@ fn another_formula_starts_from_its_own_defaults() {
     assert_eq!(get(&plan, "scene", "scale"), Value::Float(3.0));
     let set = Override::read("scene.kind=slab").expect("a value");
     let plan = load("mandelbox", &[set]).expect("all is dropped").plan;
-    assert_eq!(plan.subject, Subject::Slab(SlabShape::default()));
+    assert_eq!(plan.subject, Subject::Slab(SlabSettings::default()));
 }
 
 proptest! {

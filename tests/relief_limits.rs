@@ -9,10 +9,10 @@
 mod adapter;
 
 use conemarch::cpu;
-use conemarch::frame::Frame;
-use conemarch::heightfield::shape::{HeightfieldShape, Wrap};
+use conemarch::heightfield::settings::{HeightfieldSettings, Wrap};
+use conemarch::picture::frame::Frame;
+use conemarch::plan::camera::Camera;
 use conemarch::plan::{Extras, Plan, Subject};
-use conemarch::view::Camera;
 use glam::DVec3;
 
 const DEPTHS: Extras = Extras {
@@ -43,7 +43,7 @@ fn camera() -> Camera {
 fn shadows_that_reach_their_limit_are_counted_and_flagged() {
     const MAGENTA: [f32; 3] = [1.0, 0.0, 1.0];
     for tracer in ["walk", "walk-relaxed", "max-mip"] {
-        let mut shape = HeightfieldShape::default();
+        let mut shape = HeightfieldSettings::default();
         shape.source.field = "fbm:128x128,seed=5,power=3".into();
         shape.depth = 2.6;
         shape.tracing.tracer = tracer;
@@ -88,7 +88,7 @@ fn shadows_reach_across_the_block_from_wherever_they_are_seen() {
         std::env::temp_dir().join(format!("conemarch-wall-{}-64x64.raw", std::process::id()));
     let bytes: Vec<u8> = heights.flat_map(f32::to_le_bytes).collect();
     std::fs::write(&file, bytes).unwrap();
-    let mut shape = HeightfieldShape::default();
+    let mut shape = HeightfieldSettings::default();
     shape.source.field = file.to_string_lossy().into_owned();
     shape.depth = 4.0;
     let mut plan = Plan::new(Subject::Heightfield(shape));
@@ -116,7 +116,7 @@ fn shadows_reach_across_the_block_from_wherever_they_are_seen() {
             both(plan, normals)
         };
         for (dark, lit) in render(&plan).into_iter().zip(render(&open)) {
-            let position = plan.view().positions(&dark);
+            let position = dark.positions(&plan.view());
             let floor = |i: &usize| dark.normal[*i][2] > 0.99 && position[*i][2] < 0.1;
             let floor: Vec<usize> = (0..dark.state.len()).filter(floor).collect();
             assert!(floor.len() > 500, "{} pixels of floor", floor.len());
@@ -132,7 +132,7 @@ fn shadows_reach_across_the_block_from_wherever_they_are_seen() {
 fn no_ray_of_an_exact_tracer_lacks_steps() {
     // Spikes seen along their tips: some rays pass by hundreds of them.
     for tracer in ["walk", "walk-relaxed", "max-mip"] {
-        let mut shape = HeightfieldShape::default();
+        let mut shape = HeightfieldSettings::default();
         shape.source.field = "spikes:256x256".into();
         shape.source.wrap = Wrap::Both;
         shape.tiles = [16, 16];
@@ -156,7 +156,7 @@ fn no_ray_of_an_exact_tracer_lacks_steps() {
 #[test]
 fn equal_steps_never_leave_shadows_undecided() {
     for steps in [200, 2048] {
-        let mut shape = HeightfieldShape::default();
+        let mut shape = HeightfieldSettings::default();
         shape.source.field = "fbm:64x64".into();
         shape.tracing.tracer = "linear-binary";
         shape.tracing.steps = Some(steps);

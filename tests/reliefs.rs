@@ -15,19 +15,21 @@ mod common {
 
 use common::overclaims::{brought_near, overclaims};
 use common::random::Random;
+use conemarch::base::view::Beam;
+use conemarch::base::work::State;
 use conemarch::cpu;
-use conemarch::frame::{Frame, State};
-use conemarch::heightfield::generate::cpu::generate;
-use conemarch::heightfield::generate::generator::{Generator, Options};
+use conemarch::heightfield::conemap::generate::cpu::generate;
+use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
+use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
-use conemarch::heightfield::placed::Placed;
-use conemarch::heightfield::relief::Relief;
-use conemarch::heightfield::shape::{HeightfieldShape, Ready, Wrap};
-use conemarch::heightfield::trace::oracle::Oracle;
-use conemarch::heightfield::trace::{LocalRay, Step, Tracer};
+use conemarch::heightfield::placement::Placement;
+use conemarch::heightfield::settings::{HeightfieldSettings, Ready, Wrap};
+use conemarch::heightfield::tracer::oracle::Oracle;
+use conemarch::heightfield::tracer::{LocalRay, Step, Tracer};
+use conemarch::picture::frame::Frame;
+use conemarch::plan::camera::Camera;
 use conemarch::plan::{Extras, PREPARE, Plan, Subject};
 use conemarch::scene::{self, Scene, Solid};
-use conemarch::view::{Beam, Camera};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -42,9 +44,9 @@ const NORMALS: Extras = Extras {
 
 /// Heightfields of every kind: rough and smooth, ended, wrapped and tiled, as they lie and
 /// turned, patches and boxes.
-fn shapes() -> Vec<(&'static str, HeightfieldShape)> {
+fn shapes() -> Vec<(&'static str, HeightfieldSettings)> {
     let of = |field: &str, wrap, tiles, patches, depth, turn: [f64; 3]| {
-        let mut shape = HeightfieldShape::default();
+        let mut shape = HeightfieldSettings::default();
         shape.source.field = field.into();
         shape.source.wrap = wrap;
         shape.tiles = tiles;
@@ -97,11 +99,11 @@ fn shapes() -> Vec<(&'static str, HeightfieldShape)> {
 }
 
 /// A shape made ready; how wide pixels are matters to none of these tests.
-fn ready(shape: &HeightfieldShape) -> Ready {
+fn ready(shape: &HeightfieldSettings) -> Ready {
     shape.ready(1e-3).unwrap()
 }
 
-fn local(placed: &Placed, eye: DVec3, ray: &Beam) -> LocalRay {
+fn local(placed: &Placement, eye: DVec3, ray: &Beam) -> LocalRay {
     LocalRay {
         origin: placed.position(eye + ray.origin),
         axis: placed.direction(ray.axis),
@@ -185,7 +187,7 @@ fn no_cell_starts_behind_a_relief_at_any_size_and_angle() {
 /// Points all over what the block shows: its top, with the sides of boxes, its walls and
 /// its base, so close together that none of the surface is farther off than `1 / fine`
 /// texels or heights.
-fn shell(relief: &Relief, fine: i32) -> Vec<DVec3> {
+fn shell(relief: &HeightSurface, fine: i32) -> Vec<DVec3> {
     let [w, h] = relief.domain();
     let part = |i: i32| f64::from(i) / f64::from(fine);
     let mut all = Vec::new();
@@ -285,7 +287,7 @@ fn empty_balls_hold_nothing_of_a_relief() {
 
 /// The first of all boxes of a relief that a ray meets, and the normal of the side, in
 /// local directions; each box is met by its three pairs of planes.
-fn met(relief: &Relief, ray: &LocalRay) -> Option<(f64, DVec3)> {
+fn met(relief: &HeightSurface, ray: &LocalRay) -> Option<(f64, DVec3)> {
     let [w, h] = relief.domain();
     let mut first: Option<(f64, DVec3)> = None;
     for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
@@ -349,8 +351,8 @@ fn check_normals(what: &str, frame: &Frame, normal: impl Fn([u32; 2]) -> Option<
 }
 
 /// A small map of noise that wraps along x, twice, painted by the cones of a generator.
-fn painted(by: Generator, patches: Patches) -> HeightfieldShape {
-    let mut shape = HeightfieldShape::default();
+fn painted(by: Generator, patches: Patches) -> HeightfieldSettings {
+    let mut shape = HeightfieldSettings::default();
     shape.source.field = "noise:7x5,seed=3".into();
     shape.source.wrap = Wrap::X;
     shape.tiles = [2, 1];

@@ -17,24 +17,24 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use common::plans::{distance, every_program, preset, programs_of};
-use conemarch::formula::Shape;
+use conemarch::base::shader::{Module, Program, ShaderError};
+use conemarch::formula::Formula;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::gpu::device::{PROMISED_BUFFERS, STORAGE_BUFFERS};
+use conemarch::heightfield::conemap::generate::generator::Generator;
+use conemarch::heightfield::conemap::generate::program as generate;
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
-use conemarch::heightfield::generate::generator::Generator;
-use conemarch::heightfield::generate::program as generate;
+use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::relief::Relief;
 use conemarch::heightfield::texture::Texture;
-use conemarch::heightfield::trace::cones::{Cones, Manner};
-use conemarch::heightfield::trace::linear::LinearBinary;
-use conemarch::heightfield::trace::max_mip::MaxMipTracer;
-use conemarch::heightfield::trace::relaxed::WalkRelaxed;
-use conemarch::heightfield::trace::walk::Walk;
-use conemarch::heightfield::trace::walk_mip::WalkMip;
-use conemarch::heightfield::trace::{AnyTracer, Tracer};
+use conemarch::heightfield::tracer::cones::{Cones, Manner};
+use conemarch::heightfield::tracer::linear::LinearBinary;
+use conemarch::heightfield::tracer::max_mip::MaxMipTracer;
+use conemarch::heightfield::tracer::relaxed::WalkRelaxed;
+use conemarch::heightfield::tracer::walk::Walk;
+use conemarch::heightfield::tracer::walk_mip::WalkMip;
+use conemarch::heightfield::tracer::{AnyTracer, Tracer};
 use conemarch::plan::{Extras, Pass, Plan, Subject};
-use conemarch::shader::{Module, Program, ShaderError};
 use glam::DVec3;
 use wgpu::naga::valid::Capabilities;
 
@@ -69,11 +69,11 @@ fn every_program_with_real_numbers_is_valid_in_f64() {
     let mut tried = 0;
     for (listing, program) in every_program() {
         let wide = program.in_f64();
-        if !has(&program, "wgsl/real.wgsl") {
+        if !has(&program, "wgsl/base/real.wgsl") {
             assert_eq!(wide, program, "{listing}");
             continue;
         }
-        assert!(!has(&wide, "wgsl/real.wgsl") && has(&wide, "wgsl/real64.wgsl"));
+        assert!(!has(&wide, "wgsl/base/real.wgsl") && has(&wide, "wgsl/base/real64.wgsl"));
         let result = wide.validate(Capabilities::FLOAT64);
         assert!(result.is_ok(), "{}\n{listing}", result.unwrap_err());
         tried += 1;
@@ -203,7 +203,7 @@ fn heightfield_paths() -> BTreeSet<&'static str> {
         all.extend(paths(&program));
     }
     let heights = Heights::new([2, 2], [false; 2], vec![0.5; 4]).unwrap();
-    let relief = Arc::new(Relief::new(heights, Patches::Bilinear, [1, 1]).unwrap());
+    let relief = Arc::new(HeightSurface::new(heights, Patches::Bilinear, [1, 1]).unwrap());
     let map = |kind, size: [u32; 2]| {
         let cones = if kind == MapKind::Quad { 4 } else { 1 };
         Arc::new(ConeMap {
@@ -263,7 +263,7 @@ fn changed(change: impl FnOnce(&mut Mandelbox)) -> Plan {
     let mut formula = Mandelbox::default();
     change(&mut formula);
     let mut plan = preset("mandelbox");
-    plan.subject = distance(Shape::Mandelbox(formula));
+    plan.subject = distance(Formula::Mandelbox(formula));
     plan
 }
 
@@ -342,10 +342,14 @@ fn what_is_asked_for_beside_the_picture_is_explained() {
         ..Extras::default()
     });
     for (entry, counts) in [("march", true), ("trace", true), ("color", false)] {
-        assert!(!explained(&plain, entry).contains("wgsl/counters.wgsl"));
+        assert!(!explained(&plain, entry).contains("wgsl/base/counters.wgsl"));
         let text = explained(&counted, entry);
-        assert_eq!(text.contains("wgsl/counters.wgsl"), counts, "{text}");
-        assert_eq!(text.contains("wgsl/counters_off.wgsl"), !counts, "{text}");
+        assert_eq!(text.contains("wgsl/base/counters.wgsl"), counts, "{text}");
+        assert_eq!(
+            text.contains("wgsl/base/counters_off.wgsl"),
+            !counts,
+            "{text}"
+        );
     }
     let normals = explain(Extras {
         normals: true,
@@ -369,11 +373,12 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
     let text = plan.explain(Extras::default());
     let first = text.lines().skip(2).take(2).collect::<Vec<_>>().join("\n");
     assert_eq!(first, "passes\n  prepare         511 x 511    steps -");
-    assert!(explained(&text, "generate").contains("wgsl/heightfield/generate/search.wgsl"));
+    assert!(explained(&text, "generate").contains("wgsl/heightfield/conemap/generate/search.wgsl"));
     // What is explained is what is run, though no cones are made for it.
     for program in programs_of(&plan) {
         let listing = program.describe();
-        let extras = listing.contains("counters.wgsl") || listing.contains("COLOR_KEEPS_NORMALS=1");
+        let extras =
+            listing.contains("base/counters.wgsl") || listing.contains("COLOR_KEEPS_NORMALS=1");
         let plain = format!("  {}\n{listing}", program.entry);
         assert_eq!(text.contains(&plain), !extras, "{plain}\n{text}");
     }
@@ -418,8 +423,8 @@ fn work_is_counted_only_where_it_is_asked_for() {
             };
             let program = plan.program(&scene, pass, extras);
             let counted = count && pass != Pass::Color;
-            assert_eq!(has(&program, "wgsl/counters.wgsl"), counted);
-            assert_eq!(has(&program, "wgsl/counters_off.wgsl"), !counted);
+            assert_eq!(has(&program, "wgsl/base/counters.wgsl"), counted);
+            assert_eq!(has(&program, "wgsl/base/counters_off.wgsl"), !counted);
         }
     }
 }
@@ -438,7 +443,7 @@ fn what_a_slider_moves_compiles_nothing_new() {
     moved.look.occlusion *= 0.5;
     moved.look.palette = vec![DVec3::ONE; 3];
     moved.size = [33, 17];
-    moved.subject = distance(Shape::Mandelbox(Mandelbox {
+    moved.subject = distance(Formula::Mandelbox(Mandelbox {
         scale: -1.7,
         min_radius: 0.3,
         julia_constant: DVec3::X,
@@ -452,13 +457,13 @@ fn what_a_slider_moves_compiles_nothing_new() {
 
 #[test]
 fn the_rule_of_the_slides_takes_the_place_of_the_exact_one() {
-    use conemarch::mode::Mode;
+    use conemarch::plan::march::Mode;
     let mut plan = preset("mandelbox");
     for (mode, exact) in [(Mode::Safe, true), (Mode::SlidesDeep, false)] {
         plan.march.mode = mode;
         let text = plan.explain(Extras::default());
-        assert_eq!(text.contains("wgsl/cone.wgsl"), exact);
-        assert_eq!(text.contains("wgsl/cone_slides.wgsl"), !exact);
+        assert_eq!(text.contains("wgsl/base/cone.wgsl"), exact);
+        assert_eq!(text.contains("wgsl/base/cone_slides.wgsl"), !exact);
     }
 }
 
@@ -476,36 +481,36 @@ fn the_mandelbox_is_explained() {
       color          1280 x 720    steps -
     programs
       march
-        wgsl/real.wgsl
-        wgsl/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
+        wgsl/base/real.wgsl
+        wgsl/base/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
         wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/mandelbox.wgsl  MANDELBOX_JULIA=0  MANDELBOX_CLASSIC=0
         wgsl/formula/rotation_none.wgsl
-        wgsl/view.wgsl
+        wgsl/base/view.wgsl
         wgsl/pass/shared.wgsl
-        wgsl/counters_off.wgsl
+        wgsl/base/counters_off.wgsl
         wgsl/pass/queue.wgsl
         wgsl/pass/march.wgsl
       trace
-        wgsl/real.wgsl
-        wgsl/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
+        wgsl/base/real.wgsl
+        wgsl/base/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
         wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/mandelbox.wgsl  MANDELBOX_JULIA=0  MANDELBOX_CLASSIC=0
         wgsl/formula/rotation_none.wgsl
-        wgsl/view.wgsl
+        wgsl/base/view.wgsl
         wgsl/pass/shared.wgsl
-        wgsl/counters_off.wgsl
+        wgsl/base/counters_off.wgsl
         wgsl/pass/queue.wgsl
         wgsl/pass/trace.wgsl
       color
-        wgsl/real.wgsl
-        wgsl/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
+        wgsl/base/real.wgsl
+        wgsl/base/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
         wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/mandelbox.wgsl  MANDELBOX_JULIA=0  MANDELBOX_CLASSIC=0
         wgsl/formula/rotation_none.wgsl
-        wgsl/view.wgsl
+        wgsl/base/view.wgsl
         wgsl/pass/shared.wgsl
-        wgsl/counters_off.wgsl
+        wgsl/base/counters_off.wgsl
         wgsl/pass/look.wgsl
         wgsl/pass/shadow.wgsl
         wgsl/pass/occlusion.wgsl

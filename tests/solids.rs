@@ -18,15 +18,15 @@ mod common {
 use common::cones::{beyond, claimed, cone};
 use common::exact::{Exact, balls, distance, first_hit};
 use common::random::Random;
-use conemarch::cone::ConeRule;
+use conemarch::base::cone::ConeRule;
+use conemarch::base::view::{Beam, footprint};
+use conemarch::base::work::{State, Work};
 use conemarch::formula::balls::Balls;
-use conemarch::formula::{Bounds, Shape};
-use conemarch::frame::{State, Work};
+use conemarch::formula::{Bounds, Formula};
 use conemarch::pass::trace::trace;
 use conemarch::scene::distance::{Distance, Relaxation, Stepping};
-use conemarch::scene::slab::{Slab, SlabShape};
+use conemarch::scene::slab::{Slab, SlabSettings};
 use conemarch::scene::{Hit, Solid};
-use conemarch::view::{Beam, footprint};
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -54,7 +54,7 @@ fn stepping(rule: ConeRule) -> Stepping {
 
 /// Balls of some sizes seen from an eye, and the same in closed form.
 fn balls_scene(size: DVec3, eye: DVec3, stepping: Stepping) -> (Distance, Vec<Exact>) {
-    let shape = Shape::Balls(Balls {
+    let shape = Formula::Balls(Balls {
         rod_radius: size.x,
         box_size: size.y,
         ball_radius: size.z,
@@ -64,7 +64,7 @@ fn balls_scene(size: DVec3, eye: DVec3, stepping: Stepping) -> (Distance, Vec<Ex
 }
 
 fn slab_scene(normal: DVec3, size: DVec3, eye: DVec3, rule: ConeRule) -> (Slab, Vec<Exact>) {
-    let shape = SlabShape {
+    let shape = SlabSettings {
         normal,
         half: size.x,
         radius: size.y,

@@ -11,13 +11,14 @@
 mod adapter;
 
 use adapter::render;
-use conemarch::compare::{Report, compare, quantile};
+use conemarch::base::srgb::srgb;
+use conemarch::base::work::State;
 use conemarch::cpu;
-use conemarch::frame::{Frame, State};
-use conemarch::mode::{MODES, Mode};
+use conemarch::measure::compare::{Report, compare, quantile};
+use conemarch::picture::frame::Frame;
+use conemarch::plan::march::{MODES, Mode};
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{BUILTIN, Override, load};
-use conemarch::srgb::srgb;
 use glam::DVec3;
 
 fn preset(name: &str, size: [u32; 2]) -> Plan {
@@ -140,7 +141,7 @@ fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
     let allowed = 1e-4;
     for name in ["far", "graze", "inside", "outside", "thin"] {
         let mut plan = preset(&format!("bench-{name}"), [160, 90]);
-        let truth = conemarch::truth::truth(&plan, &mut |_| true).unwrap();
+        let truth = conemarch::measure::truth::truth(&plan, &mut |_| true).unwrap();
         let mut wrong = |mode| {
             plan.march.mode = mode;
             let frame = render(&plan, DEPTH_ONLY);

@@ -23,7 +23,7 @@ fn tiny<'a>(more: &[&'a str]) -> Vec<&'a str> {
 fn the_command_that_is_given_is_explained() {
     let folder = Folder::new();
     let explain = |more: &[&str]| text(&folder.done(&[&tiny(more)[..], &["--explain"]].concat()));
-    let counters = "wgsl/counters.wgsl";
+    let counters = "wgsl/base/counters.wgsl";
     // Nothing is counted that nobody asked for.
     assert!(!explain(&[]).contains(counters));
     assert!(!explain(&["--layer", "normal"]).contains(counters));

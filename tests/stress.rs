@@ -28,10 +28,11 @@ use common::groups;
 use common::hard::{self, Case, SIZE};
 use common::solved::camera;
 use common::strain::{self, Outcome, both, strain};
-use conemarch::formula::Formula;
+use conemarch::base::work::State;
+use conemarch::formula::DistanceEstimate;
 use conemarch::formula::mandelbox::Mandelbox;
-use conemarch::frame::{Frame, State};
-use conemarch::mode::Mode;
+use conemarch::picture::frame::Frame;
+use conemarch::plan::march::Mode;
 use conemarch::plan::{Plan, Subject};
 use conemarch::preset::{load, read, write};
 use conemarch::scene::distance::Relaxation;
@@ -263,7 +264,7 @@ fn hits_are_where_the_estimate_is_within_the_threshold() {
             lipschitz: Some(3.0),
             ..Mandelbox::default()
         };
-        *shape = conemarch::formula::Shape::Mandelbox(m.clone());
+        *shape = conemarch::formula::Formula::Mandelbox(m.clone());
         let conemarch::scene::Scene::Distance(scene) = plan.scene() else {
             unreachable!("made above");
         };

@@ -17,22 +17,22 @@ use std::sync::Arc;
 
 use common::reference_maps;
 use common::relief_rays::{Case, END, KINDS, block, case, cases, made, rays, run};
+use conemarch::heightfield::conemap::generate::generator::Generator;
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::generator::Generator;
+use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
-use conemarch::heightfield::relief::Relief;
-use conemarch::heightfield::survey::{first_hits, survey, view_rays};
-use conemarch::heightfield::trace::cones::{Budget, Cones, Lookup, Manner};
-use conemarch::heightfield::trace::linear::LinearBinary;
-use conemarch::heightfield::trace::max_mip::MaxMipTracer;
-use conemarch::heightfield::trace::oracle::Oracle;
-use conemarch::heightfield::trace::walk::Walk;
-use conemarch::heightfield::trace::{AnyTracer, LocalRay, Step};
+use conemarch::heightfield::pattern::Pattern;
+use conemarch::heightfield::tracer::cones::{Budget, Cones, Lookup, Manner};
+use conemarch::heightfield::tracer::linear::LinearBinary;
+use conemarch::heightfield::tracer::max_mip::MaxMipTracer;
+use conemarch::heightfield::tracer::oracle::Oracle;
+use conemarch::heightfield::tracer::walk::Walk;
+use conemarch::heightfield::tracer::{AnyTracer, LocalRay, Step};
+use conemarch::measure::tracer_stats::{first_hits, survey, view_rays};
 use glam::DVec3;
 
 /// Every tracer that is not exact.
-fn inexact(relief: &Arc<Relief>) -> Vec<(&'static str, AnyTracer)> {
+fn inexact(relief: &Arc<HeightSurface>) -> Vec<(&'static str, AnyTracer)> {
     let linear = LinearBinary::new(relief.clone(), 32, 6);
     let mut all = vec![("linear-binary", AnyTracer::LinearBinary(linear))];
     let maps: Vec<Arc<ConeMap>> = [MapKind::Samples, MapKind::Quad, MapKind::Relaxed]
@@ -85,7 +85,7 @@ fn inexact_tracers_end_on_the_surface_or_say_that_they_do_not() {
 }
 
 /// Mean steps of the walk over those of the pyramid, in views of 30, 60 and 80 degrees.
-fn walk_over_pyramid(field: Field) -> [f64; 3] {
+fn walk_over_pyramid(field: Pattern) -> [f64; 3] {
     let case = case(field, [256, 256], [false; 2], [1, 1], Patches::Bilinear);
     let relief = &case.relief;
     let oracle = Oracle::new(relief.clone());
@@ -114,13 +114,13 @@ fn walk_over_pyramid(field: Field) -> [f64; 3] {
 
 #[test]
 fn the_walk_takes_fewer_steps_than_the_pyramid_on_terrain() {
-    for field in [Field::Fbm, Field::Ridges] {
+    for field in [Pattern::Fbm, Pattern::Ridges] {
         let ratios = walk_over_pyramid(field);
         assert!(
             ratios[0] <= 1.0 && ratios[1] <= 1.0,
             "{field:?}: {ratios:?}"
         );
-        if field == Field::Fbm {
+        if field == Pattern::Fbm {
             for (own, wanted) in ratios.iter().zip([0.65, 0.85, 1.05]) {
                 assert!((own / wanted - 1.0).abs() < 0.15, "{ratios:?}");
             }

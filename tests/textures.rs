@@ -14,14 +14,14 @@ mod common {
 
 use common::folder::{Folder, said};
 use common::pictures::png;
+use conemarch::base::srgb::linear;
 use conemarch::cpu;
+use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::relief::Relief;
-use conemarch::heightfield::shape::{HeightfieldShape, Wrap};
+use conemarch::heightfield::settings::{HeightfieldSettings, Wrap};
 use conemarch::heightfield::texture::Texture;
+use conemarch::plan::camera::Camera;
 use conemarch::plan::{Extras, Plan, Subject};
-use conemarch::srgb::linear;
-use conemarch::view::Camera;
 use glam::DVec3;
 use png::{BitDepth, ColorType};
 
@@ -46,16 +46,16 @@ fn written(folder: &Folder) -> Texture {
     Texture::read(&folder.0.join("t.png")).unwrap()
 }
 
-fn relief(size: [u32; 2], wrap: [bool; 2], patches: Patches, tiles: [u32; 2]) -> Relief {
+fn relief(size: [u32; 2], wrap: [bool; 2], patches: Patches, tiles: [u32; 2]) -> HeightSurface {
     let flat = vec![0.5; (size[0] * size[1]) as usize];
-    Relief::new(Heights::new(size, wrap, flat).unwrap(), patches, tiles).unwrap()
+    HeightSurface::new(Heights::new(size, wrap, flat).unwrap(), patches, tiles).unwrap()
 }
 
 #[test]
 fn a_texel_lies_on_each_sample_of_a_map_of_the_same_size() {
     let folder = Folder::new();
     let texture = written(&folder);
-    let same = |relief: &Relief, cell, uv, wanted: DVec3| {
+    let same = |relief: &HeightSurface, cell, uv, wanted: DVec3| {
         let own = texture.at(relief, cell, uv);
         assert!(
             (own - wanted).abs().max_element() < 1e-12,
@@ -120,7 +120,7 @@ fn grey_and_sixteen_bits_are_read() {
 
 /// A plan of a small map of noise under the texture.
 fn plan(folder: &Folder, wrap: Wrap, patches: Patches) -> Plan {
-    let mut shape = HeightfieldShape::default();
+    let mut shape = HeightfieldSettings::default();
     shape.source.field = "noise:7x5,seed=3".into();
     shape.source.wrap = wrap;
     shape.patches = patches;

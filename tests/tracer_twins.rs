@@ -24,17 +24,17 @@ use std::sync::Arc;
 use common::probe::{Errors, Numbers, Probe, probe};
 use common::reference_maps;
 use common::relief_rays::{Case, case, exact, rays, run};
+use conemarch::base::shader::Program;
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
-use conemarch::heightfield::field::Field;
+use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::relief::Relief;
-use conemarch::heightfield::trace::cones::{Cones, Lookup, Manner};
-use conemarch::heightfield::trace::linear::LinearBinary;
-use conemarch::heightfield::trace::oracle::Oracle;
-use conemarch::heightfield::trace::walk::Walk;
-use conemarch::heightfield::trace::walk_mip::{WalkMip, node_cones};
-use conemarch::heightfield::trace::{AnyTracer, LocalRay, SURFACE, Step, Tracer};
-use conemarch::shader::Program;
+use conemarch::heightfield::pattern::Pattern;
+use conemarch::heightfield::tracer::cones::{Cones, Lookup, Manner};
+use conemarch::heightfield::tracer::linear::LinearBinary;
+use conemarch::heightfield::tracer::oracle::Oracle;
+use conemarch::heightfield::tracer::walk::Walk;
+use conemarch::heightfield::tracer::walk_mip::{WalkMip, node_cones};
+use conemarch::heightfield::tracer::{AnyTracer, LocalRay, SURFACE, Step, Tracer};
 use conemarch::wgsl;
 use glam::DVec3;
 use wgpu::naga::valid::Capabilities;
@@ -47,12 +47,12 @@ const STEPS: f32 = 4096.0;
 fn reliefs() -> Vec<Case> {
     use Patches::{Bilinear, Boxes};
     vec![
-        case(Field::Fbm, [128, 96], [false; 2], [1, 1], Bilinear),
-        case(Field::Spikes, [64, 64], [true; 2], [3, 2], Bilinear),
-        case(Field::Noise, [33, 64], [false, true], [1, 2], Bilinear),
-        case(Field::Checker, [64, 48], [false; 2], [1, 1], Bilinear),
-        case(Field::Ridges, [64, 65], [true, false], [1, 1], Boxes),
-        case(Field::Sine, [5, 3], [false; 2], [1, 1], Bilinear),
+        case(Pattern::Fbm, [128, 96], [false; 2], [1, 1], Bilinear),
+        case(Pattern::Spikes, [64, 64], [true; 2], [3, 2], Bilinear),
+        case(Pattern::Noise, [33, 64], [false, true], [1, 2], Bilinear),
+        case(Pattern::Checker, [64, 48], [false; 2], [1, 1], Bilinear),
+        case(Pattern::Ridges, [64, 65], [true, false], [1, 1], Boxes),
+        case(Pattern::Sine, [5, 3], [false; 2], [1, 1], Bilinear),
     ]
 }
 
@@ -60,7 +60,7 @@ fn reliefs() -> Vec<Case> {
 fn probe_of(tracer: &impl Tracer) -> Probe {
     let mut modules = tracer.modules();
     modules.push(wgsl!("pass/shared.wgsl"));
-    modules.push(wgsl!("counters_off.wgsl"));
+    modules.push(wgsl!("base/counters_off.wgsl"));
     modules.push(probe!("relief"));
     Probe {
         modules,
@@ -96,16 +96,16 @@ fn answers(probe: &Probe, rays: &[LocalRay]) -> Vec<(u32, f64, u32)> {
 }
 
 /// The same relief, its surface lowered by 1e-5 of the whole height.
-fn lowered(relief: &Relief) -> Arc<Relief> {
+fn lowered(relief: &HeightSurface) -> Arc<HeightSurface> {
     let heights = relief.heights();
     let low = heights.data().iter().map(|h| (h - 1e-5).max(0.0)).collect();
     let tiles = [0, 1].map(|a| relief.domain()[a] as u32 / relief.cells()[a]);
     let heights = Heights::new(heights.size(), heights.wrap(), low).unwrap();
-    Arc::new(Relief::new(heights, relief.patches(), tiles).unwrap())
+    Arc::new(HeightSurface::new(heights, relief.patches(), tiles).unwrap())
 }
 
 /// Skipped hits, rays that do not end, and the errors of the others in texels.
-fn measure(relief: &Arc<Relief>, probe: &Probe, count: u64) -> (u32, u32, Errors) {
+fn measure(relief: &Arc<HeightSurface>, probe: &Probe, count: u64) -> (u32, u32, Errors) {
     let all: Vec<_> = rays(relief, count, 21).iter().map(narrow).collect();
     let (oracle, low) = (Oracle::new(relief.clone()), Oracle::new(lowered(relief)));
     let (mut skipped, mut unconverged) = (0, 0);
@@ -147,7 +147,7 @@ fn shaders_skip_nothing_and_hit_where_they_should() {
 #[test]
 fn the_check_sees_cones_that_are_too_wide() {
     let case = case(
-        Field::Spikes,
+        Pattern::Spikes,
         [64, 64],
         [true; 2],
         [2, 2],
@@ -190,7 +190,7 @@ fn inexact_shaders_agree_with_their_twins() {
 
 /// The walk for distant views, over cells alone and over nodes that soon or late grow with
 /// the distance: rays have a height or a texel to a unit of their parameter.
-fn distant(relief: &Arc<Relief>) -> Vec<(String, AnyTracer)> {
+fn distant(relief: &Arc<HeightSurface>) -> Vec<(String, AnyTracer)> {
     let map = Arc::new(reference_maps::walk(relief, 1.5));
     let cells = |lod: f64| {
         let tracer = WalkMip::new(relief.clone(), map.clone(), lod).unwrap();
@@ -216,7 +216,7 @@ fn the_shader_for_distant_views_passes_no_first_hit() {
 }
 
 /// The tracers that are not exact, every feature of their shaders switched both ways.
-fn inexact(relief: &Arc<Relief>) -> Vec<(String, AnyTracer)> {
+fn inexact(relief: &Arc<HeightSurface>) -> Vec<(String, AnyTracer)> {
     let linear = LinearBinary::new(relief.clone(), 32, 6);
     let mut all = distant(relief);
     all.push(("linear-binary".into(), AnyTracer::LinearBinary(linear)));

@@ -27,15 +27,15 @@ use common::random::Random;
 use common::setups::{
     MOVED, balls, four, mandelboxes, narrow, points, probe_of, shape_plan, slab_plan, three,
 };
-use conemarch::cone::ConeRule;
-use conemarch::formula::Shape;
+use conemarch::base::cone::ConeRule;
+use conemarch::formula::Formula;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::plan::Plan;
-use conemarch::scene::slab::SlabShape;
+use conemarch::scene::slab::SlabSettings;
 use glam::DVec3;
 
 /// What a formula's estimate and traps may be off by, from its shaders' and its own.
-fn formula_errors(gpu: &Shape, cpu: &Shape) -> [Errors; 2] {
+fn formula_errors(gpu: &Formula, cpu: &Formula) -> [Errors; 2] {
     const ITERATIONS: u32 = 6;
     let asked = points(&**cpu, ITERATIONS, 1);
     let plan = shape_plan(gpu.clone(), ITERATIONS, DVec3::new(9.0, 0.0, 0.0));
@@ -54,13 +54,13 @@ fn formula_errors(gpu: &Shape, cpu: &Shape) -> [Errors; 2] {
 #[test]
 fn mandelboxes_agree() {
     for (name, own) in mandelboxes() {
-        let own = Shape::Mandelbox(own);
+        let own = Formula::Mandelbox(own);
         let scaled = |f: &dyn Fn(&mut Mandelbox)| {
-            let Shape::Mandelbox(mut m) = own.clone() else {
+            let Formula::Mandelbox(mut m) = own.clone() else {
                 unreachable!("made above");
             };
             f(&mut m);
-            Shape::Mandelbox(m)
+            Formula::Mandelbox(m)
         };
         let [e, t] = formula_errors(&own, &own);
         let moved = scaled(&|m| m.scale *= MOVED);
@@ -180,7 +180,7 @@ fn f32_never_claims_more_than_the_exact_front() {
 #[test]
 fn rays_and_cones_of_the_view_agree() {
     let of = |fov: f64| {
-        let mut plan = slab_plan(SlabShape::default());
+        let mut plan = slab_plan(SlabSettings::default());
         plan.camera.fov = fov;
         plan.size = [1366, 768];
         plan

@@ -5,12 +5,13 @@
 //! of the walk.
 
 use anyhow::Result;
+use conemarch::base::work::State;
 use conemarch::command::executor::Executor;
-use conemarch::compare::quantile;
 use conemarch::cpu;
-use conemarch::frame::{Frame, State};
 use conemarch::gpu::device::Choice;
-use conemarch::mode::Mode;
+use conemarch::measure::compare::quantile;
+use conemarch::picture::frame::Frame;
+use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{Override, load};
 use serde::{Deserialize, Serialize};

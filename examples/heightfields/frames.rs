@@ -2,9 +2,10 @@
 //! of section 4.1 of Valasek and Ban (2022), at its sizes.
 
 use anyhow::{Context, Result, ensure};
+use conemarch::base::work::State;
 use conemarch::command::executor::Executor;
-use conemarch::frame::{Frame, State};
 use conemarch::gpu::device::Choice;
+use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};
 use serde::{Deserialize, Serialize};

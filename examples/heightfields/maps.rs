@@ -5,10 +5,10 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use conemarch::heightfield::conemap::ConeMap;
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::cpu;
-use conemarch::heightfield::generate::generator::{Generator, Options};
+use conemarch::heightfield::conemap::generate::cpu;
+use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
 use conemarch::heightfield::heights::{Heights, Patches};
+use conemarch::heightfield::pattern::Pattern;
 
 use crate::picture::Picture;
 
@@ -21,7 +21,7 @@ const POWER: f64 = 2.8;
 /// Draws both figures into a folder.
 pub fn draw(folder: &Path) -> Result<()> {
     let size = [SIDE as u32; 2];
-    let data = Field::Stones.heights(size, SEED, POWER);
+    let data = Pattern::Stones.heights(size, SEED, POWER);
     let heights = Heights::new(size, [true; 2], data)?;
     let make = |generator| {
         let (patches, options) = (Patches::default(), Options::default());

@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::{Args, Command};
 use clap_complete::Shell;
 
-use super::print::print;
+use crate::command::print::print;
 
 /// What `completions` takes.
 #[derive(Args, Debug)]

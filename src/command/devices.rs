@@ -3,8 +3,8 @@
 use anyhow::Result;
 use wgpu::{Adapter, Features};
 
-use super::executor::Executor;
-use super::print::print;
+use crate::command::executor::Executor;
+use crate::command::print::print;
 use crate::gpu::device::{Adapters, kind};
 
 const HEAD: [&str; 10] = [

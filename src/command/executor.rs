@@ -1,10 +1,10 @@
 //! One executor out of two: a renderer on a device, or the CPU.
 
 use crate::cpu;
-use crate::frame::Frame;
 use crate::gpu::device::{Adapters, Choice, Device, DeviceError, STORAGE_BUFFERS};
+use crate::gpu::render::{RenderError, Renderer, Watch};
+use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
-use crate::render::{RenderError, Renderer, Watch};
 
 /// Who runs a plan.
 pub enum Executor {

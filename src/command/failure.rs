@@ -3,8 +3,8 @@
 use clap::error::ErrorKind;
 use thiserror::Error;
 
+use crate::gpu::render::RenderError;
 use crate::preset::PresetError;
-use crate::render::RenderError;
 
 /// The command line asks for something that cannot be meant.
 #[derive(Debug, Error)]

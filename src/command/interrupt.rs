@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use super::failure::CANCELLED;
-use super::print::say;
-use crate::output;
+use crate::command::failure::CANCELLED;
+use crate::command::print::say;
+use crate::picture;
 
 static ASKED: AtomicBool = AtomicBool::new(false);
 
@@ -38,7 +38,7 @@ pub fn asked() -> bool {
 
 /// Ends the process without a trace of files.
 fn end() -> ! {
-    let _kept = output::clear();
+    let _kept = picture::clear();
     if io::stderr().is_terminal() {
         // The progress bar's line, which nobody else will clear now.
         let _ = write!(io::stderr(), "\r\x1b[2K");

@@ -8,8 +8,8 @@ use anyhow::Result;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 
-use super::print::say;
-use super::{bench, completions, conemap, devices, failure, presets, render};
+use crate::command::print::say;
+use crate::command::{bench, completions, conemap, devices, failure, presets, render};
 
 /// Renders distance-estimated fractals by multi-pass cone marching.
 ///

@@ -72,7 +72,7 @@ pub fn lacking_for(plan: &Plan, available: u64) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::heightfield::shape::{HeightfieldShape, Wrap};
+    use crate::heightfield::settings::{HeightfieldSettings, Wrap};
     use crate::plan::Subject;
 
     #[test]
@@ -82,7 +82,7 @@ mod tests {
         assert!(why.contains("257698037760 bytes"), "{why}");
         let offered = why.rsplit("--size ").next().unwrap_or_default();
         let offered = offered.split(' ').next().unwrap_or_default();
-        let size = super::super::size::read(offered);
+        let size = crate::command::size::read(offered);
         assert!(size.is_ok_and(|s| lacking(s, 60, 1 << 30).is_none()));
     }
 
@@ -95,11 +95,11 @@ mod tests {
 
     #[test]
     fn maps_are_weighed_by_their_ratios_before_heights_are_made() {
-        let mut shape = HeightfieldShape::default();
+        let mut shape = HeightfieldSettings::default();
         shape.source.field = "fbm:8192x8192".into();
         shape.source.wrap = Wrap::Both;
         shape.tracing.tracer = "quad";
-        let lacking = |shape: &HeightfieldShape, available| {
+        let lacking = |shape: &HeightfieldSettings, available| {
             let plan = Plan::new(Subject::Heightfield(shape.clone()));
             lacking_for(&plan, available)
         };

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use anyhow::Result;
 use clap::Args;
 
-use super::print::print;
+use crate::command::print::print;
 use crate::preset::{BUILTIN, PresetError, builtin, nearest, read};
 
 /// What `presets` takes.

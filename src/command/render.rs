@@ -9,19 +9,19 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::executor::{Executor, device};
-use super::failure::usage;
-use super::print::{print, say};
-use super::sink::{Parcel, Sink, apart, is_stdout, spared};
-use super::stats::{Stats, shares, undecided};
-use super::{interrupt, memory, size};
-use crate::frame::Frame;
+use crate::command::executor::{Executor, device};
+use crate::command::failure::usage;
+use crate::command::print::{print, say};
+use crate::command::sink::{Parcel, Sink, apart, is_stdout, spared};
+use crate::command::stats::{Stats, shares, undecided};
+use crate::command::{interrupt, memory, size};
 use crate::gpu::device::Choice;
-use crate::output::{BitDepth, Layer, Shades, write_exr, write_png};
+use crate::gpu::render::{Progress, RenderError};
+use crate::measure::truth::{self, Cache};
+use crate::picture::frame::Frame;
+use crate::picture::{BitDepth, Layer, Shades, write_exr, write_png};
 use crate::plan::{Extras, PREPARE, Plan};
 use crate::preset::{self, Override, Preset};
-use crate::render::{Progress, RenderError};
-use crate::truth::{self, Cache};
 
 /// What `render` takes.
 #[derive(Args, Debug)]

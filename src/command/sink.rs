@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 
-use super::failure::usage;
-use super::print::deliver;
-use crate::output::{OutputError, Place, commit};
+use crate::command::failure::usage;
+use crate::command::print::deliver;
+use crate::picture::{OutputError, Place, commit};
 
 /// Where one result goes.
 #[derive(Debug)]

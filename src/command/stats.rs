@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::executor::Executor;
-use crate::frame::Frame;
+use crate::command::executor::Executor;
+use crate::picture::frame::Frame;
 use crate::plan::Plan;
 
 /// One render.

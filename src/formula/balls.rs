@@ -7,9 +7,9 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, DVec4, Vec4};
 
-use super::contract::{Bounds, Formula};
-use crate::key::{Fault, Key, Number};
-use crate::shader::Module;
+use crate::base::key::{Fault, Key, Number};
+use crate::base::shader::Module;
+use crate::formula::contract::{Bounds, DistanceEstimate};
 use crate::wgsl;
 
 /// The solids as WGSL reads them.
@@ -75,7 +75,7 @@ impl Balls {
     }
 }
 
-impl Formula for Balls {
+impl DistanceEstimate for Balls {
     fn name(&self) -> &'static str {
         "balls"
     }

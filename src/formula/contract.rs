@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::key::{Fault, Key};
-use crate::shader::Module;
+use crate::base::key::{Fault, Key};
+use crate::base::shader::Module;
 
 /// A region that holds everything: a box about a centre, cut by a ball about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +43,7 @@ impl Bounds {
 }
 
 /// A distance-estimated shape. Each has a WGSL twin with functions of the same names.
-pub trait Formula {
+pub trait DistanceEstimate {
     /// Name in presets, also that of its files.
     fn name(&self) -> &'static str;
 

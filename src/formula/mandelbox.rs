@@ -9,10 +9,10 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3};
 
-use super::contract::{Bounds, Formula};
-use super::rotation::Rotation;
-use crate::key::{AutoNumber, Fault, Key, Number, Switch, Triple, Word};
-use crate::shader::Module;
+use crate::base::key::{AutoNumber, Fault, Key, Number, Switch, Triple, Word};
+use crate::base::shader::Module;
+use crate::formula::contract::{Bounds, DistanceEstimate};
+use crate::formula::rotation::Rotation;
 use crate::wgsl;
 
 /// 2 sqrt(3): a box fold moves a point by at most this times the fold limit.
@@ -78,7 +78,7 @@ pub struct Mandelbox {
     pub julia_constant: DVec3,
     /// Which estimate.
     pub estimate: Estimate,
-    /// Overrides [`Formula::lipschitz`].
+    /// Overrides [`DistanceEstimate::lipschitz`].
     pub lipschitz: Option<f64>,
 }
 
@@ -137,7 +137,7 @@ impl Mandelbox {
     }
 }
 
-impl Formula for Mandelbox {
+impl DistanceEstimate for Mandelbox {
     fn name(&self) -> &'static str {
         "mandelbox"
     }

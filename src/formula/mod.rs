@@ -5,34 +5,34 @@ mod contract;
 pub mod mandelbox;
 pub mod rotation;
 
-pub use contract::{Bounds, Formula};
+pub use contract::{Bounds, DistanceEstimate};
 
 /// Makes the enum of all formulas out of one list: module and type of each.
 macro_rules! formulas {
     ($($module:ident :: $type:ident),* $(,)?) => {
         /// One of the built-in formulas with its parameters.
         #[derive(Clone, Debug, PartialEq)]
-        pub enum Shape {
+        pub enum Formula {
             $(#[doc = concat!("See [`", stringify!($module), "`].")] $type($module::$type)),*
         }
 
-        impl Shape {
+        impl Formula {
             /// Every formula with its default parameters.
-            pub fn all() -> Vec<Shape> {
-                vec![$(Shape::$type($module::$type::default())),*]
+            pub fn all() -> Vec<Formula> {
+                vec![$(Formula::$type($module::$type::default())),*]
             }
         }
 
-        impl std::ops::Deref for Shape {
-            type Target = dyn Formula + Send + Sync;
+        impl std::ops::Deref for Formula {
+            type Target = dyn DistanceEstimate + Send + Sync;
             fn deref(&self) -> &Self::Target {
-                match self { $(Shape::$type(f) => f),* }
+                match self { $(Formula::$type(f) => f),* }
             }
         }
 
-        impl std::ops::DerefMut for Shape {
+        impl std::ops::DerefMut for Formula {
             fn deref_mut(&mut self) -> &mut Self::Target {
-                match self { $(Shape::$type(f) => f),* }
+                match self { $(Formula::$type(f) => f),* }
             }
         }
     };
@@ -40,9 +40,9 @@ macro_rules! formulas {
 
 formulas![mandelbox::Mandelbox, balls::Balls];
 
-impl Shape {
+impl Formula {
     /// The formula of a name, with its default parameters.
-    pub fn named(name: &str) -> Option<Shape> {
+    pub fn named(name: &str) -> Option<Formula> {
         Self::all().into_iter().find(|f| f.name() == name)
     }
 }

@@ -4,7 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3, Vec3};
 
-use crate::shader::Module;
+use crate::base::shader::Module;
 use crate::wgsl;
 
 /// Three rows as WGSL reads them.

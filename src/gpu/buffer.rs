@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use bytemuck::Pod;
 use wgpu::BufferUsages;
 
-use super::device::{Device, DeviceError};
+use crate::gpu::device::{Device, DeviceError};
 
 /// A storage buffer of `len` values of `T` on a device.
 pub struct Buffer<T> {

@@ -71,7 +71,7 @@ pub enum Choice {
     /// Index of `conemarch devices`.
     Index(usize),
     /// Part of an adapter's name.
-    Named(String),
+    PatternSpec(String),
 }
 
 impl Choice {
@@ -86,7 +86,7 @@ impl Choice {
             "cpu" => Self::Cpu,
             other => match other.parse() {
                 Ok(index) => Self::Index(index),
-                Err(_) => Self::Named(other.to_string()),
+                Err(_) => Self::PatternSpec(other.to_string()),
             },
         })
     }
@@ -194,7 +194,7 @@ impl Adapters {
             Choice::Hardware => (best(hardware), "as asked", "hardware adapter"),
             Choice::Software => (best(software), "as asked", "software adapter"),
             Choice::Index(i) => (Some(*i).filter(|i| *i < infos.len()), "as asked", ""),
-            Choice::Named(part) => {
+            Choice::PatternSpec(part) => {
                 let part = part.to_lowercase();
                 let fit = |i: &AdapterInfo| i.name.to_lowercase().contains(&part);
                 (infos.iter().position(fit), "as asked", "")
@@ -202,7 +202,7 @@ impl Adapters {
         };
         let asked = match choice {
             Choice::Index(i) => format!("adapter {i}"),
-            Choice::Named(part) => format!("adapter called `{part}`"),
+            Choice::PatternSpec(part) => format!("adapter called `{part}`"),
             _ => asked.to_string(),
         };
         match found {

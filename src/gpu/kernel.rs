@@ -6,8 +6,8 @@
 use thiserror::Error;
 use wgpu::naga::{self, AddressSpace, StorageAccess};
 
-use super::device::Device;
-use crate::shader::{Program, ShaderError};
+use crate::base::shader::{Program, ShaderError};
+use crate::gpu::device::Device;
 
 /// Why a kernel could not be made or bound.
 #[derive(Debug, Error)]

@@ -1,22 +1,18 @@
 //! Heightfields: height maps, maxima, cone maps and what traces them.
 
+pub mod cache;
 pub mod conemap;
-pub mod field;
-pub mod generate;
+pub mod height_surface;
 pub mod heights;
-pub mod kept;
 pub mod load;
-pub mod mapfile;
-pub mod maxmip;
+pub mod max_mip;
 pub mod paint;
 pub mod patch;
-pub mod placed;
+pub mod pattern;
+pub mod placement;
 pub mod raster;
-pub mod relief;
-pub mod shape;
+pub mod region_max;
+pub mod settings;
 pub mod source;
-pub mod survey;
 pub mod texture;
-pub mod trace;
-pub mod tracing;
-pub mod under;
+pub mod tracer;

@@ -3,12 +3,12 @@
 
 use std::sync::Arc;
 
-use super::conemap::{ConeMap, MapKind};
-use super::generate::generator::Generator;
-use super::heights::Patches;
-use super::relief::Relief;
-use super::texture::Texture;
-use crate::shader::Module;
+use crate::base::shader::Module;
+use crate::heightfield::conemap::generate::generator::Generator;
+use crate::heightfield::conemap::{ConeMap, MapKind};
+use crate::heightfield::height_surface::HeightSurface;
+use crate::heightfield::heights::Patches;
+use crate::heightfield::texture::Texture;
 use crate::wgsl;
 
 /// What a preset may paint a relief by. `brute` is missing: its map is that of `exact`.
@@ -53,7 +53,7 @@ impl Paint {
 
     /// The number at (u, v) in 0..=1 of a cell of the domain: its own, or that of the sample
     /// which is nearest.
-    pub fn at(&self, relief: &Relief, cell: [i32; 2], uv: [f64; 2]) -> f64 {
+    pub fn at(&self, relief: &HeightSurface, cell: [i32; 2], uv: [f64; 2]) -> f64 {
         if self.over_cells {
             return f64::from(self.values[relief.number(cell) as usize]);
         }

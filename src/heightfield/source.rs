@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::load::{LoadOptions, Loaded, Named, load};
-use crate::key::{Fault, Key, Switch, Text, Word};
+use crate::base::key::{Fault, Key, Switch, Text, Word};
+use crate::heightfield::load::{LoadOptions, Loaded, PatternSpec, load};
 
 /// Which axes of a height map come round to their start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,7 +69,7 @@ impl Default for Source {
 impl Source {
     /// What [`load`] is asked for: the field's word, or the file's path.
     pub fn argument(&self) -> String {
-        if Named::read(&self.field).is_some() {
+        if PatternSpec::read(&self.field).is_some() {
             return self.field.clone();
         }
         let path = self.folder.join(Path::new(&self.field));

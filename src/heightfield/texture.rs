@@ -10,12 +10,12 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::heights::{Patches, brought_in};
-use super::raster::open::{Format, open};
-use super::raster::png;
-use super::relief::Relief;
-use crate::shader::Module;
-use crate::srgb::linear;
+use crate::base::shader::Module;
+use crate::base::srgb::linear;
+use crate::heightfield::height_surface::HeightSurface;
+use crate::heightfield::heights::{Patches, brought_in};
+use crate::heightfield::raster::open::{Format, open};
+use crate::heightfield::raster::png;
 use crate::wgsl;
 
 /// A picture over a relief.
@@ -67,7 +67,7 @@ impl Texture {
     }
 
     /// Linear red, green and blue at (u, v) in 0..=1 of a cell of the domain.
-    pub fn at(&self, relief: &Relief, cell: [i32; 2], uv: [f64; 2]) -> DVec3 {
+    pub fn at(&self, relief: &HeightSurface, cell: [i32; 2], uv: [f64; 2]) -> DVec3 {
         let own = relief.tile_cell(cell);
         let heights = relief.heights();
         let place = |a: usize| {

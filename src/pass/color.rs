@@ -3,13 +3,13 @@
 
 use glam::DVec3;
 
-use super::look::Light;
-use super::shadow::{self, Shadow};
-use super::{fog, occlusion};
-use crate::frame::State;
+use crate::base::shader::Module;
+use crate::base::view::{Beam, footprint};
+use crate::base::work::State;
+use crate::pass::look::Light;
+use crate::pass::shadow::{self, Shadow};
+use crate::pass::{fog, occlusion};
 use crate::scene::{Hit, Solid, Surface};
-use crate::shader::Module;
-use crate::view::{Beam, footprint};
 use crate::wgsl;
 
 /// The WGSL module of the pass; normals are written out only where they are asked for, and

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::look::Light;
-use crate::shader::Module;
+use crate::base::shader::Module;
+use crate::pass::look::Light;
 use crate::wgsl;
 
 /// The module to join where there is fog, or none.

@@ -3,10 +3,10 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::frame::Work;
+use crate::base::shader::Module;
+use crate::base::view::Beam;
+use crate::base::work::Work;
 use crate::scene::Solid;
-use crate::shader::Module;
-use crate::view::Beam;
 use crate::wgsl;
 
 /// A level as WGSL reads it.

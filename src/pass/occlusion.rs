@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::look::Light;
+use crate::base::shader::Module;
+use crate::pass::look::Light;
 use crate::scene::Solid;
-use crate::shader::Module;
 use crate::wgsl;
 
 /// Probes along the normal, at distances doubling up to the reach.

@@ -4,7 +4,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::shader::Module;
+use crate::base::shader::Module;
 use crate::wgsl;
 
 /// What leads a queue: the numbers of the dispatch that reads it. The count of cells

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::look::{Light, smoothstep};
-use crate::frame::Work;
+use crate::base::shader::Module;
+use crate::base::view::Beam;
+use crate::base::work::Work;
+use crate::pass::look::{Light, smoothstep};
 use crate::scene::{Solid, Step};
-use crate::shader::Module;
-use crate::view::Beam;
 use crate::wgsl;
 
 /// The module to join where shadows are cast, or not.

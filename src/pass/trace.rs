@@ -1,10 +1,10 @@
 //! The last level: one ray per pixel, from the front of its cell to the surface.
 //! Twin: `wgsl/pass/trace.wgsl`.
 
-use crate::frame::{State, Work};
+use crate::base::shader::Module;
+use crate::base::view::Beam;
+use crate::base::work::{State, Work};
 use crate::scene::{Hit, Solid, Step};
-use crate::shader::Module;
-use crate::view::Beam;
 use crate::wgsl;
 
 /// The WGSL module of the pass.

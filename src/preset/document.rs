@@ -4,15 +4,15 @@
 use toml::Value;
 use toml::de::{DeTable, DeValue};
 
-use super::error::PresetError;
-use super::nearest::nearest;
+use crate::preset::error::PresetError;
+use crate::preset::nearest::nearest;
 
 /// The sections of a preset, in the order in which they are written.
-pub(super) const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
+pub(crate) const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
 
 /// Where an entry was said.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Said {
+pub(crate) enum Said {
     /// At a byte of the preset's text.
     File(usize),
     /// In an override, as it was given.
@@ -21,7 +21,7 @@ pub(super) enum Said {
 
 /// One value of a preset.
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
+pub(crate) struct Entry {
     /// Its section; empty at the top level.
     pub section: String,
     /// Its key.
@@ -52,7 +52,7 @@ fn path(section: &str, key: &str) -> String {
 /// A value that takes precedence over a preset's: `section.key=value`.
 #[derive(Clone, Debug)]
 pub struct Override {
-    pub(super) entry: Entry,
+    pub(crate) entry: Entry,
 }
 
 impl Override {
@@ -112,7 +112,7 @@ fn bare(text: &str) -> bool {
 }
 
 /// A text short enough, and tame enough, to stand in a sentence.
-pub(super) fn brief(text: &str) -> String {
+pub(crate) fn brief(text: &str) -> String {
     const MOST: usize = 60;
     let words = text.split_whitespace();
     let mut line = String::new();
@@ -168,13 +168,13 @@ fn convert(value: &DeValue<'_>) -> Result<Value, String> {
 }
 
 /// The line that a byte of a text is in, from 1.
-pub(super) fn line_of(text: &str, at: usize) -> usize {
+pub(crate) fn line_of(text: &str, at: usize) -> usize {
     let before = &text.as_bytes()[..at.min(text.len())];
     1 + before.iter().filter(|b| **b == b'\n').count()
 }
 
 /// The entries of a preset's text, in the order of the text.
-pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError> {
+pub(crate) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError> {
     let content = |at: usize, why: String| PresetError::Content {
         origin: origin.to_string(),
         line: Some(line_of(text, at)),
@@ -230,7 +230,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError>
 }
 
 /// That a section does not exist, and which one may have been meant.
-pub(super) fn unknown_section(name: &str) -> String {
+pub(crate) fn unknown_section(name: &str) -> String {
     let there = format!("there are title, {}", SECTIONS.join(", "));
     let name_shown = brief(name);
     match nearest(name, SECTIONS.into_iter().chain(["title"])) {

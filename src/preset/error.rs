@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::BUILTIN;
+use crate::preset::BUILTIN;
 
 /// What can be wrong with a preset, with an override, or with the argument that names
 /// one.
@@ -56,7 +56,7 @@ impl PresetError {
 }
 
 /// `file:line`, or the file alone.
-pub(super) fn place(origin: &str, line: Option<usize>) -> String {
+pub(crate) fn place(origin: &str, line: Option<usize>) -> String {
     match line {
         Some(line) => format!("{origin}:{line}"),
         None => origin.to_string(),

@@ -4,12 +4,14 @@ use std::path::Path;
 
 use toml::Value;
 
-use super::document::{Entry, Override, SECTIONS, Said, brief, line_of, parse, unknown_section};
-use super::error::{PresetError, place};
-use super::nearest::nearest;
-use crate::formula::Shape;
-use crate::key::{Fault, Key, Slot, Text};
+use crate::base::key::{Fault, Key, Slot, Text};
+use crate::formula::Formula;
 use crate::plan::{Plan, Subject};
+use crate::preset::document::{
+    Entry, Override, SECTIONS, Said, brief, line_of, parse, unknown_section,
+};
+use crate::preset::error::{PresetError, place};
+use crate::preset::nearest::nearest;
 
 /// Words for `scene.kind`.
 fn kinds() -> Vec<&'static str> {
@@ -121,7 +123,7 @@ impl Reader<'_> {
         let word = self.word(kind, &kinds())?;
         if word == "distance" {
             let Some(formula) = last(entries, "formula") else {
-                let names = Shape::all();
+                let names = Formula::all();
                 let names: Vec<&str> = names.iter().map(|s| s.name()).collect();
                 let why = format!("scene.formula is missing; it is one of {}", quoted(&names));
                 return Err(self.missing(&why));
@@ -140,11 +142,11 @@ impl Reader<'_> {
     }
 
     /// The formula that an entry names.
-    fn formula(&self, entry: &Entry) -> Result<Shape, PresetError> {
-        let shapes = Shape::all();
+    fn formula(&self, entry: &Entry) -> Result<Formula, PresetError> {
+        let shapes = Formula::all();
         let names: Vec<&str> = shapes.iter().map(|s| s.name()).collect();
         let name = self.word(entry, &names)?;
-        Shape::named(name).ok_or_else(|| self.value(entry, "there is no such formula"))
+        Formula::named(name).ok_or_else(|| self.value(entry, "there is no such formula"))
     }
 
     /// The word of a few that an entry's value is.

@@ -3,9 +3,9 @@
 
 use std::fmt::Write as _;
 
-use super::document::SECTIONS;
-use crate::key::{Key, Text};
+use crate::base::key::{Key, Text};
 use crate::plan::{Plan, Subject};
+use crate::preset::document::SECTIONS;
 
 /// What stands above the tables.
 const HEAD: &str = "# Presets

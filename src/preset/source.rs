@@ -5,12 +5,12 @@ use std::fs::{self, File};
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use super::builtin::{BUILTIN, builtin};
-use super::document::{Override, brief};
-use super::error::PresetError;
-use super::nearest::nearest;
-use super::read::{read_in, read_with};
 use crate::plan::Plan;
+use crate::preset::builtin::{BUILTIN, builtin};
+use crate::preset::document::{Override, brief};
+use crate::preset::error::PresetError;
+use crate::preset::nearest::nearest;
+use crate::preset::read::{read_in, read_with};
 
 /// Largest preset that is read: far more than any preset needs, and little enough to
 /// refuse a wrong file at once.

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use toml::Value;
 
-use super::document::SECTIONS;
 use crate::plan::Plan;
+use crate::preset::document::SECTIONS;
 
 /// The preset of a plan. Reading it gives the same plan again, to the last bit.
 pub fn write(plan: &Plan) -> String {

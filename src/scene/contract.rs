@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use crate::frame::Work;
-use crate::shader::Module;
-use crate::view::Beam;
+use crate::base::shader::Module;
+use crate::base::view::Beam;
+use crate::base::work::Work;
 
 /// What one step of a walk came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

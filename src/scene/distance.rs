@@ -11,12 +11,12 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3};
 
-use super::contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use crate::cone::ConeRule;
-use crate::formula::{Bounds, Shape};
-use crate::frame::Work;
-use crate::shader::Module;
-use crate::view::{Beam, footprint};
+use crate::base::cone::ConeRule;
+use crate::base::shader::Module;
+use crate::base::view::{Beam, footprint};
+use crate::base::work::Work;
+use crate::formula::{Bounds, Formula};
+use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::wgsl;
 
 /// A cone that gains less than this share of its ball leaves the rest to its four
@@ -96,7 +96,7 @@ impl Relaxation {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distance {
     /// The shape.
-    pub shape: Shape,
+    pub shape: Formula,
     /// Iteration limit.
     pub iterations: u32,
     /// Camera position.
@@ -137,7 +137,7 @@ pub struct Stepping {
 
 impl Distance {
     /// A shape seen from an eye.
-    pub fn new(shape: Shape, iterations: u32, eye: DVec3, stepping: Stepping) -> Self {
+    pub fn new(shape: Formula, iterations: u32, eye: DVec3, stepping: Stepping) -> Self {
         let bounds = shape.bounds();
         Self {
             iterations,
@@ -211,7 +211,7 @@ impl Distance {
 impl Twin for Distance {
     fn modules(&self) -> Vec<Module> {
         let mut all = vec![
-            wgsl!("real.wgsl"),
+            wgsl!("base/real.wgsl"),
             self.rule.module(),
             wgsl!(
                 "scene/distance.wgsl",

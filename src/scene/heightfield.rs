@@ -1,6 +1,6 @@
 //! A scene of a relief: a block whose top is a height map (docs/method.md, 4).
 //!
-//! Rays are traced by one of the tracers of [`crate::heightfield::trace`], in local
+//! Rays are traced by one of the tracers of [`crate::heightfield::tracer`], in local
 //! units. Coarse cones and empty balls ask the maxima under them; what these prove holds
 //! for any surface under the cells' apexes. Occlusion by `clearance` therefore knows
 //! nothing finer than a cell. Twin: `wgsl/scene/heightfield.wgsl`.
@@ -10,19 +10,19 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec2, DVec3, Vec3};
 
-use super::contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use crate::cone::ConeRule;
-use crate::frame::Work;
+use crate::base::cone::ConeRule;
+use crate::base::shader::Module;
+use crate::base::view::Beam;
+use crate::base::work::Work;
+use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::paint::Colors;
-use crate::heightfield::placed::Placed;
-use crate::heightfield::relief::Relief;
-use crate::heightfield::shape::Ready;
-use crate::heightfield::trace::course::{FAR, FLAT};
-use crate::heightfield::trace::{self, AnyTracer, LocalRay, Trace, TraceHit, Tracer};
-use crate::heightfield::under::{self, under_highest};
-use crate::shader::Module;
-use crate::view::Beam;
+use crate::heightfield::placement::Placement;
+use crate::heightfield::region_max::{self, region_max};
+use crate::heightfield::settings::Ready;
+use crate::heightfield::tracer::course::{FAR, FLAT};
+use crate::heightfield::tracer::{self, AnyTracer, LocalRay, Trace, TraceHit, Tracer};
+use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::wgsl;
 
 /// Halvings of the longest sweep, and doublings of the least ball: enough to come from
@@ -65,11 +65,11 @@ pub struct HeightfieldUniform {
 /// A relief seen from an eye.
 #[derive(Clone, Debug)]
 pub struct Heightfield {
-    relief: Arc<Relief>,
+    relief: Arc<HeightSurface>,
     tracer: AnyTracer,
     colors: Colors,
     name: &'static str,
-    placed: Placed,
+    placed: Placement,
     eye: DVec3,
     far: f64,
     rule: ConeRule,
@@ -125,7 +125,7 @@ impl Heightfield {
         work.evaluations += 1;
         let room = radius / self.units();
         let (low, high) = (one.min(two) - room, one.max(two) + room);
-        let top = || under_highest(&self.relief, low.truncate(), high.truncate());
+        let top = || region_max(&self.relief, low.truncate(), high.truncate());
         high.z < 0.0 || low.z > 1.0 || low.z > top()
     }
 
@@ -177,7 +177,7 @@ impl Twin for Heightfield {
     fn modules(&self) -> Vec<Module> {
         let mut all = vec![
             self.rule.module(),
-            under::module(),
+            region_max::module(),
             wgsl!(
                 "scene/heightfield.wgsl",
                 "HEIGHTFIELD_HALVINGS" = f64::from(HEIGHTFIELD_HALVINGS),
@@ -268,10 +268,10 @@ impl Solid for Heightfield {
 
     fn walk_step(&self, ray: &Beam, walk: &mut Trace, work: &mut Work) -> Step {
         match self.tracer.step(&self.local(ray), walk, work) {
-            trace::Step::Moving => Step::Moving,
-            trace::Step::Hit => Step::Hit,
-            trace::Step::Out => Step::Out,
-            trace::Step::Spent => Step::Spent,
+            tracer::Step::Moving => Step::Moving,
+            tracer::Step::Hit => Step::Hit,
+            tracer::Step::Out => Step::Out,
+            tracer::Step::Spent => Step::Spent,
         }
     }
 
@@ -295,7 +295,7 @@ impl Solid for Heightfield {
         let mut radius = 0.5 * self.placed.texel;
         for _ in 0..HEIGHTFIELD_HALVINGS {
             let room = DVec2::splat(radius / self.placed.texel);
-            let top = under_highest(&self.relief, p.truncate() - room, p.truncate() + room);
+            let top = region_max(&self.relief, p.truncate() - room, p.truncate() + room);
             let gap = (p.z - top) * self.placed.depth;
             free = free.max(radius.min(gap));
             if gap < radius {
@@ -321,11 +321,11 @@ impl Solid for Heightfield {
             uv: hit.uv,
         };
         let wall = match hit.face() {
-            trace::SURFACE => None,
-            trace::WALL_X_LOW => Some(-DVec3::X),
-            trace::WALL_X_HIGH => Some(DVec3::X),
-            trace::WALL_Y_LOW => Some(-DVec3::Y),
-            trace::WALL_Y_HIGH => Some(DVec3::Y),
+            tracer::SURFACE => None,
+            tracer::WALL_X_LOW => Some(-DVec3::X),
+            tracer::WALL_X_HIGH => Some(DVec3::X),
+            tracer::WALL_Y_LOW => Some(-DVec3::Y),
+            tracer::WALL_Y_HIGH => Some(DVec3::Y),
             _ => Some(-DVec3::Z),
         };
         if let Some(side) = wall {

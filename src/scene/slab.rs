@@ -5,12 +5,12 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec2, DVec3, Vec3};
 
-use super::contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use crate::cone::ConeRule;
-use crate::frame::Work;
-use crate::key::{Fault, Key, Number, Triple};
-use crate::shader::Module;
-use crate::view::Beam;
+use crate::base::cone::ConeRule;
+use crate::base::key::{Fault, Key, Number, Triple};
+use crate::base::shader::Module;
+use crate::base::view::Beam;
+use crate::base::work::Work;
+use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::wgsl;
 
 /// The slab as WGSL reads it.
@@ -35,9 +35,9 @@ pub struct SlabUniform {
     pub pad: f32,
 }
 
-/// Shape of a slab, centred on the origin.
+/// Formula of a slab, centred on the origin.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SlabShape {
+pub struct SlabSettings {
     /// Direction of the planes' normal.
     pub normal: DVec3,
     /// Half the distance between the planes.
@@ -46,7 +46,7 @@ pub struct SlabShape {
     pub radius: f64,
 }
 
-impl Default for SlabShape {
+impl Default for SlabSettings {
     fn default() -> Self {
         Self {
             normal: DVec3::Z,
@@ -56,7 +56,7 @@ impl Default for SlabShape {
     }
 }
 
-impl SlabShape {
+impl SlabSettings {
     /// The keys that a slab reads in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         vec![
@@ -104,8 +104,8 @@ pub struct Slab {
 }
 
 impl Slab {
-    /// A slab that passes [`SlabShape::check`], seen from an eye.
-    pub fn new(shape: &SlabShape, eye: DVec3, rule: ConeRule) -> Self {
+    /// A slab that passes [`SlabSettings::check`], seen from an eye.
+    pub fn new(shape: &SlabSettings, eye: DVec3, rule: ConeRule) -> Self {
         let normal = shape.normal.normalize();
         let side = normal.any_orthonormal_vector();
         Self {

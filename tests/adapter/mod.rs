@@ -10,10 +10,10 @@
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{LazyLock, Mutex};
 
-use conemarch::frame::Frame;
 use conemarch::gpu::device::{Adapters, Choice, Device, STORAGE_BUFFERS};
+use conemarch::gpu::render::{Cutting, Renderer};
+use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
-use conemarch::render::{Cutting, Renderer};
 
 /// What to do where there is no adapter.
 const NO_ADAPTER: &str = "this test needs a GPU adapter and finds none that opens; any will do, and `apt-get install mesa-vulkan-drivers` installs a software one";

@@ -1,17 +1,17 @@
 //! Random plans that pass every check: any formula, heightfield and slab, camera, mode and setting, in
 //! small pictures.
 
-use conemarch::formula::Shape;
+use conemarch::formula::Formula;
 use conemarch::formula::balls::Balls;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
 use conemarch::heightfield::heights::Patches;
-use conemarch::heightfield::shape::{HeightfieldShape, Wrap};
-use conemarch::mode::{MODES, Marching};
-use conemarch::pass::look::Look;
+use conemarch::heightfield::settings::{HeightfieldSettings, Wrap};
+use conemarch::plan::camera::Camera;
+use conemarch::plan::look::Look;
+use conemarch::plan::march::{MODES, Marching};
 use conemarch::plan::{Plan, Subject};
 use conemarch::scene::distance::Relaxation;
-use conemarch::scene::slab::SlabShape;
-use conemarch::view::Camera;
+use conemarch::scene::slab::SlabSettings;
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::strategy::Union;
@@ -51,12 +51,12 @@ fn mandelbox() -> impl Strategy<Value = Mandelbox> {
 fn subject() -> impl Strategy<Value = Subject> {
     let iterations = prop_oneof![Just(None), (1_u32..=500).prop_map(Some)];
     let boxes = (mandelbox(), iterations).prop_map(|(m, iterations)| Subject::Distance {
-        shape: Shape::Mandelbox(m),
+        shape: Formula::Mandelbox(m),
         iterations,
     });
     let balls =
         (size(1e-6, 0.5), 1e-3..1.2, 1e-3..2.5).prop_map(|(rod, edge, ball)| Subject::Distance {
-            shape: Shape::Balls(Balls {
+            shape: Formula::Balls(Balls {
                 rod_radius: rod,
                 box_size: edge,
                 ball_radius: ball,
@@ -64,10 +64,10 @@ fn subject() -> impl Strategy<Value = Subject> {
             iterations: None,
         });
     let slab = (size(1e-3, 1.0), size(0.1, 10.0)).prop_map(|(half, radius)| {
-        Subject::Slab(SlabShape {
+        Subject::Slab(SlabSettings {
             half,
             radius,
-            ..SlabShape::default()
+            ..SlabSettings::default()
         })
     });
     prop_oneof![6 => boxes, 1 => balls, 1 => slab, 2 => heightfield()]
@@ -87,7 +87,7 @@ fn heightfield() -> impl Strategy<Value = Subject> {
     );
     (field, tracer, wrap, any::<bool>(), numbers, cube(180.0)).prop_map(
         |(field, tracer, wrap, boxes, (w, h, seed, width, depth), turn)| {
-            let mut shape = HeightfieldShape::default();
+            let mut shape = HeightfieldSettings::default();
             shape.width = width;
             // Needles a thousand times as high as wide are no picture of anything.
             shape.depth = depth.clamp(0.01 * width, 2.0 * width);

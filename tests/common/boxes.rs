@@ -1,7 +1,7 @@
 //! The Mandelbox: its estimate against the converged value, its bounds, its iteration
 //! rule, and rotations.
 
-use conemarch::formula::Formula;
+use conemarch::formula::DistanceEstimate;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::formula::rotation::Rotation;
 use glam::{DMat3, DVec3};

@@ -1,9 +1,9 @@
 //! Cones and rays at random, and the check that no ray of a cone meets anything before
 //! the front that is claimed for it.
 
-use conemarch::frame::Work;
+use conemarch::base::view::Beam;
+use conemarch::base::work::Work;
 use conemarch::scene::Solid;
-use conemarch::view::Beam;
 use glam::DVec3;
 
 use super::exact::{Exact, first_hit};

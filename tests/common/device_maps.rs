@@ -2,17 +2,17 @@
 
 use super::maps::{PATCHES, WRAPS, assert_same, field, large, make, plain, small};
 use crate::adapter;
+use conemarch::gpu::conemap::generate::{Cutting, Maker};
 use conemarch::gpu::device::Device;
+use conemarch::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
+use conemarch::heightfield::conemap::generate::min3x3::min3x3;
+use conemarch::heightfield::conemap::generate::mips::{self, rounded_down};
+use conemarch::heightfield::conemap::generate::program::every_program;
+use conemarch::heightfield::conemap::generate::slopes::slopes;
 use conemarch::heightfield::conemap::{ConeMap, WIDEST};
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::device::{Cutting, Maker};
-use conemarch::heightfield::generate::generator::{GenerateError, Generator, Options};
-use conemarch::heightfield::generate::mips::{self, rounded_down};
-use conemarch::heightfield::generate::nine::least_of_nine;
-use conemarch::heightfield::generate::program::every_program;
-use conemarch::heightfield::generate::slopes::slopes;
 use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::maxmip::MaxMip;
+use conemarch::heightfield::max_mip::MaxMip;
+use conemarch::heightfield::pattern::Pattern;
 use wgpu::naga::valid::Capabilities;
 
 /// A device of its own: makers borrow one.
@@ -95,7 +95,7 @@ fn few_places_are_settled_on_the_cpu() {
     // a rough field end in a near tie now and then only.
     let device = device();
     let mut maker = Maker::new(&device);
-    let heights = field(Field::Fbm, [128, 128], [true, true]);
+    let heights = field(Pattern::Fbm, [128, 128], [true, true]);
     for generator in [Generator::Exact, Generator::Improved, Generator::Walk] {
         let (patches, options) = (Patches::default(), Options::default());
         let made = maker.generate(generator, &heights, patches, &options, &mut |_| true);
@@ -132,7 +132,7 @@ fn the_devices_least_of_nine_is_the_cpus() {
     let device = device();
     let mut maker = Maker::new(&device);
     let options = Options {
-        least_of_nine: true,
+        min3x3: true,
         ..Options::default()
     };
     for (i, (name, heights)) in small().into_iter().step_by(3).enumerate() {
@@ -163,13 +163,13 @@ fn the_devices_least_of_nine_is_the_cpus() {
             ratios: (0..31 * 23).map(ratio).collect(),
             size: [31, 23],
             wrap,
-            ..plain(Generator::Exact, &field(Field::Sine, [2, 2], wrap))
+            ..plain(Generator::Exact, &field(Pattern::Sine, [2, 2], wrap))
         };
         for band in [1 << 16, 100] {
             maker.cutting.band = band;
-            let there = maker.least_of_nine(&map).unwrap();
+            let there = maker.min3x3(&map).unwrap();
             let what = format!("{wrap:?}, bands of {band}");
-            assert_same(&what, &there.ratios, &least_of_nine(&map).ratios);
+            assert_same(&what, &there.ratios, &min3x3(&map).ratios);
         }
     }
 }
@@ -214,7 +214,7 @@ fn how_the_work_is_cut_changes_no_map() {
         search_steps: 20,
         ..Options::default()
     };
-    for f in [Field::Sine, Field::Checker, Field::Spikes] {
+    for f in [Pattern::Sine, Pattern::Checker, Pattern::Spikes] {
         let heights = field(f, [50, 43], [true, false]);
         for generator in Generator::ALL {
             let mut make = |cutting| {
@@ -243,7 +243,7 @@ fn the_devices_search_along_rays_agrees_but_for_a_step_now_and_then() {
         search_steps: 64,
         ..Options::default()
     };
-    for f in Field::ALL {
+    for f in Pattern::ALL {
         let heights = field(f, [32, 32], [true, false]);
         let here = make(
             Generator::RelaxedSearch,
@@ -272,7 +272,7 @@ fn the_devices_mips_are_the_same_of_ratios_rounded_down() {
     let device = device();
     let mut maker = Maker::new(&device);
     for size in [[1, 1], [1, 7], [9, 5], [33, 20], [64, 64]] {
-        let heights = field(Field::Fbm, size, [false, true]);
+        let heights = field(Pattern::Fbm, size, [false, true]);
         for generator in [Generator::Exact, Generator::Quad] {
             let mut map = plain(generator, &heights);
             let there = maker.mips(heights.data(), &map).unwrap().unwrap();
@@ -289,7 +289,7 @@ fn the_device_cancels_and_reports() {
     let device = device();
     let mut maker = Maker::new(&device);
     maker.cutting.band = 1;
-    let heights = field(Field::Fbm, [64, 64], [false, false]);
+    let heights = field(Pattern::Fbm, [64, 64], [false, false]);
     let options = Options::default();
     let mut told = 0;
     let mut watch = |_| {

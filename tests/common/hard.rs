@@ -2,12 +2,12 @@
 //! and radii at the ends of their ranges, lenses and sizes that nobody uses.
 
 use conemarch::formula::mandelbox::Mandelbox;
-use conemarch::formula::{Formula, Shape};
-use conemarch::mode::Mode;
+use conemarch::formula::{DistanceEstimate, Formula};
+use conemarch::plan::camera::Camera;
+use conemarch::plan::march::Mode;
 use conemarch::plan::{Plan, Subject};
 use conemarch::preset::load;
-use conemarch::scene::slab::SlabShape;
-use conemarch::view::Camera;
+use conemarch::scene::slab::SlabSettings;
 use glam::{DVec3, Vec3Swizzles};
 
 use super::random::Random;
@@ -44,7 +44,7 @@ pub fn twice(name: &str, change: impl FnOnce(&mut Mandelbox)) -> [Case; 2] {
 /// A Mandelbox seen from one point towards another.
 pub fn from(m: Mandelbox, eye: DVec3, target: DVec3) -> Plan {
     let mut plan = Plan::new(Subject::Distance {
-        shape: Shape::Mandelbox(m),
+        shape: Formula::Mandelbox(m),
         iterations: None,
     });
     plan.camera = Camera {
@@ -67,7 +67,12 @@ fn scaled(scale: f64) -> Mandelbox {
 ///
 /// # Panics
 /// Where the way meets no surface.
-pub fn before_surface(shape: &dyn Formula, from: DVec3, to: DVec3, distance: f64) -> DVec3 {
+pub fn before_surface(
+    shape: &dyn DistanceEstimate,
+    from: DVec3,
+    to: DVec3,
+    distance: f64,
+) -> DVec3 {
     let axis = (to - from).normalize();
     let mut t = 0.0;
     for _ in 0..50_000 {
@@ -188,7 +193,7 @@ pub fn grazing() -> Vec<Case> {
             format!("a cube's face, {height} above"),
             balls(0.05, &camera_on, SIZE),
         ));
-        let slab = SlabShape::default();
+        let slab = SlabSettings::default();
         let (u, _) = slab.normal.normalize().any_orthonormal_pair();
         let up = slab.normal.normalize() * (slab.half + height);
         let mut plan = balls(0.05, &camera_on, SIZE);
@@ -338,7 +343,7 @@ fn sloped(factor: f64) -> Vec<Case> {
         let mut plan = load(&format!("bench-{name}"), &[]).expect("built in").plan;
         plan.size = SIZE;
         if let Subject::Distance {
-            shape: Shape::Mandelbox(m),
+            shape: Formula::Mandelbox(m),
             ..
         } = &mut plan.subject
         {

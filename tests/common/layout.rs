@@ -1,7 +1,7 @@
 //! The layout of structs that both sides read: of a Rust struct by its fields, and of
 //! the WGSL struct of the same name by naga.
 
-use conemarch::shader::Program;
+use conemarch::base::shader::Program;
 use wgpu::naga;
 use wgpu::naga::valid::Capabilities;
 

@@ -1,10 +1,10 @@
 //! Height maps that generators are tried on.
 
 use conemarch::heightfield::conemap::ConeMap;
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::cpu;
-use conemarch::heightfield::generate::generator::{Generator, Options};
+use conemarch::heightfield::conemap::generate::cpu;
+use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
 use conemarch::heightfield::heights::{Heights, Patches};
+use conemarch::heightfield::pattern::Pattern;
 use proptest::prelude::*;
 
 /// Power of the wave number: rough terrain.
@@ -17,7 +17,7 @@ pub const WRAPS: [[bool; 2]; 4] = [[false, false], [true, false], [false, true],
 pub const PATCHES: [Patches; 2] = [Patches::Bilinear, Patches::Boxes];
 
 /// A field as a height map.
-pub fn field(field: Field, size: [u32; 2], wrap: [bool; 2]) -> Heights {
+pub fn field(field: Pattern, size: [u32; 2], wrap: [bool; 2]) -> Heights {
     Heights::new(size, wrap, field.heights(size, 7, POWER)).unwrap()
 }
 
@@ -41,7 +41,7 @@ pub fn small() -> Vec<(String, Heights)> {
     let mut all = Vec::new();
     for size in SMALL {
         for wrap in WRAPS {
-            for f in Field::ALL {
+            for f in Pattern::ALL {
                 all.push((format!("{f:?} {size:?} {wrap:?}"), field(f, size, wrap)));
             }
             let flat = vec![0.25; (size[0] * size[1]) as usize];
@@ -63,7 +63,7 @@ pub fn large() -> Vec<(String, Heights)> {
         ([128, 128], WRAPS[0]),
         ([128, 128], WRAPS[3]),
     ] {
-        for f in Field::ALL {
+        for f in Pattern::ALL {
             all.push((format!("{f:?} {size:?} {wrap:?}"), field(f, size, wrap)));
         }
     }

@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use conemarch::formula::Shape;
+use conemarch::base::shader::Program;
+use conemarch::formula::Formula;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
-use conemarch::heightfield::generate;
-use conemarch::mode::MODES;
+use conemarch::heightfield::conemap::generate;
+use conemarch::plan::march::MODES;
 use conemarch::plan::{Extras, Plan, Subject};
 use conemarch::preset::{BUILTIN, builtin, read};
-use conemarch::shader::Program;
 use glam::DVec3;
 use toml::Value;
 
@@ -20,7 +20,7 @@ pub fn preset(name: &str) -> Plan {
 }
 
 /// A subject for a shape.
-pub fn distance(shape: Shape) -> Subject {
+pub fn distance(shape: Formula) -> Subject {
     let iterations = None;
     Subject::Distance { shape, iterations }
 }
@@ -92,9 +92,9 @@ fn subjects() -> Vec<Subject> {
     }
     let mut moved: Vec<Subject> = all.iter().flat_map(with_each_key_moved).collect();
     let boxes = mandelboxes().into_iter();
-    moved.extend(boxes.map(|m| distance(Shape::Mandelbox(m))));
+    moved.extend(boxes.map(|m| distance(Formula::Mandelbox(m))));
     // Few iterations and many: what could overflow is guarded.
-    for shape in Shape::all() {
+    for shape in Formula::all() {
         for count in [2, 1000] {
             let iterations = Some(count);
             let shape = shape.clone();

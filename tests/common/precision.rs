@@ -2,9 +2,9 @@
 //! adapter where it has that, and f64 on the CPU, at points in all distances from the
 //! surface.
 
+use conemarch::base::shader::Program;
 use conemarch::formula::mandelbox::Mandelbox;
-use conemarch::formula::{Formula, Shape};
-use conemarch::shader::Program;
+use conemarch::formula::{DistanceEstimate, Formula};
 use glam::DVec3;
 
 use super::probe::{Numbers, Probe, probe};
@@ -88,7 +88,7 @@ fn two_f32(p: DVec3) -> DVec3 {
 
 /// A Mandelbox's estimate, asked in f32 or in f64.
 pub fn asker(m: &Mandelbox, double: bool) -> Probe {
-    let plan = shape_plan(Shape::Mandelbox(m.clone()), 60, DVec3::new(9.0, 0.0, 0.0));
+    let plan = shape_plan(Formula::Mandelbox(m.clone()), 60, DVec3::new(9.0, 0.0, 0.0));
     let mut all = probe_of(&plan, probe!("precision"));
     if double {
         all.modules = Program::new("probe", all.modules).in_f64().modules;

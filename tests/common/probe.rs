@@ -4,10 +4,10 @@
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
+use conemarch::base::shader::{Module, Program};
 use conemarch::gpu::buffer::{Buffer, uniform};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::kernel::Kernel;
-use conemarch::shader::{Module, Program};
 
 /// Twelve numbers of a question, and as many of an answer.
 pub type Numbers = [[f32; 4]; 3];
@@ -15,7 +15,7 @@ pub type Numbers = [[f32; 4]; 3];
 /// A probe's file beside the tests, as a module.
 macro_rules! probe {
     ($name:literal) => {
-        conemarch::shader::Module {
+        conemarch::base::shader::Module {
             path: concat!("tests/probe/", $name, ".wgsl"),
             source: include_str!(concat!(
                 env!("CARGO_MANIFEST_DIR"),

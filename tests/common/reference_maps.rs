@@ -2,8 +2,8 @@
 //! tracers are tested with, whoever makes maps elsewhere.
 
 use conemarch::heightfield::conemap::{ConeMap, MapKind, WIDEST};
+use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
-use conemarch::heightfield::relief::Relief;
 
 /// One place as seen from another, and how far away: every copy of it within one turn, for
 /// each lies another way.
@@ -73,7 +73,7 @@ fn between(steps: i64) -> f64 {
 }
 
 fn over_cells(
-    relief: &Relief,
+    relief: &HeightSurface,
     kind: MapKind,
     offset: f64,
     limits: impl Fn([i64; 2], usize) -> bool,
@@ -92,13 +92,13 @@ fn over_cells(
 }
 
 /// Cones of the walk.
-pub fn walk(relief: &Relief, offset: f64) -> ConeMap {
+pub fn walk(relief: &HeightSurface, offset: f64) -> ConeMap {
     over_cells(relief, MapKind::Walk, offset, |_, _| true)
 }
 
 /// Relaxed cones of the walk: a cell limits if its surface falls somewhere on a way that
 /// leads to it and on.
-pub fn walk_relaxed(relief: &Relief, offset: f64) -> ConeMap {
+pub fn walk_relaxed(relief: &HeightSurface, offset: f64) -> ConeMap {
     let [w, h] = relief.cells().map(|n| n as i32);
     let cells = (0..h).flat_map(|y| (0..w).map(move |x| [x, y]));
     // For each sign of x and y whether the cell falls that way.
@@ -116,7 +116,7 @@ pub fn walk_relaxed(relief: &Relief, offset: f64) -> ConeMap {
     })
 }
 
-fn falls_of(relief: &Relief, cell: [i32; 2]) -> [bool; 4] {
+fn falls_of(relief: &HeightSurface, cell: [i32; 2]) -> [bool; 4] {
     let quadrant = |x: i32, y: i32| {
         if relief.patches() == Patches::Boxes {
             let own = relief.apex(cell);
@@ -147,7 +147,7 @@ fn falls_of(relief: &Relief, cell: [i32; 2]) -> [bool; 4] {
 
 /// Dummer's cones, apex on a sample and clear of all others; `kind` is what they are then
 /// called.
-pub fn samples(relief: &Relief, kind: MapKind) -> ConeMap {
+pub fn samples(relief: &HeightSurface, kind: MapKind) -> ConeMap {
     let heights = relief.heights();
     let (size, wrap) = (heights.size(), heights.wrap());
     let z: Vec<f64> = heights.data().iter().map(|h| f64::from(*h)).collect();

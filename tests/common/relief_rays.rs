@@ -3,17 +3,17 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use conemarch::frame::Work;
+use conemarch::base::work::Work;
 use conemarch::heightfield::conemap::ConeMap;
-use conemarch::heightfield::field::Field;
-use conemarch::heightfield::generate::cpu;
-use conemarch::heightfield::generate::generator::{Generator, Options};
+use conemarch::heightfield::conemap::generate::cpu;
+use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
+use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::relief::Relief;
-use conemarch::heightfield::trace::max_mip::MaxMipTracer;
-use conemarch::heightfield::trace::relaxed::WalkRelaxed;
-use conemarch::heightfield::trace::walk::Walk;
-use conemarch::heightfield::trace::{AnyTracer, LocalRay, Step, TraceHit, Tracer};
+use conemarch::heightfield::pattern::Pattern;
+use conemarch::heightfield::tracer::max_mip::MaxMipTracer;
+use conemarch::heightfield::tracer::relaxed::WalkRelaxed;
+use conemarch::heightfield::tracer::walk::Walk;
+use conemarch::heightfield::tracer::{AnyTracer, LocalRay, Step, TraceHit, Tracer};
 use glam::DVec3;
 
 use super::random::Random;
@@ -21,22 +21,22 @@ use super::reference_maps;
 
 /// A relief and what to call it.
 pub struct Case {
-    /// Field, size and the rest.
+    /// Pattern, size and the rest.
     pub name: String,
     /// The block.
-    pub relief: Arc<Relief>,
+    pub relief: Arc<HeightSurface>,
 }
 
 /// A field as a block.
 pub fn case(
-    field: Field,
+    field: Pattern,
     size: [u32; 2],
     wrap: [bool; 2],
     tiles: [u32; 2],
     patches: Patches,
 ) -> Case {
     let heights = Heights::new(size, wrap, field.heights(size, 7, 2.6));
-    let relief = Relief::new(heights.expect("a field"), patches, tiles);
+    let relief = HeightSurface::new(heights.expect("a field"), patches, tiles);
     Case {
         name: format!("{} {size:?} {wrap:?} {tiles:?} {patches:?}", field.name()),
         relief: Arc::new(relief.expect("a block")),
@@ -56,9 +56,9 @@ pub fn block(
     tiles: [u32; 2],
     patches: Patches,
     z: Vec<f32>,
-) -> Arc<Relief> {
+) -> Arc<HeightSurface> {
     let heights = Heights::new(size, wrap, z).unwrap();
-    Arc::new(Relief::new(heights, patches, tiles).unwrap())
+    Arc::new(HeightSurface::new(heights, patches, tiles).unwrap())
 }
 
 /// Every field in every setting, and some that are large, tiny or degenerate.
@@ -72,20 +72,20 @@ pub fn cases() -> Vec<Case> {
         ([80, 64], [true, true], [1, 2], Patches::Boxes),
     ];
     let mut all = Vec::new();
-    for field in Field::ALL {
+    for field in Pattern::ALL {
         for (size, wrap, tiles, patches) in SETTINGS {
             all.push(case(field, size, wrap, tiles, patches));
         }
     }
     let alone = [false, false];
     for (field, size) in [
-        (Field::Fbm, [256, 256]),
-        (Field::Ridges, [256, 190]),
-        (Field::Spikes, [128, 128]),
-        (Field::Noise, [1, 9]),
-        (Field::Noise, [2, 2]),
-        (Field::Noise, [5, 3]),
-        (Field::Fbm, [1, 1]),
+        (Pattern::Fbm, [256, 256]),
+        (Pattern::Ridges, [256, 190]),
+        (Pattern::Spikes, [128, 128]),
+        (Pattern::Noise, [1, 9]),
+        (Pattern::Noise, [2, 2]),
+        (Pattern::Noise, [5, 3]),
+        (Pattern::Fbm, [1, 1]),
     ] {
         for patches in [Patches::Bilinear, Patches::Boxes] {
             all.push(case(field, size, alone, [1, 1], patches));
@@ -98,7 +98,7 @@ pub fn cases() -> Vec<Case> {
 pub const KINDS: u64 = 12;
 
 /// A ray of a kind over a block.
-pub fn ray(relief: &Relief, kind: u64, random: &mut Random) -> LocalRay {
+pub fn ray(relief: &HeightSurface, kind: u64, random: &mut Random) -> LocalRay {
     let [w, h] = relief.domain().map(f64::from);
     let n = [0; 7].map(|_| random.unit());
     let between = |i: usize, low: f64, high: f64| low + (high - low) * n[i];
@@ -171,7 +171,7 @@ pub fn ray(relief: &Relief, kind: u64, random: &mut Random) -> LocalRay {
 }
 
 /// Rays of all kinds over a block, the same in every run.
-pub fn rays(relief: &Relief, count: u64, seed: u64) -> Vec<LocalRay> {
+pub fn rays(relief: &HeightSurface, count: u64, seed: u64) -> Vec<LocalRay> {
     let mut random = Random::new(seed);
     (0..count)
         .map(|i| ray(relief, i % KINDS, &mut random))
@@ -179,7 +179,7 @@ pub fn rays(relief: &Relief, count: u64, seed: u64) -> Vec<LocalRay> {
 }
 
 /// A map by a generator, with an offset for the walks.
-pub fn made(generator: Generator, relief: &Relief, offset: f64) -> Arc<ConeMap> {
+pub fn made(generator: Generator, relief: &HeightSurface, offset: f64) -> Arc<ConeMap> {
     let options = Options {
         offset,
         ..Options::default()
@@ -190,7 +190,7 @@ pub fn made(generator: Generator, relief: &Relief, offset: f64) -> Arc<ConeMap> 
 }
 
 /// The exact tracers of a block, with cones of the plain makers and of the generators.
-pub fn exact(relief: &Arc<Relief>) -> Vec<(&'static str, AnyTracer)> {
+pub fn exact(relief: &Arc<HeightSurface>) -> Vec<(&'static str, AnyTracer)> {
     let walk = |map| AnyTracer::Walk(Walk::new(relief.clone(), map).expect("its map"));
     let relaxed = |map| {
         let own = WalkRelaxed::new(relief.clone(), map);

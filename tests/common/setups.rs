@@ -1,18 +1,17 @@
 //! Scenes and views to ask the shaders about, and questions for them.
 
 use bytemuck::bytes_of;
+use conemarch::base::shader::Module;
+use conemarch::base::view::Beam;
 use conemarch::formula::balls::Balls;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
-use conemarch::formula::{Formula, Shape};
-use conemarch::heightfield::shape::HeightfieldShape;
+use conemarch::formula::{DistanceEstimate, Formula};
+use conemarch::heightfield::settings::HeightfieldSettings;
 use conemarch::plan::{Plan, Subject};
-use conemarch::pyramid::Block;
-use conemarch::scene::slab::SlabShape;
+use conemarch::scene::slab::SlabSettings;
 use conemarch::scene::{Scene, Solid};
-use conemarch::shader::Module;
-use conemarch::view::Beam;
 use conemarch::wgsl;
-use conemarch::{pass, view};
+use conemarch::{base::view, pass};
 use glam::DVec3;
 
 use super::probe::{Numbers, Probe};
@@ -47,19 +46,19 @@ pub fn plan(subject: Subject, eye: DVec3) -> Plan {
 }
 
 /// A plan of a shape.
-pub fn shape_plan(shape: Shape, iterations: u32, eye: DVec3) -> Plan {
+pub fn shape_plan(shape: Formula, iterations: u32, eye: DVec3) -> Plan {
     let iterations = Some(iterations);
     plan(Subject::Distance { shape, iterations }, eye)
 }
 
 /// A plan of the slab.
-pub fn slab_plan(shape: SlabShape) -> Plan {
+pub fn slab_plan(shape: SlabSettings) -> Plan {
     plan(Subject::Slab(shape), DVec3::new(4.0, -9.0, 6.0))
 }
 
 /// A small heightfield, seen from the same place.
 pub fn heightfield_plan(depth: f64) -> Plan {
-    let mut shape = HeightfieldShape::default();
+    let mut shape = HeightfieldSettings::default();
     shape.depth = depth;
     shape.turn = DVec3::new(5.0, -8.0, 30.0);
     shape.source.field = "fbm:33x25,seed=3,power=3".into();
@@ -96,8 +95,8 @@ pub fn mandelboxes() -> Vec<(&'static str, Mandelbox)> {
 }
 
 /// Balls with the radius of the largest multiplied.
-pub fn balls(factor: f64) -> Shape {
-    Shape::Balls(Balls {
+pub fn balls(factor: f64) -> Formula {
+    Formula::Balls(Balls {
         ball_radius: factor,
         box_size: 0.7 * factor,
         rod_radius: 0.05 * factor,
@@ -111,7 +110,7 @@ pub fn probe_of(plan: &Plan, probe: Module) -> Probe {
     modules.extend([
         view::module(),
         wgsl!("pass/shared.wgsl"),
-        wgsl!("counters_off.wgsl"),
+        wgsl!("base/counters_off.wgsl"),
         probe,
     ]);
     let mut parameters = scene.twin().uniforms();
@@ -137,11 +136,7 @@ pub fn lit_probe_of(plan: &Plan, probe: Module) -> Probe {
 
 /// The view of a plan as WGSL reads it.
 pub fn view_parameter(plan: &Plan) -> (&'static str, Vec<u8>) {
-    let block = Block {
-        origin: [0, 0],
-        size: plan.size,
-    };
-    let view = plan.view().uniform(&block);
+    let view = plan.view().uniform([0, 0], plan.size);
     ("view_parameters", bytes_of(&view).to_vec())
 }
 
@@ -154,7 +149,7 @@ pub fn look_parameter(plan: &Plan) -> (&'static str, Vec<u8>) {
 }
 
 /// Points in and about the bounds of a formula.
-pub fn points(formula: &dyn Formula, iterations: u32, seed: u64) -> Vec<Numbers> {
+pub fn points(formula: &dyn DistanceEstimate, iterations: u32, seed: u64) -> Vec<Numbers> {
     let bounds = formula.bounds();
     let mut random = Random::new(seed);
     let reach = 1.2 * bounds.half.max_element().min(bounds.radius);

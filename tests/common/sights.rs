@@ -1,7 +1,8 @@
 //! The view: rays go through their pixels, and the rays of a cell's pixels lie within
 //! its cone, at every image size and field of view.
 
-use conemarch::view::{Camera, View};
+use conemarch::base::view::View;
+use conemarch::plan::camera::Camera;
 use glam::DVec3;
 
 use super::random::Random;
@@ -16,7 +17,7 @@ fn view(size: [u32; 2], fov: f64) -> View {
         up: DVec3::Y,
         fov,
     };
-    View::new(&camera, size)
+    camera.view(size)
 }
 
 /// All cells of a level, or a sample that holds the corners and the middle.

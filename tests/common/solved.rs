@@ -1,10 +1,10 @@
 //! Scenes whose picture is solved in closed form, and cameras to see them with.
 
-use conemarch::formula::{Shape, balls::Balls};
-use conemarch::frame::Frame;
+use conemarch::formula::{Formula, balls::Balls};
+use conemarch::picture::frame::Frame;
+use conemarch::plan::camera::Camera;
 use conemarch::plan::{Plan, Subject};
-use conemarch::scene::slab::SlabShape;
-use conemarch::view::Camera;
+use conemarch::scene::slab::SlabSettings;
 use glam::DVec3;
 
 use super::exact;
@@ -34,7 +34,7 @@ pub fn cameras() -> [Camera; 5] {
 /// The default solids but for the rod, with an exact distance field and five levels.
 pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
     let mut plan = Plan::new(Subject::Distance {
-        shape: Shape::Balls(Balls {
+        shape: Formula::Balls(Balls {
             rod_radius,
             ..Balls::default()
         }),
@@ -51,7 +51,7 @@ pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
 /// A disc, solved in closed form by the scene itself.
 pub fn slab(camera: &Camera, size: [u32; 2]) -> Plan {
     let mut plan = balls(0.05, camera, size);
-    plan.subject = Subject::Slab(SlabShape::default());
+    plan.subject = Subject::Slab(SlabSettings::default());
     plan
 }
 
@@ -60,7 +60,7 @@ pub fn meet(subject: &Subject, eye: DVec3, axis: DVec3) -> f64 {
     let solids = match subject {
         Subject::Slab(s) => vec![exact::Exact::Disc(s.normal, s.half, s.radius)],
         Subject::Distance { shape, .. } => match shape {
-            Shape::Balls(b) => exact::balls(b.rod_radius, b.box_size, b.ball_radius),
+            Formula::Balls(b) => exact::balls(b.rod_radius, b.box_size, b.ball_radius),
             _ => panic!("only balls and slabs are solved here"),
         },
         Subject::Heightfield(_) => panic!("only balls and slabs are solved here"),

@@ -3,11 +3,12 @@
 
 use std::time::{Duration, Instant};
 
+use conemarch::base::work::State;
 use conemarch::cpu;
-use conemarch::frame::{Frame, State};
-use conemarch::mode::Mode;
+use conemarch::gpu::render::{Progress, RenderError};
+use conemarch::picture::frame::Frame;
+use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
-use conemarch::render::{Progress, RenderError};
 
 use super::solved::solved;
 
@@ -87,7 +88,7 @@ pub fn faults(plan: &Plan, frame: &Frame) -> Vec<String> {
             length.is_nan() || (length - wanted).abs() >= UNIT
         }),
     );
-    let position = plan.view().positions(frame);
+    let position = frame.positions(&plan.view());
     bad(
         "position",
         count(&|i| position[i].iter().any(|x| !x.is_finite())),
@@ -139,10 +140,10 @@ pub fn reference(plan: &Plan) -> Frame {
 
 /// Whether a plan's picture is known in closed form.
 pub fn solids(plan: &Plan) -> bool {
-    use conemarch::formula::Shape;
+    use conemarch::formula::Formula;
     use conemarch::plan::Subject;
     match &plan.subject {
-        Subject::Distance { shape, .. } => matches!(shape, Shape::Balls(_)),
+        Subject::Distance { shape, .. } => matches!(shape, Formula::Balls(_)),
         Subject::Slab(_) => true,
         // Traced exactly: there are no tiny steps to compare with.
         Subject::Heightfield(_) => false,

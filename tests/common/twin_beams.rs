@@ -5,12 +5,12 @@ use super::random::Random;
 use super::setups::{
     MOVED, balls, beam, beams, four, heightfield_plan, probe_of, shape_plan, slab_plan,
 };
-use conemarch::formula::Shape;
+use conemarch::base::work::Work;
+use conemarch::formula::Formula;
 use conemarch::formula::mandelbox::Mandelbox;
-use conemarch::frame::Work;
 use conemarch::plan::Plan;
 use conemarch::scene::distance::Relaxation;
-use conemarch::scene::slab::SlabShape;
+use conemarch::scene::slab::SlabSettings;
 use conemarch::scene::{Scene, Solid, Step};
 use glam::DVec3;
 
@@ -130,7 +130,7 @@ fn beams_in_a_mandelbox_agree() {
             scale,
             ..Mandelbox::default()
         };
-        let mut plan = shape_plan(Shape::Mandelbox(m), 8, DVec3::new(3.0, -12.0, 5.0));
+        let mut plan = shape_plan(Formula::Mandelbox(m), 8, DVec3::new(3.0, -12.0, 5.0));
         plan.march.clip = Some(false);
         plan
     };
@@ -152,7 +152,7 @@ fn the_part_of_a_ray_near_the_bounds_agrees() {
             rotation: DVec3::X,
             ..Mandelbox::default()
         };
-        shape_plan(Shape::Mandelbox(m), 6, DVec3::new(9.0, -17.0, 8.0))
+        shape_plan(Formula::Mandelbox(m), 6, DVec3::new(9.0, -17.0, 8.0))
     };
     let plan = of(2.0);
     let Scene::Distance(scene) = plan.scene() else {
@@ -230,7 +230,7 @@ fn the_heightfield_agrees() {
 #[test]
 fn the_slab_agrees() {
     let of = |factor: f64| {
-        slab_plan(SlabShape {
+        slab_plan(SlabSettings {
             normal: DVec3::new(0.3, -0.2, 1.0),
             half: 0.5 * factor,
             radius: 6.0 * factor,

@@ -6,21 +6,21 @@ use std::sync::LazyLock;
 
 use super::layout::{Layout, layout};
 use super::plans::every_program;
+use conemarch::base::shader::Program;
+use conemarch::base::view::ViewUniform;
 use conemarch::formula::balls::BallsUniform;
 use conemarch::formula::mandelbox::MandelboxUniform;
 use conemarch::formula::rotation::RotationUniform;
-use conemarch::heightfield::generate::uniform::{
+use conemarch::heightfield::conemap::generate::uniform::{
     GenerateUniform, MipUniform, NineUniform, PyramidUniform, Search, SlopesUniform,
 };
-use conemarch::heightfield::relief::ReliefUniform;
+use conemarch::heightfield::height_surface::ReliefUniform;
 use conemarch::pass::look::LookUniform;
 use conemarch::pass::march::LevelUniform;
 use conemarch::pass::queue::{COUNT_AT, Turn};
 use conemarch::scene::distance::DistanceUniform;
 use conemarch::scene::heightfield::HeightfieldUniform;
 use conemarch::scene::slab::SlabUniform;
-use conemarch::shader::Program;
-use conemarch::view::ViewUniform;
 
 /// Every struct of parameters, as Rust lays it out.
 fn layouts() -> Vec<(&'static str, Layout)> {

@@ -5,11 +5,11 @@ use super::random::Random;
 use super::setups::{
     MOVED, balls, beam, four, lit_probe_of, look_parameter, shape_plan, slab_plan, three,
 };
+use conemarch::base::view::{Beam, footprint};
 use conemarch::pass::{fog, look, occlusion, shadow};
 use conemarch::plan::Plan;
-use conemarch::scene::slab::SlabShape;
+use conemarch::scene::slab::SlabSettings;
 use conemarch::scene::{Hit, Scene, Solid, Surface};
-use conemarch::view::{Beam, footprint};
 use glam::DVec3;
 
 /// A change of a plan, by name.
@@ -17,7 +17,7 @@ type Change = (&'static str, fn(&mut Plan));
 
 #[test]
 fn palette_pigment_and_sky_agree() {
-    let plan = slab_plan(SlabShape::default());
+    let plan = slab_plan(SlabSettings::default());
     let mut random = Random::new(7);
     let question = |_| {
         let x = random.between(-1.0, 4.0);

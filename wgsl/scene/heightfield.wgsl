@@ -72,7 +72,7 @@ fn sweep_is_free(one: vec3<f32>, two: vec3<f32>, radius: f32) -> bool {
     let room = radius / local_units() + heightfield.slack;
     let low = min(one, two) - room;
     let high = max(one, two) + room;
-    return high.z < 0.0 || low.z > 1.0 || low.z > under_highest(low.xy, high.xy);
+    return high.z < 0.0 || low.z > 1.0 || low.z > region_max(low.xy, high.xy);
 }
 
 /// How far a cone is free: the longest of a row of halved lengths whose whole sweep
@@ -148,7 +148,7 @@ fn clearance(q: vec3<f32>) -> f32 {
     for (var i = 0u; i < HEIGHTFIELD_HALVINGS; i++) {
         count_evaluation();
         let room = radius / heightfield.texel + heightfield.slack.xy;
-        let top = under_highest(p.xy - room, p.xy + room);
+        let top = region_max(p.xy - room, p.xy + room);
         let gap = (p.z - heightfield.slack.z - top) * heightfield.depth;
         free = max(free, min(radius, gap));
         if gap < radius {

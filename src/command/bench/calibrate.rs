@@ -4,16 +4,16 @@ use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
 
-use super::common::Common;
-use super::row::flat;
-use super::table;
-use crate::calibrate::{Calibration, calibrate};
+use crate::base::work::State;
+use crate::command::bench::common::Common;
+use crate::command::bench::row::flat;
+use crate::command::bench::table;
 use crate::command::executor::Executor;
 use crate::command::interrupt;
-use crate::frame::State;
-use crate::mode::Mode;
+use crate::gpu::render::RenderError;
+use crate::measure::calibrate::{Calibration, calibrate};
+use crate::plan::march::Mode;
 use crate::plan::{Extras, Plan};
-use crate::render::RenderError;
 
 /// Options of `bench calibrate`.
 #[derive(Debug, Args)]

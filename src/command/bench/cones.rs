@@ -9,40 +9,40 @@ use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
 
-use super::common::Common;
-use super::cone_rows::{GeneratorRow, TracerRow};
-use super::row::flat;
-use super::table;
+use crate::command::bench::common::Common;
+use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
+use crate::command::bench::row::flat;
+use crate::command::bench::table;
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::print::say;
 use crate::command::{interrupt, size};
+use crate::gpu::conemap::generate::Maker;
 use crate::gpu::device::{Choice, Device, PROMISED_BUFFERS};
+use crate::gpu::render::RenderError;
 use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::field::Field;
-use crate::heightfield::generate::cpu;
-use crate::heightfield::generate::device::Maker;
-use crate::heightfield::generate::generator::{GenerateError, Generator, Options};
+use crate::heightfield::conemap::generate::cpu;
+use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
+use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::{Heights, Patches};
-use crate::heightfield::maxmip::MaxMip;
-use crate::heightfield::relief::Relief;
-use crate::heightfield::survey::{first_hits, survey, view_rays};
-use crate::heightfield::trace::cones::{Cones, Manner};
-use crate::heightfield::trace::linear::{LINEAR_ROUNDS, LINEAR_STEPS, LinearBinary};
-use crate::heightfield::trace::max_mip::MaxMipTracer;
-use crate::heightfield::trace::oracle::Oracle;
-use crate::heightfield::trace::relaxed::WalkRelaxed;
-use crate::heightfield::trace::walk::Walk;
-use crate::heightfield::trace::{AnyTracer, TraceError};
-use crate::render::RenderError;
+use crate::heightfield::max_mip::MaxMip;
+use crate::heightfield::pattern::Pattern;
+use crate::heightfield::tracer::cones::{Cones, Manner};
+use crate::heightfield::tracer::linear::{LINEAR_ROUNDS, LINEAR_STEPS, LinearBinary};
+use crate::heightfield::tracer::max_mip::MaxMipTracer;
+use crate::heightfield::tracer::oracle::Oracle;
+use crate::heightfield::tracer::relaxed::WalkRelaxed;
+use crate::heightfield::tracer::walk::Walk;
+use crate::heightfield::tracer::{AnyTracer, TraceError};
+use crate::measure::tracer_stats::{first_hits, survey, view_rays};
 
 /// Fields where none is named.
-const FIELDS: [Field; 5] = [
-    Field::Fbm,
-    Field::Ridges,
-    Field::Spikes,
-    Field::Checker,
-    Field::Sine,
+const FIELDS: [Pattern; 5] = [
+    Pattern::Fbm,
+    Pattern::Ridges,
+    Pattern::Spikes,
+    Pattern::Checker,
+    Pattern::Sine,
 ];
 /// Sizes where none is given.
 const SIZES: [[u32; 2]; 2] = [[128, 128], [256, 256]];
@@ -122,7 +122,7 @@ pub fn run(args: &ConesBench) -> Result<()> {
     for size in sizes {
         for field in &fields {
             let heights = Heights::new(size, [false; 2], field.heights(size, SEED, POWER))?;
-            let relief = Arc::new(Relief::new(heights, patches, [1, 1])?);
+            let relief = Arc::new(HeightSurface::new(heights, patches, [1, 1])?);
             let (rows, maps) = generate(&executor, *field, &relief)?;
             files.show(&table::generators(&rows))?;
             generators.extend(rows);
@@ -144,14 +144,14 @@ fn area([w, h]: [u32; 2]) -> usize {
 }
 
 /// The fields of names, or those that are measured where there are none.
-fn fields(names: &[String]) -> Result<Vec<Field>> {
+fn fields(names: &[String]) -> Result<Vec<Pattern>> {
     if names.is_empty() {
         return Ok(FIELDS.to_vec());
     }
     let one = |name: &String| {
-        let known = Field::ALL.map(Field::name).join(", ");
+        let known = Pattern::ALL.map(Pattern::name).join(", ");
         let why = || usage(format!("there is no field `{name}`; there is: {known}"));
-        Field::named(name).ok_or_else(why)
+        Pattern::named(name).ok_or_else(why)
     };
     names.iter().map(one).collect()
 }
@@ -177,8 +177,8 @@ fn one_header(rows: Vec<Vec<(String, String)>>) -> Vec<Vec<(String, String)>> {
 /// Every map of a relief, as far as the budget goes.
 fn generate(
     executor: &Executor,
-    field: Field,
-    relief: &Relief,
+    field: Pattern,
+    relief: &HeightSurface,
 ) -> Result<(Vec<GeneratorRow>, Maps)> {
     let device = match executor {
         Executor::Gpu(renderer) => Some(&renderer.device),
@@ -222,7 +222,11 @@ enum Made {
     TooSlow(f64),
 }
 
-fn one_map(maker: &mut Option<Maker<'_>>, generator: Generator, relief: &Relief) -> Result<Made> {
+fn one_map(
+    maker: &mut Option<Maker<'_>>,
+    generator: Generator,
+    relief: &HeightSurface,
+) -> Result<Made> {
     let start = Instant::now();
     let mut done = 0.0;
     let mut watch = |share: f64| {
@@ -274,8 +278,8 @@ fn compare(rows: &mut [GeneratorRow], maps: &Maps) {
 fn pyramid(
     executor: &Executor,
     device: Option<&Device>,
-    field: Field,
-    relief: &Relief,
+    field: Pattern,
+    relief: &HeightSurface,
 ) -> Result<GeneratorRow> {
     let apexes = relief.heights().apexes(relief.patches());
     let start = Instant::now();
@@ -320,7 +324,7 @@ const PAIRS: [(&str, Option<Generator>); 16] = [
 /// A tracer of a name over a relief; `None` where its map is missing.
 fn tracer(
     name: &str,
-    relief: &Arc<Relief>,
+    relief: &Arc<HeightSurface>,
     map: Option<&Arc<ConeMap>>,
 ) -> Result<Option<AnyTracer>, TraceError> {
     let relief = relief.clone();
@@ -346,7 +350,7 @@ fn tracer(
 }
 
 /// Every tracer over every view of a relief.
-fn trace(field: Field, relief: &Arc<Relief>, maps: &Maps) -> Result<Vec<TracerRow>> {
+fn trace(field: Pattern, relief: &Arc<HeightSurface>, maps: &Maps) -> Result<Vec<TracerRow>> {
     let oracle = Oracle::new(relief.clone());
     let mut rows = Vec::new();
     for view_deg in VIEWS {

@@ -10,22 +10,22 @@ use anyhow::Result;
 use clap::Args;
 use glam::DVec3;
 
-use super::common::{Common, median};
-use super::row::{DepthError, Row, TruthNote, flat};
-use super::setting::{Setting, baselines, sweeps};
-use super::{plot, table};
+use crate::command::bench::common::{Common, median};
+use crate::command::bench::row::{DepthError, Row, TruthNote, flat};
+use crate::command::bench::setting::{Setting, baselines, sweeps};
+use crate::command::bench::{plot, table};
 use crate::command::executor::Executor;
 use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
 use crate::command::sink::is_stdout;
-use crate::compare::compare;
-use crate::flip::{Picture, flip};
-use crate::frame::Frame;
-use crate::output::{Layer, Shades};
+use crate::gpu::render::RenderError;
+use crate::measure::compare::compare;
+use crate::measure::flip::{Picture, flip};
+use crate::measure::truth::{Cache, Truth, cached};
+use crate::picture::frame::Frame;
+use crate::picture::{Layer, Shades};
 use crate::plan::{Extras, Plan};
-use crate::render::RenderError;
-use crate::truth::{Cache, Truth, cached};
 
 /// Options of `bench error`.
 #[derive(Debug, Args)]

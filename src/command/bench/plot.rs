@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use super::row::Row;
+use crate::command::bench::row::Row;
 
 const PANEL: [f64; 2] = [460.0, 330.0];
 /// Left, top, right and bottom of the axes within a panel.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::compare::Report;
+use crate::measure::compare::Report;
 
 /// Quantiles of |e| in footprints, over pixels that hit in both.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]

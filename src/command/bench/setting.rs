@@ -4,8 +4,8 @@
 use serde_json::{Map, json};
 use toml::Value;
 
-use crate::mode::{MODES, Mode};
 use crate::plan::Plan;
+use crate::plan::march::{MODES, Mode};
 
 /// A mode, and keys of `[march]` that are changed.
 #[derive(Clone, Debug)]

@@ -5,20 +5,21 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 
-use super::common::{Common, median};
-use super::row::flat;
-use super::setting::{Setting, baselines};
-use super::steps_row::StepsRow;
-use super::table;
+use crate::base::work::{State, Work};
+use crate::command::bench::common::{Common, median};
+use crate::command::bench::row::flat;
+use crate::command::bench::setting::{Setting, baselines};
+use crate::command::bench::steps_row::StepsRow;
+use crate::command::bench::table;
 use crate::command::executor::Executor;
 use crate::command::failure::usage;
 use crate::command::interrupt;
-use crate::frame::{Frame, State, Work};
-use crate::mode::MODES;
-use crate::output::{BitDepth, Folder, Layer, Place, Shades, write_png};
+use crate::gpu::render::RenderError;
+use crate::picture::frame::Frame;
+use crate::picture::{BitDepth, Folder, Layer, Place, Shades, write_png};
+use crate::plan::march::MODES;
 use crate::plan::{Extras, Plan};
 use crate::preset;
-use crate::render::RenderError;
 
 /// Options of `bench steps`.
 #[derive(Debug, Args)]

@@ -1,8 +1,8 @@
 //! Rows as tables that are Markdown and read well on a terminal.
 
-use super::cone_rows::{GeneratorRow, TracerRow};
-use super::row::Row;
-use super::steps_row::StepsRow;
+use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
+use crate::command::bench::row::Row;
+use crate::command::bench::steps_row::StepsRow;
 
 /// Said above times of a device that does not tell its own.
 const UNTIMED: &str = "The device has no timestamps: times are wall time.\n\n";

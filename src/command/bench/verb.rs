@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::Subcommand;
 
-use super::{calibrate, cones, error, steps};
+use crate::command::bench::{calibrate, cones, error, steps};
 
 /// What to measure.
 #[derive(Debug, Subcommand)]

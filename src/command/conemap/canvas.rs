@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::glyphs::{GLYPH, dots};
+use crate::command::conemap::glyphs::{GLYPH, dots};
 use crate::heightfield::raster::png;
 
 /// Pixels of a dot of the captions.

@@ -11,11 +11,11 @@ use crate::command::failure::usage;
 use crate::command::print::say;
 use crate::command::size;
 use crate::heightfield::conemap::MapKind;
-use crate::heightfield::heights::MOST_SAMPLES;
-use crate::heightfield::load::{LoadError, LoadOptions, Loaded, load};
-use crate::heightfield::mapfile::{
+use crate::heightfield::conemap::file::{
     Bits, Foreign, Form, Layout, MapError, MapFile, Slopes, decode, has_map,
 };
+use crate::heightfield::heights::MOST_SAMPLES;
+use crate::heightfield::load::{LoadError, LoadOptions, Loaded, load};
 
 /// How heights are read.
 #[derive(Args, Clone, Copy, Debug)]
@@ -111,7 +111,7 @@ impl Strange {
         let foreign = self.from.map(|layout| Foreign {
             layout,
             kind: match layout {
-                Layout::Relief => MapKind::Relaxed,
+                Layout::HeightSurface => MapKind::Relaxed,
                 Layout::Quad => MapKind::Quad,
                 _ => MapKind::Samples,
             },
@@ -191,7 +191,7 @@ impl Writing {
                 why: why.into(),
             }));
         }
-        if self.depth.is_some() && layout != Layout::Relief {
+        if self.depth.is_some() && layout != Layout::HeightSurface {
             return Err(usage(format!(
                 "--depth is for the normals of relief, and the layout is {}; leave it out, or add --layout relief",
                 layout.name()
@@ -224,7 +224,7 @@ fn layouts(but: &'static [Layout]) -> impl TypedValueParser<Value = Layout> {
     let values = shown.map(|l| {
         PossibleValue::new(l.name()).help(match l {
             Layout::Dummer => "RGBA: height, ratio, slope x, slope y",
-            Layout::Relief => "RGBA: normal x, normal y, ratio, depth",
+            Layout::HeightSurface => "RGBA: normal x, normal y, ratio, depth",
             Layout::Pair => "grey and alpha: height, ratio",
             Layout::Quad => "RGBA: ratios to +x, -x, +y, -y",
             Layout::Full => "EXR: everything",

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::{Args, ValueHint};
 
-use super::common::{Output, Strange, Writing, of_map, shown, wraps};
+use crate::command::conemap::common::{Output, Strange, Writing, of_map, shown, wraps};
 use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
 use crate::command::sink::{Sink, spared};
-use crate::heightfield::mapfile::{MapFile, decode_bytes, encode, kind_word};
+use crate::heightfield::conemap::file::{MapFile, decode_bytes, encode, kind_word};
 
 /// What `convert` takes.
 #[derive(Args, Debug)]

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
+use crate::heightfield::conemap::file::{Layout, MapFile, Slopes, kind_word, promise, wrap_word};
+use crate::heightfield::conemap::generate::slopes::slopes;
 use crate::heightfield::conemap::{MapKind, WIDEST};
-use crate::heightfield::generate::slopes::slopes;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::load::Loaded;
-use crate::heightfield::mapfile::{Layout, MapFile, Slopes, kind_word, promise, wrap_word};
 
 /// Longest bar of a histogram.
 const BAR: f64 = 40.0;
@@ -185,7 +185,7 @@ fn form(file: &MapFile) -> String {
 }
 
 /// Rise per texel where it is steepest.
-pub(super) fn steepness(slope: [f32; 2]) -> f64 {
+pub(crate) fn steepness(slope: [f32; 2]) -> f64 {
     let [x, y] = slope.map(f64::from);
     x.hypot(y)
 }

@@ -7,12 +7,13 @@ use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::command::interrupt;
+use crate::gpu::conemap::generate as device;
 use crate::gpu::device::{Adapters, Choice, Device, DeviceError, PROMISED_BUFFERS};
+use crate::gpu::render::RenderError;
 use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::generate::generator::{GenerateError, Generator, Options};
-use crate::heightfield::generate::{cpu, device, slopes as on_cpu};
+use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
+use crate::heightfield::conemap::generate::{cpu, slopes as on_cpu};
 use crate::heightfield::heights::{Heights, Patches};
-use crate::render::RenderError;
 
 /// Who makes cones.
 pub enum Maker {

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::{Args, ValueHint};
 
-use super::common::{Reading, Strange, of_map, shown};
-use super::describe::{describe_heights, describe_map};
-use super::panels::{heights_panels, map_panels};
+use crate::command::conemap::common::{Reading, Strange, of_map, shown};
+use crate::command::conemap::describe::{describe_heights, describe_map};
+use crate::command::conemap::panels::{heights_panels, map_panels};
 use crate::command::failure::usage;
 use crate::command::print::{print, say};
 use crate::command::sink::{Sink, spared};
-use crate::heightfield::mapfile::{MapFile, Wanted, has_map};
+use crate::heightfield::conemap::file::{MapFile, Wanted, has_map};
 
 /// What `inspect` takes.
 #[derive(Args, Debug)]

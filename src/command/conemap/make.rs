@@ -7,19 +7,19 @@ use anyhow::{Context, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 
-use super::common::{Output, Reading, Writing, of_map, shown};
-use super::convert::kept;
-use super::generate::{Maker, generate, slopes};
+use crate::command::conemap::common::{Output, Reading, Writing, of_map, shown};
+use crate::command::conemap::convert::kept;
+use crate::command::conemap::generate::{Maker, generate, slopes};
 use crate::command::executor::device;
 use crate::command::failure::usage;
 use crate::command::print::say;
 use crate::command::sink::{Sink, spared};
 use crate::command::{interrupt, memory};
 use crate::gpu::device::Choice;
-use crate::heightfield::generate::generator::{Generator, Options};
+use crate::heightfield::conemap::file::{MapFile, Slopes, decode_bytes, encode, kind_word};
+use crate::heightfield::conemap::generate::generator::{Generator, Options};
 use crate::heightfield::heights::Patches;
-use crate::heightfield::load::Named;
-use crate::heightfield::mapfile::{MapFile, Slopes, decode_bytes, encode, kind_word};
+use crate::heightfield::load::PatternSpec;
 
 /// What `make` takes.
 #[derive(Args, Debug)]
@@ -62,7 +62,7 @@ pub struct Make {
 
     /// Make every cone as narrow as the narrowest of its eight neighbours
     #[arg(long)]
-    least_of_nine: bool,
+    min3x3: bool,
 
     /// auto, gpu, software, cpu, an index, or part of a name
     ///
@@ -85,7 +85,7 @@ pub fn run(args: &Make) -> Result<()> {
     let generator = args.generator;
     let options = options(args)?;
     // What is made by name need not be made to know that it is too large.
-    if let Some(Ok(named)) = Named::read(&args.heights) {
+    if let Some(Ok(named)) = PatternSpec::read(&args.heights) {
         room(generator, named.size)?;
     }
     let loaded = args.reading.load(&args.heights)?;
@@ -121,7 +121,7 @@ pub fn run(args: &Make) -> Result<()> {
     let again = decode_bytes(&bytes).map_err(anyhow::Error::msg);
     let again = again.context("the map could not be read back")?;
     if interrupt::asked() {
-        return Err(crate::render::RenderError::Cancelled.into());
+        return Err(crate::gpu::render::RenderError::Cancelled.into());
     }
     sink.finish(&bytes)?;
     let [w, h] = file.map.size;
@@ -155,7 +155,7 @@ fn options(args: &Make) -> Result<Options> {
         ))
     };
     let mut options = Options {
-        least_of_nine: args.least_of_nine,
+        min3x3: args.min3x3,
         ..Options::default()
     };
     if let Some(offset) = args.offset {
@@ -183,7 +183,7 @@ fn made_by(generator: Generator, options: &Options) -> String {
     if generator == Generator::RelaxedSearch {
         words.push_str(&format!(", {} steps", options.search_steps));
     }
-    if options.least_of_nine {
+    if options.min3x3 {
         words.push_str(", least of nine");
     }
     words

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::canvas::{Bar, Canvas, Panel};
-use super::describe::steepness;
-use crate::heightfield::generate::slopes::slopes;
+use crate::command::conemap::canvas::{Bar, Canvas, Panel};
+use crate::command::conemap::describe::steepness;
+use crate::heightfield::conemap::file::{Layout, MapFile};
+use crate::heightfield::conemap::generate::slopes::slopes;
 use crate::heightfield::heights::Heights;
-use crate::heightfield::mapfile::{Layout, MapFile};
-use crate::output::heat;
+use crate::picture::heat;
 
 /// Ends of a scale of two signs: blue under, orange over (of one lightness).
 const UNDER: DVec3 = DVec3::new(0.10, 0.32, 0.62);
@@ -112,7 +112,7 @@ pub fn map_panels(file: &MapFile) -> Canvas {
         }
     }
     match (file.form.layout, file.extra.as_slice()) {
-        (Layout::Relief, [x, y]) => panels.push(normal_panel(size, &x.shares, &y.shares)),
+        (Layout::HeightSurface, [x, y]) => panels.push(normal_panel(size, &x.shares, &y.shares)),
         (_, extra) => {
             for channel in extra {
                 panels.push(signed_panel(size, channel.name, &channel.shares));

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::Subcommand;
 
-use super::{convert, inspect, make};
+use crate::command::conemap::{convert, inspect, make};
 
 /// What `conemap` can do.
 #[derive(Debug, Subcommand)]

@@ -26,14 +26,14 @@ pub enum LoadError {
 }
 
 impl LoadError {
-    pub(super) fn file(path: &Path, why: impl Into<String>) -> Self {
+    pub(crate) fn file(path: &Path, why: impl Into<String>) -> Self {
         Self::File {
             path: path.display().to_string(),
             why: why.into(),
         }
     }
 
-    pub(super) fn argument(argument: &str, why: impl Into<String>) -> Self {
+    pub(crate) fn argument(argument: &str, why: impl Into<String>) -> Self {
         // A long text is no name, and nobody reads it twice.
         let argument = argument.chars().take(80).collect();
         let why = why.into();

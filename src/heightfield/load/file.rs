@@ -14,9 +14,9 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::named::read_size;
+use crate::heightfield::conemap::file::{Layout, MapError, has_map, is_walk, kind_word, read_map};
 use crate::heightfield::heights::Patches;
-use crate::heightfield::mapfile::{Layout, MapError, has_map, is_walk, kind_word, read_map};
+use crate::heightfield::load::pattern_spec::read_size;
 use crate::heightfield::raster::open::{Format, Opened, open};
 use crate::heightfield::raster::{exr, png, tiff};
 
@@ -77,7 +77,7 @@ fn of_map(path: &Path) -> Result<Grid, String> {
         _ => (
             format!("PNG, cone map, layout {name}, {bits} bit"),
             match layout {
-                Layout::Relief => "alpha, which holds depths",
+                Layout::HeightSurface => "alpha, which holds depths",
                 Layout::Pair => "grey",
                 _ => "red",
             },

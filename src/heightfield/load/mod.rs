@@ -3,9 +3,9 @@
 
 mod error;
 mod file;
-mod named;
+mod pattern_spec;
 mod source;
 
 pub use error::LoadError;
-pub use named::Named;
+pub use pattern_spec::PatternSpec;
 pub use source::{LoadOptions, Loaded, load};

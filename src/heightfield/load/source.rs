@@ -9,11 +9,11 @@
 
 use std::path::Path;
 
-use super::error::LoadError;
-use super::file::{Grid, read};
-use super::named::Named;
-use crate::heightfield::field::Field;
 use crate::heightfield::heights::Heights;
+use crate::heightfield::load::error::LoadError;
+use crate::heightfield::load::file::{Grid, read};
+use crate::heightfield::load::pattern_spec::PatternSpec;
+use crate::heightfield::pattern::Pattern;
 
 /// How heights are to be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub struct Loaded {
 /// # Errors
 /// The argument names nothing, or the file cannot be read or holds no heights.
 pub fn load(argument: &str, options: &LoadOptions) -> Result<Loaded, LoadError> {
-    if let Some(named) = Named::read(argument) {
+    if let Some(named) = PatternSpec::read(argument) {
         return generated(named, argument, options);
     }
     let path = Path::new(argument);
@@ -72,7 +72,7 @@ pub fn load(argument: &str, options: &LoadOptions) -> Result<Loaded, LoadError> 
 }
 
 fn generated(
-    named: Result<Named, String>,
+    named: Result<PatternSpec, String>,
     argument: &str,
     options: &LoadOptions,
 ) -> Result<Loaded, LoadError> {
@@ -98,7 +98,7 @@ fn generated(
 fn strange() -> String {
     format!(
         "there is no such file or field; fields are {}, and files are PNG, EXR, TIFF or .raw",
-        Field::ALL.map(Field::name).join(", ")
+        Pattern::ALL.map(Pattern::name).join(", ")
     )
 }
 

@@ -13,8 +13,8 @@ use exr::prelude::{
     ReadLayers, ReadSpecificChannel, SmallVec, WritableImage,
 };
 
-use super::open::check_size;
 use crate::heightfield::heights::MOST_SAMPLES;
+use crate::heightfield::raster::open::check_size;
 
 /// Longest text of an attribute that is believed.
 const MOST_TEXT: usize = 1 << 16;

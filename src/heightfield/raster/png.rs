@@ -7,8 +7,8 @@ use std::io::{BufRead, Seek, Write};
 
 use png::{ColorType, Decoder, DecodingError, Encoder, Reader, Transformations};
 
-use super::open::check_size;
 use crate::heightfield::heights::MOST_SAMPLES;
+use crate::heightfield::raster::open::check_size;
 
 /// Longest text that is read from a file: far more than any description needs.
 const MOST_TEXT: usize = 1 << 16;
@@ -24,7 +24,7 @@ pub struct Pixels {
     pub channels: usize,
     /// The largest number: 255 or 65535.
     pub most: u16,
-    /// Kept numbers, pixel by pixel, row by row.
+    /// Cache numbers, pixel by pixel, row by row.
     pub numbers: Vec<u16>,
     /// Whether red, green and blue are the same everywhere.
     pub is_grey: bool,

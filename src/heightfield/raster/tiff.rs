@@ -9,8 +9,8 @@ use tiff::ColorType;
 use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult};
 
-use super::open::check_size;
 use crate::heightfield::heights::MOST_SAMPLES;
+use crate::heightfield::raster::open::check_size;
 
 /// The first channel of a file.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,8 @@
+//! What all other rooms stand on: the keys of settings, WGSL modules, rays and cones.
+
+pub mod cone;
+pub mod key;
+pub mod shader;
+pub mod srgb;
+pub mod view;
+pub mod work;

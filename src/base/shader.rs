@@ -1,0 +1,199 @@
+//! WGSL composed by joining files.
+//!
+//! A [`Module`] is one file of `wgsl/` with the values of its override constants; a
+//! [`Program`] is a list of modules and an entry point. WGSL lets a name be used
+//! before it is declared, so joining is concatenation: no preprocessor, no
+//! templates, no order to keep. A feature that a scene lacks is a module that is not
+//! joined, or a stand-in with the same names.
+
+use std::fmt::Write as _;
+
+use thiserror::Error;
+use wgpu::naga;
+
+/// One WGSL file and the values of the override constants that it declares.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Module {
+    /// Path of the file, relative to the repository's root.
+    pub path: &'static str,
+    /// Text of the file.
+    pub source: &'static str,
+    /// Name and value of every override constant of the file; booleans as 0 or 1.
+    pub constants: Vec<(&'static str, f64)>,
+}
+
+/// Makes a [`Module`] of a file below `wgsl/`, its text compiled in.
+#[macro_export]
+macro_rules! wgsl {
+    ($path:literal $(, $name:literal = $value:expr)* $(,)?) => {
+        $crate::base::shader::Module {
+            path: concat!("wgsl/", $path),
+            source: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/", $path)),
+            constants: vec![$(($name, $value)),*],
+        }
+    };
+}
+
+/// Joined modules and the entry point that is run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    /// Name of the compute entry point, which is also the program's name.
+    pub entry: &'static str,
+    /// The joined modules, in order.
+    pub modules: Vec<Module>,
+}
+
+/// What can be wrong with a program's text.
+#[derive(Debug, Error)]
+pub enum ShaderError {
+    /// The text does not parse, or does not validate.
+    #[error("{path}:{line}: {message} (program `{entry}`)")]
+    Text {
+        /// The file that the error is in.
+        path: String,
+        /// Its line, from 1.
+        line: usize,
+        /// What naga says.
+        message: String,
+        /// The program's entry point.
+        entry: &'static str,
+    },
+    /// An override constant has no value, or a value has no constant.
+    #[error("program `{entry}`: override constant `{name}` is {fault}")]
+    Constant {
+        /// The program's entry point.
+        entry: &'static str,
+        /// The constant.
+        name: String,
+        /// `missing` or `unknown`.
+        fault: &'static str,
+    },
+}
+
+impl Program {
+    /// A program of the given modules.
+    pub fn new(entry: &'static str, modules: Vec<Module>) -> Self {
+        Self { entry, modules }
+    }
+
+    /// The joined text, every module ending its last line.
+    pub fn source(&self) -> String {
+        let mut text = String::new();
+        for module in &self.modules {
+            text.push_str(module.source);
+            if !module.source.ends_with('\n') {
+                text.push('\n');
+            }
+        }
+        text
+    }
+
+    /// All override constants with their values.
+    pub fn constants(&self) -> Vec<(&'static str, f64)> {
+        let all = self
+            .modules
+            .iter()
+            .flat_map(|m| m.constants.iter().copied());
+        all.collect()
+    }
+
+    /// The file and the line in it that a line of the joined text comes from, both
+    /// lines counted from 1.
+    pub fn locate(&self, line: usize) -> (&'static str, usize) {
+        let mut left = line.max(1);
+        for module in &self.modules {
+            let lines = module.source.lines().count();
+            if left <= lines {
+                return (module.path, left);
+            }
+            left -= lines;
+        }
+        ("end of program", left)
+    }
+
+    /// Parses and validates the joined text, and checks that the constants given are
+    /// the constants declared.
+    pub fn validate(
+        &self,
+        capabilities: naga::valid::Capabilities,
+    ) -> Result<(naga::Module, naga::valid::ModuleInfo), ShaderError> {
+        let source = self.source();
+        let module = naga::front::wgsl::parse_str(&source).map_err(|e| {
+            let line = e.location(&source).map_or(1, |l| l.line_number as usize);
+            self.text_error(line, e.message().to_string())
+        })?;
+        let mut validator =
+            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
+        let info = validator.validate(&module).map_err(|e| {
+            // The first span is the whole function's; the shortest is the fault's.
+            let spans = e.spans().filter(|(span, _)| span.is_defined());
+            let fault = spans.min_by_key(|(s, _)| s.to_range().map_or(usize::MAX, |r| r.len()));
+            let line = fault.map_or(1, |(s, _)| s.location(&source).line_number as usize);
+            let cause = std::error::Error::source(e.as_inner())
+                .map_or_else(String::new, |c| format!(": {c}"));
+            self.text_error(line, format!("{}{cause}", e.as_inner()))
+        })?;
+        self.check_constants(&module)?;
+        Ok((module, info))
+    }
+
+    fn text_error(&self, line: usize, message: String) -> ShaderError {
+        let (path, line) = self.locate(line);
+        ShaderError::Text {
+            path: path.to_string(),
+            line,
+            message,
+            entry: self.entry,
+        }
+    }
+
+    fn check_constants(&self, module: &naga::Module) -> Result<(), ShaderError> {
+        let given = self.constants();
+        let declared: Vec<&str> = module
+            .overrides
+            .iter()
+            .filter_map(|(_, o)| o.name.as_deref())
+            .collect();
+        let fault = |name: &str, fault| ShaderError::Constant {
+            entry: self.entry,
+            name: name.to_string(),
+            fault,
+        };
+        for name in &declared {
+            if !given.iter().any(|(n, _)| n == name) {
+                return Err(fault(name, "missing"));
+            }
+        }
+        for (name, _) in &given {
+            if !declared.contains(name) {
+                return Err(fault(name, "unknown"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The same program with another set of number types joined in the place of
+    /// `wgsl/base/real.wgsl`; programs without it are returned as they are.
+    pub fn in_f64(&self) -> Self {
+        let mut program = self.clone();
+        for module in &mut program.modules {
+            if module.path == "wgsl/base/real.wgsl" {
+                *module = wgsl!("base/real64.wgsl");
+            }
+        }
+        program
+    }
+
+    /// A listing of modules and constants, for `--explain`.
+    pub fn describe(&self) -> String {
+        let mut text = String::new();
+        for module in &self.modules {
+            let _ = write!(text, "    {}", module.path);
+            for (name, value) in &module.constants {
+                let _ = write!(text, "  {name}={value}");
+            }
+            text.push('\n');
+        }
+        text
+    }
+}

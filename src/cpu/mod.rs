@@ -1,0 +1,331 @@
+//! The CPU executor: the same passes in f64, rows over threads.
+//!
+//! It is what a machine without an adapter falls back to, what the truth is made with,
+//! and what the GPU is compared to.
+
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use crate::base::view::View;
+use crate::base::work::{State, Work};
+use crate::gpu::render::{Progress, RenderError, Watch, blank, prepare, preparing};
+use crate::heightfield::conemap::generate::cpu::generate;
+use crate::pass::march::{Ended, march};
+use crate::pass::{color, trace};
+use crate::picture::frame::Frame;
+use crate::plan::pyramid::Level;
+use crate::plan::{Extras, Pass, Plan};
+use crate::scene::{Hit, Solid, Task};
+
+/// Cells between two looks at the watch: some tens of milliseconds on two cores.
+const BAND_CELLS: usize = 1 << 15;
+
+/// A proven front of one cell.
+#[derive(Clone, Copy)]
+struct Proof {
+    front: f64,
+    ended: Ended,
+}
+
+/// A finished level: proofs row by row.
+struct Proofs {
+    width: usize,
+    cells: Vec<Proof>,
+}
+
+/// Renders a plan that passes [`Plan::check`].
+///
+/// # Errors
+/// [`RenderError::Cancelled`], when `watch` returns `false`; heights or cones that cannot
+/// be had any more.
+pub fn render(plan: &Plan, extras: Extras, watch: Watch<'_>) -> Result<Frame, RenderError> {
+    let plan = &*plan.lean(extras);
+    let prepared = prepare(plan, &mut |generator, heights, patches, options| {
+        let mut told = |share: f64| watch(&preparing(share));
+        generate(generator, heights, patches, options, &mut told)
+    })?;
+    let mut frame = plan.scene().run(Render {
+        plan,
+        extras,
+        watch,
+    })?;
+    frame.lead(prepared);
+    Ok(frame)
+}
+
+struct Render<'a> {
+    plan: &'a Plan,
+    extras: Extras,
+    watch: Watch<'a>,
+}
+
+impl Task for Render<'_> {
+    type Output = Result<Frame, RenderError>;
+
+    fn run<S: Solid>(self, solid: &S) -> Self::Output {
+        let (plan, extras) = (self.plan, self.extras);
+        let passes = plan.passes_for(extras);
+        let mut run = Run {
+            solid,
+            view: plan.view(),
+            plan,
+            extras,
+            frame: blank(plan, &passes, extras),
+            parents: None,
+            hits: Vec::new(),
+        };
+        for (at, &pass) in passes.iter().enumerate() {
+            let start = Instant::now();
+            let mut bands = Bands {
+                pass: pass.name(),
+                before: at as f64 / passes.len() as f64,
+                share: 1.0 / passes.len() as f64,
+                watch: &mut *self.watch,
+            };
+            let work = match pass {
+                Pass::March(level) => run.march(at, level, &mut bands)?,
+                Pass::Trace => run.trace(&mut bands)?,
+                Pass::Color => run.color(&mut bands)?,
+            };
+            let figures = &mut run.frame.passes[at];
+            let cells = match pass {
+                Pass::March(level) => level.cells(plan.size),
+                _ => plan.size,
+            };
+            figures.cells = u64::from(cells[0]) * u64::from(cells[1]);
+            figures.wall_ms = start.elapsed().as_secs_f64() * 1e3;
+            if extras.count && pass != Pass::Color {
+                figures.evaluations = Some(work.0);
+                figures.iterations = Some(work.1);
+            }
+        }
+        let timed = run.frame.passes.iter().filter(|p| p.marches());
+        run.frame.march_ms = timed.map(|p| p.wall_ms).sum();
+        Ok(run.frame)
+    }
+}
+
+/// A render under way.
+struct Run<'a, S> {
+    solid: &'a S,
+    view: View,
+    plan: &'a Plan,
+    extras: Extras,
+    frame: Frame,
+    parents: Option<Proofs>,
+    /// What the rays met, for the colour pass.
+    hits: Vec<Hit>,
+}
+
+/// Evaluations and iterations of a whole pass.
+type Sum = (u64, u64);
+
+impl<S: Solid> Run<'_, S> {
+    fn march(&mut self, at: usize, level: Level, bands: &mut Bands) -> Result<Sum, RenderError> {
+        let cells = level.cells(self.plan.size);
+        let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
+        let one = |cell| {
+            let parent = parent_of(parents, cell);
+            let mut work = Work::default();
+            if parent.ended == Ended::Sky {
+                return (parent, work);
+            }
+            let mut cone = view.view_cone(cell, level.divisor);
+            cone.k *= level.fudge;
+            let (front, ended) = march(solid, &cone, parent.front, level.steps, &mut work);
+            (Proof { front, ended }, work)
+        };
+        let mut proofs = Vec::with_capacity(cells[0] as usize * cells[1] as usize);
+        let mut sum = (0, 0);
+        let layer = &mut self.frame.levels[at];
+        bands.over(cells, one, |i, (proof, work)| {
+            proofs.push(proof);
+            add(&mut sum, work);
+            set(&mut layer.front, i, proof.front as f32);
+            set(&mut layer.state, i, proof.ended as u8);
+            set(&mut layer.work, i, work);
+        })?;
+        self.parents = Some(Proofs {
+            width: cells[0] as usize,
+            cells: proofs,
+        });
+        Ok(sum)
+    }
+
+    fn trace(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
+        let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
+        let limit = self.plan.ray_steps();
+        let one = |pixel| {
+            let parent = parent_of(parents, pixel);
+            let mut work = Work::default();
+            if parent.ended == Ended::Sky {
+                return (Hit::default(), State::Sky, work);
+            }
+            let ray = view.view_ray(pixel);
+            let (hit, state) = trace::trace(solid, &ray, parent.front, limit, &mut work);
+            (hit, state, work)
+        };
+        let mut sum = (0, 0);
+        let (frame, hits) = (&mut self.frame, &mut self.hits);
+        if !self.extras.depth_only {
+            hits.resize(frame.state.len(), Hit::default());
+        }
+        bands.over(self.plan.size, one, |i, (hit, state, work)| {
+            add(&mut sum, work);
+            frame.state[i] = state as u8;
+            if state != State::Sky {
+                frame.depth[i] = hit.t as f32;
+            }
+            set(&mut frame.work, i, work);
+            set(hits, i, hit);
+        })?;
+        self.parents = None;
+        Ok(sum)
+    }
+
+    fn color(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
+        let (solid, view, hits) = (self.solid, &self.view, &self.hits);
+        let light = self.plan.light();
+        let width = self.plan.size[0] as usize;
+        let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
+        let states = &self.frame.state;
+        let one = |pixel: [u32; 2]| {
+            let at = pixel[1] as usize * width + pixel[0] as usize;
+            let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
+            color::color(solid, &light, &view.view_ray(pixel), &hits[at], state)
+        };
+        let undecided = &mut self.frame.undecided;
+        bands.over(self.plan.size, one, |i, pixel| {
+            set(radiance, i, pixel.radiance.as_vec3().to_array());
+            set(normals, i, pixel.normal.as_vec3().to_array());
+            *undecided += usize::from(!pixel.decided);
+        })?;
+        Ok((0, 0))
+    }
+}
+
+/// Sets a value of a layer, where the layer is kept.
+fn set<T>(layer: &mut [T], i: usize, value: T) {
+    if let Some(to) = layer.get_mut(i) {
+        *to = value;
+    }
+}
+
+fn add(sum: &mut Sum, work: Work) {
+    sum.0 += u64::from(work.evaluations);
+    sum.1 += u64::from(work.iterations);
+}
+
+fn parent_of(parents: Option<&Proofs>, [x, y]: [u32; 2]) -> Proof {
+    let start = Proof {
+        front: 0.0,
+        ended: Ended::Stopped,
+    };
+    let at = |p: &Proofs| p.cells[(y as usize / 2) * p.width + x as usize / 2];
+    parents.map_or(start, at)
+}
+
+/// A pass in bands of rows, with a look at the watch after each.
+struct Bands<'a> {
+    pass: String,
+    before: f64,
+    share: f64,
+    watch: Watch<'a>,
+}
+
+impl Bands<'_> {
+    /// Runs a function over all cells of a grid, rows over threads, and keeps what it
+    /// returns, in order.
+    fn over<T: Send>(
+        &mut self,
+        cells: [u32; 2],
+        one: impl Fn([u32; 2]) -> T + Sync,
+        mut keep: impl FnMut(usize, T),
+    ) -> Result<(), RenderError> {
+        let [width, height] = cells.map(|n| n as usize);
+        // A few rows for every thread, however wide they are.
+        let least = 4 * rayon::current_num_threads();
+        let rows = (BAND_CELLS / width.max(1)).max(least);
+        for first in (0..height).step_by(rows) {
+            let last = (first + rows).min(height);
+            let made: Vec<T> = (first..last)
+                .into_par_iter()
+                .flat_map_iter(|y| {
+                    let one = &one;
+                    (0..width).map(move |x| one([x as u32, y as u32]))
+                })
+                .collect();
+            for (i, value) in made.into_iter().enumerate() {
+                keep(first * width + i, value);
+            }
+            let progress = Progress {
+                pass: self.pass.clone(),
+                done: self.before + self.share * last as f64 / height as f64,
+            };
+            if !(self.watch)(&progress) {
+                return Err(RenderError::Cancelled);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Traces every so many pixels of a plan without cones: index, distance and state.
+pub fn sample(plan: &Plan, every: usize) -> Vec<(usize, f64, State)> {
+    plan.scene().run(Sample { plan, every })
+}
+
+struct Sample<'a> {
+    plan: &'a Plan,
+    every: usize,
+}
+
+impl Task for Sample<'_> {
+    type Output = Vec<(usize, f64, State)>;
+
+    fn run<S: Solid>(self, solid: &S) -> Self::Output {
+        let view = self.plan.view();
+        let limit = self.plan.ray_steps();
+        let width = view.size[0] as usize;
+        let pixels = width * view.size[1] as usize;
+        (0..pixels.div_ceil(self.every))
+            .into_par_iter()
+            .map(|n| {
+                let i = n * self.every;
+                let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
+                let work = &mut Work::default();
+                let (hit, state) = trace::trace(solid, &ray, 0.0, limit, work);
+                (i, hit.t, state)
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::{Formula, balls::Balls};
+    use crate::plan::Subject;
+
+    #[test]
+    fn a_render_is_cancelled_within_a_pass() {
+        let mut plan = Plan::new(Subject::Distance {
+            shape: Formula::Balls(Balls::default()),
+            iterations: None,
+        });
+        plan.size = [2 * BAND_CELLS as u32, 96];
+        plan.march.coarsest = 2;
+        let mut told = Vec::new();
+        let ended = render(&plan, Extras::default(), &mut |p: &Progress| {
+            told.push((p.pass.clone(), p.done));
+            p.pass != "trace"
+        });
+        assert!(matches!(ended, Err(RenderError::Cancelled)));
+        let (pass, done) = told.last().expect("told");
+        assert_eq!(pass, "trace");
+        // The second of three passes had begun and was not over.
+        assert!(*done > 0.34 && *done < 0.66, "{done}");
+        assert!(told.is_sorted_by(|a, b| a.1 < b.1), "{told:?}");
+    }
+}

@@ -1,0 +1,147 @@
+//! Which places bound a cone, and how far away they are.
+//! Twin: `wgsl/heightfield/conemap/generate/grid_distance.wgsl`.
+//!
+//! Distances are between places of a grid whose axes may wrap; those between cells are
+//! between their nearest points. All are whole numbers or roots of such, and a node of a
+//! pyramid is never farther away than a place under it.
+//!
+//! A cone that looks to one side only meets a place of a wrapping grid at that one of
+//! its images which lies on that side: going round in the other direction is another
+//! side's concern.
+
+use crate::heightfield::heights::Axis;
+
+/// Which places bound a cone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aim {
+    /// All.
+    Around,
+    /// Those of one quadrant, its borders included: for each axis whether it lies upward.
+    Quadrant([bool; 2]),
+    /// Those of the quarter about one direction, its diagonals included.
+    Side {
+        /// Axis of the direction.
+        axis: usize,
+        /// Whether it lies upward.
+        up: bool,
+    },
+}
+
+impl Aim {
+    /// The four quadrants.
+    pub const QUADRANTS: [Self; 4] = [
+        Self::Quadrant([true, true]),
+        Self::Quadrant([false, true]),
+        Self::Quadrant([true, false]),
+        Self::Quadrant([false, false]),
+    ];
+
+    /// The four sides in the order of a quad map: +x, -x, +y, -y.
+    pub const SIDES: [Self; 4] = [
+        Self::Side { axis: 0, up: true },
+        Self::Side { axis: 0, up: false },
+        Self::Side { axis: 1, up: true },
+        Self::Side { axis: 1, up: false },
+    ];
+}
+
+/// Distances from places of one grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GridDistance {
+    /// The grid.
+    pub axes: [Axis; 2],
+    /// Which places count.
+    pub aim: Aim,
+    /// Whether places are cells, which touch their neighbours.
+    pub cells: bool,
+}
+
+/// A rectangle of places: the lowest and the highest along each axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Places {
+    /// Lowest.
+    pub low: [u32; 2],
+    /// Highest.
+    pub high: [u32; 2],
+}
+
+impl Places {
+    /// A single place.
+    pub fn one(at: [u32; 2]) -> Self {
+        Self { low: at, high: at }
+    }
+}
+
+/// Steps from a place to the nearest of `low..=high` in one direction, going round
+/// where the axis wraps; `None` if there is none.
+pub fn ahead(axis: Axis, up: bool, from: u32, low: u32, high: u32) -> Option<u32> {
+    let last = axis.count - 1;
+    let (from, low, high) = if up {
+        (from, low, high)
+    } else {
+        (last - from, last - high, last - low)
+    };
+    if from <= high {
+        Some(low.saturating_sub(from))
+    } else if axis.wrap {
+        Some(low + axis.count - from)
+    } else {
+        None
+    }
+}
+
+impl GridDistance {
+    /// The squared distance in texels from a place to the nearest of some places that
+    /// count: exact for a single place, not too far for more. `None` if none counts.
+    pub fn squared(&self, from: [u32; 2], to: Places) -> Option<u32> {
+        let [x, y] = match self.aim {
+            Aim::Around => [0, 1].map(|a| self.axes[a].gap(from[a], to.low[a], to.high[a])),
+            Aim::Quadrant(up) => {
+                let gap = |a: usize| ahead(self.axes[a], up[a], from[a], to.low[a], to.high[a]);
+                [gap(0)?, gap(1)?]
+            }
+            Aim::Side { axis, up } => self.beside(axis, up, from, to)?,
+        };
+        let [x, y] = [x, y].map(|n| n.saturating_sub(u32::from(self.cells)));
+        // At most 3 * 8191 along an axis: far from the end of 32 bits.
+        Some(x * x + y * y)
+    }
+
+    /// Steps along and across a side's direction.
+    fn beside(&self, a: usize, up: bool, from: [u32; 2], to: Places) -> Option<[u32; 2]> {
+        let (axis, b) = (self.axes[a], 1 - a);
+        let along = ahead(axis, up, from[a], to.low[a], to.high[a])?;
+        let across = self.axes[b].gap(from[b], to.low[b], to.high[b]);
+        if along >= across {
+            return Some([along, across]);
+        }
+        if to.low == to.high {
+            // The first image, turn by turn, that is within the quarter.
+            let turns = (across - along).div_ceil(axis.count);
+            return axis.wrap.then(|| [along + turns * axis.count, across]);
+        }
+        let farthest = if up {
+            to.high[a].saturating_sub(from[a])
+        } else {
+            from[a].saturating_sub(to.low[a])
+        };
+        (axis.wrap || farthest >= across).then_some([across, across])
+    }
+
+    /// Steps from a place to the nearest place outside a block that contains it; `None`
+    /// if there is none.
+    pub fn outside(&self, from: [u32; 2], block: Places) -> Option<u32> {
+        let mut least = None;
+        for (a, at) in from.into_iter().enumerate() {
+            let (low, high) = (block.low[a], block.high[a]);
+            let Axis { count, wrap } = self.axes[a];
+            if low == 0 && high == count - 1 {
+                continue;
+            }
+            let down = (wrap || low > 0).then(|| at - low + 1);
+            let up = (wrap || high < count - 1).then(|| high - at + 1);
+            least = [least, down, up].into_iter().flatten().min();
+        }
+        least.map(|n| n - u32::from(self.cells))
+    }
+}

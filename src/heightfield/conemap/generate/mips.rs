@@ -1,0 +1,81 @@
+//! Pyramids of cone maps for coarse look-ups: of each node the highest apex and the
+//! narrowest cone under it. Twin: `wgsl/heightfield/conemap/generate/mips.wgsl`.
+//!
+//! A cone whose apex is raised and whose ratio is lowered lies within the one that it
+//! was: so a node's cone, put over any of its places, is inside the cone of that place.
+//! Averages, which graphics hardware makes of its own accord, promise nothing. Levels
+//! halve rounding up, so that no row or column is lost.
+
+use rayon::prelude::*;
+
+use crate::heightfield::conemap::ConeMap;
+
+/// One level.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConeLevel {
+    /// Nodes along each axis.
+    pub size: [u32; 2],
+    /// The highest apex under each node, row by row.
+    pub heights: Vec<f32>,
+    /// The least ratio under each node; of a quad map four after one another.
+    pub ratios: Vec<f64>,
+}
+
+/// All levels over a map of apexes, one height to each place, from the map itself to a
+/// single node; `None` if there are not as many heights as places.
+pub fn mips(heights: &[f32], map: &ConeMap) -> Option<Vec<ConeLevel>> {
+    let places = map.size[0] as usize * map.size[1] as usize;
+    if places == 0 || heights.len() != places || !map.ratios.len().is_multiple_of(places) {
+        return None;
+    }
+    let mut levels = vec![ConeLevel {
+        size: map.size,
+        heights: heights.to_vec(),
+        ratios: map.ratios.clone(),
+    }];
+    while let Some(below) = levels.last()
+        && below.size != [1, 1]
+    {
+        let above = halved(below);
+        levels.push(above);
+    }
+    Some(levels)
+}
+
+fn halved(below: &ConeLevel) -> ConeLevel {
+    let size = below.size.map(|n| n.div_ceil(2));
+    let channels = below.ratios.len() / below.heights.len();
+    let under = |node: usize| {
+        let (x, y) = (node as u32 % size[0], node as u32 / size[0]);
+        [0, 1, 2, 3].map(|i| {
+            let x = (2 * x + i % 2).min(below.size[0] - 1);
+            let y = (2 * y + i / 2).min(below.size[1] - 1);
+            (y * below.size[0] + x) as usize
+        })
+    };
+    let nodes = size[0] as usize * size[1] as usize;
+    let highest = |node: usize| {
+        let all = under(node).map(|i| below.heights[i]);
+        all.into_iter().fold(f32::NEG_INFINITY, f32::max)
+    };
+    let least = |i: usize| {
+        let (node, channel) = (i / channels, i % channels);
+        let all = under(node).map(|i| below.ratios[i * channels + channel]);
+        all.into_iter().fold(f64::INFINITY, f64::min)
+    };
+    ConeLevel {
+        size,
+        heights: (0..nodes).into_par_iter().map(highest).collect(),
+        ratios: (0..nodes * channels).into_par_iter().map(least).collect(),
+    }
+}
+
+/// The largest number of 32 bits that is not more: what a ratio may be stored as.
+pub fn rounded_down(ratio: f64) -> f32 {
+    let nearest = ratio as f32;
+    if f64::from(nearest) > ratio {
+        nearest.next_down()
+    } else {
+        nearest
+    }
+}

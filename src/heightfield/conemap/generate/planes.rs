@@ -1,0 +1,174 @@
+//! Planes that lie above all heights under a node, for smooth fields.
+//!
+//! A maximum says how high a node is, and not where. Along a smooth crest, where many
+//! places cost nearly the same, that leaves a search a doubt of the order of the node's
+//! size, and it descends to as many places as the crest is long. A plane above the
+//! heights leaves a doubt of the order of the size squared (by the curvature), and few
+//! nodes have to be opened.
+//!
+//! That no place under a node can narrow a cone of ratio R means `rise(v) <= |v| / R` for
+//! all steps v to it. With any unit vector n, `|v| >= n.v`; so it is enough that the
+//! linear function `plane(v) - height - n.v / R` is nowhere positive on the node's
+//! rectangle, which its corners decide. n is the direction to the rectangle's centre.
+
+use crate::heightfield::conemap::generate::cost::Cost;
+use crate::heightfield::conemap::generate::grid_distance::{Aim, GridDistance, Places};
+use crate::heightfield::max_mip::MaxMip;
+
+/// How far below 0 the greatest of the linear function must be: rounding is less by far
+/// for coordinates under ten thousand and gradients that heights of 0..=1 can have.
+const SURE: f64 = 1e-9;
+
+/// Coefficients of a plane `g[0] x + g[1] y + rest`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// Rise per texel along x and y.
+    pub g: [f64; 2],
+    /// Height at the grid's origin.
+    pub rest: f64,
+}
+
+impl Plane {
+    /// Its height over a place.
+    pub fn at(&self, p: [u32; 2]) -> f64 {
+        self.rest + self.g[0] * f64::from(p[0]) + self.g[1] * f64::from(p[1])
+    }
+}
+
+/// A plane for every node above the grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planes {
+    /// By level from 1, row by row.
+    levels: Vec<(u32, Vec<Plane>)>,
+}
+
+impl Planes {
+    /// Planes over a pyramid, level by level: the mean gradient of the children, and as
+    /// high as their planes need it at the corners of their rectangles.
+    pub fn new(mip: &MaxMip) -> Self {
+        let mut levels: Vec<(u32, Vec<Plane>)> = Vec::new();
+        for level in 1..mip.levels.len() {
+            let [w, h] = mip.levels[level].size;
+            let nodes = (0..h).flat_map(|y| (0..w).map(move |x| [x, y]));
+            let planes = nodes.map(|node| over_children(mip, &levels, level, node));
+            let planes = planes.collect();
+            levels.push((w, planes));
+        }
+        Self { levels }
+    }
+
+    /// The plane of a node of level 1 or above.
+    pub fn get(&self, level: usize, [x, y]: [u32; 2]) -> Plane {
+        let (width, planes) = &self.levels[level - 1];
+        planes[(y * width + x) as usize]
+    }
+
+    /// Whether no place under a node can cost less than `best`, for a cone of apex
+    /// `height`. `false` where planes cannot tell.
+    pub fn rule_out(
+        &self,
+        (reach, cost): (&GridDistance, Cost),
+        (from, height): ([u32; 2], f64),
+        (level, at): (usize, [u32; 2]),
+        to: Places,
+        best: f64,
+    ) -> bool {
+        let plane = self.get(level, at);
+        let both = (steps(reach, 0, from, to), steps(reach, 1, from, to));
+        let (Some(x), Some(y)) = both else {
+            return false;
+        };
+        let steps = [x, y];
+        let middle = [0, 1].map(|a| 0.5 * (steps[a].low + steps[a].high));
+        let length = middle[0].hypot(middle[1]);
+        if length == 0.0 {
+            return false;
+        }
+        let ratio = cost.ratio(best);
+        let n = middle.map(|m| m / (length * ratio));
+        let mut most = plane.at(from) - height;
+        for a in 0..2 {
+            let slope = plane.g[a] - n[a];
+            let Steps { low, high, turn } = steps[a];
+            most += (slope * low).max(slope * high) + plane.g[a] * turn;
+        }
+        if let Cost::Walk { offset } = cost {
+            // Cells are up to one texel nearer along each axis, and keep clear.
+            most += n[0].abs() + n[1].abs() - offset / ratio;
+        }
+        most < -SURE * (1.0 + 1.0 / ratio)
+    }
+}
+
+/// Steps along an axis from a place to the ends of a rectangle.
+struct Steps {
+    low: f64,
+    high: f64,
+    /// What leads from the rectangle's nearest image, which these steps go to, back to
+    /// itself.
+    turn: f64,
+}
+
+/// The steps to the nearest image of a rectangle; `None` where parts of it are nearer at
+/// another one.
+fn steps(reach: &GridDistance, a: usize, from: [u32; 2], to: Places) -> Option<Steps> {
+    let axis = reach.axes[a];
+    let at = f64::from(from[a]);
+    let (low, high) = (f64::from(to.low[a]) - at, f64::from(to.high[a]) - at);
+    if !axis.wrap {
+        return Some(Steps {
+            low,
+            high,
+            turn: 0.0,
+        });
+    }
+    let n = f64::from(axis.count);
+    let turn = n * (0.5 * (low + high) / n).round();
+    let (low, high) = (low - turn, high - turn);
+    let near = reach.aim == Aim::Around && low >= -0.5 * n && high <= 0.5 * n;
+    near.then_some(Steps { low, high, turn })
+}
+
+fn over_children(
+    mip: &MaxMip,
+    levels: &[(u32, Vec<Plane>)],
+    level: usize,
+    node: [u32; 2],
+) -> Plane {
+    let size = mip.levels[level - 1].size;
+    let all = [0, 1, 2, 3].map(|i| [2 * node[0] + i % 2, 2 * node[1] + i / 2]);
+    let exist = |at: &&[u32; 2]| at[0] < size[0] && at[1] < size[1];
+    let below = |[x, y]: [u32; 2]| {
+        if level == 1 {
+            let rest = f64::from(mip.levels[0].at(x, y));
+            return Plane { g: [0.0; 2], rest };
+        }
+        let (width, planes) = &levels[level - 2];
+        planes[(y * width + x) as usize]
+    };
+    let mut g = [0.0; 2];
+    if level == 1 {
+        // Of a row or column less there is no gradient across it.
+        let z = |i: usize| {
+            f64::from(mip.levels[0].at(all[i][0].min(size[0] - 1), all[i][1].min(size[1] - 1)))
+        };
+        let [a, b, c, d] = [z(0), z(1), z(2), z(3)];
+        g = [0.5 * (b - a + d - c), 0.5 * (c - a + d - b)];
+    } else {
+        let planes: Vec<Plane> = all.iter().filter(exist).map(|at| below(*at)).collect();
+        for p in &planes {
+            g = [0, 1].map(|a| g[a] + p.g[a] / planes.len() as f64);
+        }
+    }
+    let mut plane = Plane { g, rest: 0.0 };
+    let mut rest = f64::NEG_INFINITY;
+    for at in all.iter().filter(exist) {
+        let child = below(*at);
+        let (low, high) = mip.places(level - 1, at[0], at[1]);
+        for p in [low, [high[0], low[1]], [low[0], high[1]], high] {
+            rest = rest.max(child.at(p) - plane.at(p));
+        }
+    }
+    plane.rest = rest;
+    plane
+}

@@ -1,0 +1,125 @@
+//! Where the levels of a pyramid lie in one buffer, and the programs that fill it.
+//! Twins: `wgsl/heightfield/conemap/generate/{pyramid,mips}.wgsl`.
+
+use crate::base::shader::Program;
+use crate::heightfield::conemap::generate::uniform::{MipUniform, PyramidUniform};
+use crate::heightfield::max_mip::{MaxMip, MipLevel};
+use crate::wgsl;
+
+/// The tiles of a pyramid of maxima: level n holds, for each of its nodes, the maxima of
+/// the four children on level n - 1. A grid of a single place has one tile, too.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tiles {
+    /// Values along each axis of the grid.
+    pub size: [u32; 2],
+    /// Nodes along each axis, by level; of level 0 the grid's own.
+    pub levels: Vec<[u32; 2]>,
+    /// Where each level's tiles begin; level 0 has none.
+    pub at: Vec<u32>,
+    /// Tiles altogether.
+    pub count: u32,
+}
+
+impl Tiles {
+    /// The layout over a grid.
+    pub fn new(size: [u32; 2]) -> Self {
+        let mut tiles = Self {
+            size,
+            levels: vec![size],
+            at: vec![0],
+            count: 0,
+        };
+        let mut below = size;
+        loop {
+            below = below.map(|n| n.div_ceil(2));
+            tiles.levels.push(below);
+            tiles.at.push(tiles.count);
+            tiles.count += below[0] * below[1];
+            if below == [1, 1] {
+                return tiles;
+            }
+        }
+    }
+
+    /// What the kernel is told for a level.
+    pub fn uniform(&self, level: usize) -> PyramidUniform {
+        PyramidUniform {
+            below: self.levels[level - 1],
+            size: self.levels[level],
+            below_at: self.at[level - 1],
+            at: self.at[level],
+            first: u32::from(level == 1),
+            pad: 0,
+        }
+    }
+
+    /// The pyramid that tiles hold.
+    pub fn unpack(&self, tiles: &[[f32; 4]]) -> MaxMip {
+        let level = |n: usize| {
+            let [w, h] = self.levels[n];
+            let value = |x: u32, y: u32| {
+                if n + 1 < self.levels.len() {
+                    let row = self.levels[n + 1][0];
+                    let tile = self.at[n + 1] + (y / 2) * row + x / 2;
+                    tiles[tile as usize][(2 * (y % 2) + x % 2) as usize]
+                } else {
+                    // The single node on top has no tile to lie in.
+                    let all = tiles[self.at[n] as usize];
+                    all.into_iter().fold(f32::NEG_INFINITY, f32::max)
+                }
+            };
+            MipLevel {
+                size: [w, h],
+                max: (0..h)
+                    .flat_map(|y| (0..w).map(move |x| (x, y)))
+                    .map(|(x, y)| value(x, y))
+                    .collect(),
+            }
+        };
+        // Over a single place there is a tile, but no level above it.
+        let count = if self.size == [1, 1] {
+            1
+        } else {
+            self.levels.len()
+        };
+        MaxMip {
+            levels: (0..count).map(level).collect(),
+        }
+    }
+}
+
+/// What the kernel of cone mips is told for each level above a grid.
+pub fn mip_levels(size: [u32; 2]) -> Vec<MipUniform> {
+    let mut all = Vec::new();
+    let (mut below, mut below_at) = (size, 0);
+    while below != [1, 1] {
+        let size = below.map(|n| n.div_ceil(2));
+        let at = below_at + below[0] * below[1];
+        all.push(MipUniform {
+            below,
+            size,
+            below_at,
+            at,
+            pad0: 0,
+            pad1: 0,
+        });
+        (below, below_at) = (size, at);
+    }
+    all
+}
+
+/// Makes one level of tiles.
+pub fn tiles_program() -> Program {
+    Program::new(
+        "pyramid",
+        vec![wgsl!("heightfield/conemap/generate/pyramid.wgsl")],
+    )
+}
+
+/// Makes one level of a cone map's pyramid.
+pub fn mips_program() -> Program {
+    Program::new(
+        "mips",
+        vec![wgsl!("heightfield/conemap/generate/mips.wgsl")],
+    )
+}

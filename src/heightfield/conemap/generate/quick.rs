@@ -1,0 +1,182 @@
+//! Quick cone maps, in f64 (Valasek and Ban: Quick Cone Map Generation on the GPU,
+//! Eurographics 2022). Twin: `wgsl/heightfield/conemap/generate/quick.wgsl`.
+//!
+//! At each level of the maxima the eight neighbours of the node that holds the place are
+//! looked at. Together they cover everything: what a level leaves out, the next includes.
+//! The rules differ in where the maximum of a neighbour is taken to be:
+//!
+//! - *naive* (Algorithm 1): at the neighbour's nearest point;
+//! - *improved* (Algorithm 2): at the nearest point of the part that no finer level has
+//!   seen. What was seen is a rectangle, the block of 3 x 3 nodes one level down, so the
+//!   rest of a neighbour is at most four rectangles, and the nearest of them counts. The
+//!   code published with the paper distinguishes cases instead, and is wrong in three;
+//! - *center*: at the neighbour's centre, seen along one axis alone where the neighbour
+//!   lies straight ahead. Not conservative.
+//!
+//! Rectangles are on the unrolled plane, where a neighbour across a wrapping border has
+//! indices below 0 or beyond the last; distances to them are again the shortest on the
+//! wrapping grid, since another image of the same places may be nearer.
+
+use crate::heightfield::conemap::generate::cost::Cost;
+use crate::heightfield::conemap::generate::search::Best;
+use crate::heightfield::heights::Axis;
+use crate::heightfield::max_mip::MaxMip;
+
+/// Where the maximum of a neighbour is taken to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// At its nearest point.
+    Naive,
+    /// At the nearest point that is new.
+    Improved,
+    /// At its centre.
+    Center,
+}
+
+/// Places along an axis of the unrolled plane, both ends included; empty if the second
+/// is less.
+type Interval = [i64; 2];
+
+/// The places under a node of a level along an axis, by the node's index on the unrolled
+/// plane; `None` beyond a border. With it its index on the grid.
+pub fn node(axis: Axis, level: u32, i: i64) -> Option<(u32, Interval)> {
+    let n = i64::from(axis.count);
+    let nodes = ((n - 1) >> level) + 1;
+    if !axis.wrap && !(0..nodes).contains(&i) {
+        return None;
+    }
+    let (turn, own) = (i.div_euclid(nodes), i.rem_euclid(nodes));
+    let low = own << level;
+    let high = (low + (1 << level) - 1).min(n - 1);
+    Some((own as u32, [low + turn * n, high + turn * n]))
+}
+
+/// What the nodes next to the one that holds a place cover along an axis, with it.
+fn block(axis: Axis, level: u32, from: u32) -> Interval {
+    let i = i64::from(from >> level);
+    let end = |i| node(axis, level, i).map(|(_, at)| at);
+    let own = [i64::from(from); 2];
+    let seen = [
+        end(i - 1).or(end(i)).unwrap_or(own)[0],
+        end(i + 1).or(end(i)).unwrap_or(own)[1],
+    ];
+    if axis.wrap && seen[1] - seen[0] + 1 >= i64::from(axis.count) {
+        // All round: nothing along this axis is new.
+        return [i64::MIN, i64::MAX];
+    }
+    seen
+}
+
+/// Steps from a place to the nearest image of an interval.
+pub fn gap(axis: Axis, from: u32, at: Interval) -> u32 {
+    let from = i64::from(from);
+    let n = i64::from(axis.count);
+    let to = |turn: i64| {
+        let ([low, high], from) = (at, from + turn);
+        (low - from).max(from - high).max(0)
+    };
+    let direct = to(0);
+    let steps = if axis.wrap {
+        direct.min(to(n)).min(to(-n))
+    } else {
+        direct
+    };
+    steps as u32
+}
+
+/// The squared distance to the nearest part of a node that has not been seen.
+fn unseen(
+    axes: [Axis; 2],
+    from: [u32; 2],
+    node: [Interval; 2],
+    seen: [Interval; 2],
+) -> Option<u32> {
+    let mut least = None;
+    for a in 0..2 {
+        for side in 0..2 {
+            let mut part = node;
+            if side == 0 {
+                part[a][1] = part[a][1].min(seen[a][0].saturating_sub(1));
+            } else {
+                part[a][0] = part[a][0].max(seen[a][1].saturating_add(1));
+            }
+            if part[a][0] <= part[a][1] {
+                let [x, y] = [0, 1].map(|a| gap(axes[a], from[a], part[a]));
+                let squared = x * x + y * y;
+                least = Some(least.map_or(squared, |l: u32| l.min(squared)));
+            }
+        }
+    }
+    least
+}
+
+/// Twice the distance along an axis to the centre of an interval.
+fn twice_to_center(axis: Axis, from: u32, at: Interval) -> u32 {
+    let n = 2 * i64::from(axis.count);
+    let twice = (at[0] + at[1] - 2 * i64::from(from)).abs();
+    let steps = if axis.wrap {
+        let rest = twice % n;
+        rest.min(n - rest)
+    } else {
+        twice
+    };
+    steps as u32
+}
+
+/// Lowers the best to the least cost of all neighbours of all levels.
+pub fn run(
+    mip: &MaxMip,
+    axes: [Axis; 2],
+    rule: Rule,
+    from: [u32; 2],
+    height: f64,
+    best: &mut Best,
+) {
+    let mut seen = from.map(|i| [i64::from(i); 2]);
+    for (level, maxima) in (0_u32..).zip(&mip.levels) {
+        let own = from.map(|i| i >> level);
+        for i in 0..9 {
+            let step = [i64::from(i % 3) - 1, i64::from(i / 3) - 1];
+            let at = |a: usize| node(axes[a], level, i64::from(own[a]) + step[a]);
+            let (Some((x, along)), Some((y, across))) = (at(0), at(1)) else {
+                continue;
+            };
+            // A node that is its own neighbour holds nothing new.
+            if [x, y] == own {
+                continue;
+            }
+            best.nodes += 1;
+            let rise = f64::from(maxima.at(x, y)) - height;
+            if rise <= 0.0 {
+                continue;
+            }
+            let place = [along, across];
+            // In quarters of a square texel, as centres lie between places.
+            let quarters = match rule {
+                Rule::Naive => {
+                    let [x, y] = [0, 1].map(|a| gap(axes[a], from[a], place[a]));
+                    Some(4 * (x * x + y * y))
+                }
+                Rule::Improved => unseen(axes, from, place, seen).map(|s| 4 * s),
+                Rule::Center => {
+                    let [x, y] = [0, 1].map(|a| {
+                        let straight = step[a] == 0;
+                        let twice = twice_to_center(axes[a], from[a], place[a]);
+                        if straight { 0 } else { twice }
+                    });
+                    Some(x * x + y * y)
+                }
+            };
+            if let Some(quarters) = quarters {
+                best.cost = best.cost.min(cost(quarters, rise));
+            }
+        }
+        seen = [0, 1].map(|a| block(axes[a], level, from[a]));
+    }
+}
+
+/// The cost of a distance in quarters of a square texel. Halving is exact.
+pub fn cost(quarters: u32, rise: f64) -> f64 {
+    let rise = 2.0 * rise;
+    Cost::Cone.of(quarters, rise)
+}

@@ -1,0 +1,274 @@
+//! A relief: heights, what lies between them, how often they repeat, and the apexes of
+//! their cells as a pyramid. What every tracer reads.
+//!
+//! The relief is a solid block: it fills `0 <= z <= surface` over the domain, which is
+//! `cells * tiles` cells large and starts at the origin. Outside the domain there is
+//! nothing, so that its four sides are walls and its underside is a floor.
+//! Twin: `wgsl/heightfield/heights.wgsl`. It does not know rays.
+
+use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
+use thiserror::Error;
+
+use crate::base::shader::Module;
+use crate::heightfield::conemap::ConeMap;
+use crate::heightfield::conemap::generate::mips::rounded_down;
+use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::max_mip::MaxMip;
+use crate::wgsl;
+
+/// Most cells along an axis of the domain, all tiles together: up to there f32 places a
+/// point to 1/256 of a texel.
+pub const MOST_CELLS: u32 = 65_536;
+
+/// Levels that a pyramid can have at most: 8192 cells halve 13 times.
+pub const MOST_LEVELS: usize = 16;
+
+/// Why heights cannot be repeated so.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum HeightSurfaceError {
+    /// No tiles, or more cells than positions can name.
+    #[error(
+        "{tiles} tiles of {cells} cells along axis {axis}: one tile or more, \
+         and {MOST_CELLS} cells at most"
+    )]
+    Tiles {
+        /// 0 for x, 1 for y.
+        axis: usize,
+        /// Cells of one tile.
+        cells: u32,
+        /// Tiles asked for.
+        tiles: u32,
+    },
+    /// An axis that ends cannot repeat: its last cell does not fit its first, and cones
+    /// made without the neighbour know nothing of it.
+    #[error("axis {0} has several tiles but does not wrap")]
+    Unwrapped(usize),
+}
+
+/// What the tracers read, as WGSL reads it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct ReliefUniform {
+    /// Samples along each axis.
+    pub samples: [i32; 2],
+    /// Cells of one tile along each axis.
+    pub cells: [i32; 2],
+    /// Cells of all tiles along each axis.
+    pub domain: [i32; 2],
+    /// 1 for an axis that wraps.
+    pub wrap: [u32; 2],
+    /// Places of the cone map along each axis.
+    pub places: [i32; 2],
+    /// Room that the walk's cones leave, in texels.
+    pub offset: f32,
+    /// Factor on cone steps.
+    pub scale: f32,
+    /// Levels of the pyramid of maxima.
+    pub levels: u32,
+    /// Steps that a tracer has, 0 for as many as the caller allows.
+    pub steps: u32,
+    /// Distance at which a tracer has half of its steps, or a texel is as wide as a pixel to
+    /// it; 0 for never.
+    pub lod: f32,
+    /// Rounds of refinement.
+    pub rounds: u32,
+    /// Where each level of the pyramid starts in its buffer.
+    pub starts: [u32; MOST_LEVELS],
+}
+
+/// The numbers of a tracer that the uniform carries for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Numbers {
+    /// Factor on cone steps.
+    pub scale: f64,
+    /// Steps that it has, 0 for no limit of its own.
+    pub steps: u32,
+    /// Distance along the ray at which it has half as many, or a texel is as wide as a pixel;
+    /// 0 for never.
+    pub lod: f64,
+    /// Rounds of refinement.
+    pub rounds: u32,
+}
+
+impl Default for Numbers {
+    fn default() -> Self {
+        Self {
+            scale: 1.0,
+            steps: 0,
+            lod: 0.0,
+            rounds: 0,
+        }
+    }
+}
+
+/// A node of the pyramid of maxima, over cells of the domain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node {
+    /// Column and row in its level.
+    pub place: [u32; 2],
+    /// The highest point under it.
+    pub maximum: f64,
+    /// Its first cell along each axis.
+    pub low: [i32; 2],
+    /// The cell after its last one.
+    pub high: [i32; 2],
+}
+
+/// A solid block with heights on top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightSurface {
+    heights: Heights,
+    patches: Patches,
+    cells: [u32; 2],
+    domain: [i32; 2],
+    maxima: MaxMip,
+}
+
+impl HeightSurface {
+    /// A block of `tiles` repetitions along each axis.
+    ///
+    /// # Errors
+    /// No tiles, too many, or several along an axis that does not wrap.
+    pub fn new(
+        heights: Heights,
+        patches: Patches,
+        tiles: [u32; 2],
+    ) -> Result<Self, HeightSurfaceError> {
+        let cells = heights.cells(patches);
+        for axis in 0..2 {
+            let (cells, tiles) = (cells[axis], tiles[axis]);
+            if tiles == 0 || u64::from(cells) * u64::from(tiles) > u64::from(MOST_CELLS) {
+                return Err(HeightSurfaceError::Tiles { axis, cells, tiles });
+            }
+            if tiles > 1 && !heights.wrap()[axis] {
+                return Err(HeightSurfaceError::Unwrapped(axis));
+            }
+        }
+        Ok(Self {
+            domain: [0, 1].map(|a| (cells[a] * tiles[a]) as i32),
+            maxima: MaxMip::new(cells, heights.apexes(patches)),
+            heights,
+            patches,
+            cells,
+        })
+    }
+
+    /// The heights.
+    pub fn heights(&self) -> &Heights {
+        &self.heights
+    }
+
+    /// What lies between the samples.
+    pub fn patches(&self) -> Patches {
+        self.patches
+    }
+
+    /// Cells of one tile along each axis.
+    pub fn cells(&self) -> [u32; 2] {
+        self.cells
+    }
+
+    /// Cells of all tiles along each axis: how far the block reaches, in texels.
+    pub fn domain(&self) -> [i32; 2] {
+        self.domain
+    }
+
+    /// Apexes of the cells of one tile, and their maxima.
+    pub fn maxima(&self) -> &MaxMip {
+        &self.maxima
+    }
+
+    /// The cell of the first tile that a cell of the domain repeats.
+    pub fn tile_cell(&self, cell: [i32; 2]) -> [u32; 2] {
+        [0, 1].map(|a| cell[a].max(0) as u32 % self.cells[a])
+    }
+
+    /// The highest point of a cell of the domain.
+    pub fn apex(&self, cell: [i32; 2]) -> f64 {
+        let [x, y] = self.tile_cell(cell);
+        f64::from(self.maxima.levels[0].at(x, y))
+    }
+
+    /// The node of a level that a cell of the domain lies under. Each tile begins nodes of
+    /// its own.
+    pub fn node(&self, cell: [i32; 2], level: u32) -> Node {
+        let local = self.tile_cell(cell);
+        let place = local.map(|i| i >> level);
+        let maximum = self.maxima.levels[level as usize].at(place[0], place[1]);
+        let tile = [0, 1].map(|a| cell[a] - local[a] as i32);
+        Node {
+            place,
+            maximum: f64::from(maximum),
+            low: [0, 1].map(|a| tile[a] + (place[a] << level) as i32),
+            high: [0, 1].map(|a| {
+                let end = ((place[a] + 1) << level).min(self.cells[a]);
+                tile[a] + end as i32
+            }),
+        }
+    }
+
+    /// Corner heights of a cell of the domain: (0, 0), (1, 0), (0, 1), (1, 1).
+    pub fn corners(&self, cell: [i32; 2]) -> [f64; 4] {
+        let [x, y] = self.tile_cell(cell).map(i64::from);
+        self.heights.corners(self.patches, x, y)
+    }
+
+    /// Height of the surface in a cell of the domain at (u, v) in 0..=1.
+    pub fn height(&self, cell: [i32; 2], u: f64, v: f64) -> f64 {
+        let c = self.corners(cell);
+        let low = c[0] + u * (c[1] - c[0]);
+        let high = c[2] + u * (c[3] - c[2]);
+        low + v * (high - low)
+    }
+
+    /// The number of a cell of the domain: of its tile's cell, row by row.
+    pub fn number(&self, cell: [i32; 2]) -> u32 {
+        let [x, y] = self.tile_cell(cell);
+        y * self.cells[0] + x
+    }
+
+    /// The WGSL that reads a relief, and what every tracer of one shares.
+    pub fn modules(&self) -> Vec<Module> {
+        let boxes = f64::from(u8::from(self.patches == Patches::Boxes));
+        vec![
+            wgsl!("heightfield/heights.wgsl", "RELIEF_BOXES" = boxes),
+            wgsl!("heightfield/max_mip.wgsl"),
+            wgsl!("heightfield/patch.wgsl"),
+            wgsl!("heightfield/tracer/course.wgsl"),
+        ]
+    }
+
+    /// Bytes to bind by the names of the WGSL variables; tracers without a cone map give
+    /// none.
+    pub fn buffers(&self, map: Option<&ConeMap>, numbers: Numbers) -> Vec<(&'static str, Vec<u8>)> {
+        let mut starts = [0; MOST_LEVELS];
+        let mut maxima: Vec<f32> = Vec::new();
+        for (start, level) in starts.iter_mut().zip(&self.maxima.levels) {
+            *start = maxima.len() as u32;
+            maxima.extend(&level.max);
+        }
+        let uniform = ReliefUniform {
+            samples: self.heights.size().map(|n| n as i32),
+            cells: self.cells.map(|n| n as i32),
+            domain: self.domain,
+            wrap: self.heights.wrap().map(u32::from),
+            places: map.map_or([1, 1], |m| m.size.map(|n| n as i32)),
+            offset: map.map_or(0.0, |m| m.offset as f32),
+            scale: numbers.scale as f32,
+            levels: self.maxima.levels.len() as u32,
+            steps: numbers.steps,
+            lod: numbers.lod as f32,
+            rounds: numbers.rounds,
+            starts,
+        };
+        let ratios: Vec<f32> = map.map_or(vec![0.0], |m| {
+            m.ratios.iter().map(|r| rounded_down(*r)).collect()
+        });
+        vec![
+            ("relief_parameters", bytes_of(&uniform).to_vec()),
+            ("heights", cast_slice(self.heights.data()).to_vec()),
+            ("ratios", cast_slice(&ratios).to_vec()),
+            ("maxima", cast_slice(&maxima).to_vec()),
+        ]
+    }
+}

@@ -1,0 +1,148 @@
+//! Fields of the program's own as one word: `fbm`, `fbm:512x256`, or
+//! `ridges:512x512,seed=7,power=2.2`.
+//!
+//! A colon after the name, then in any order and by commas: the size, `seed=N` and
+//! `power=P`. What is left out is 256x256, 1 and 2.6.
+
+use std::fmt;
+
+use crate::heightfield::heights::MOST_SAMPLES;
+use crate::heightfield::pattern::Pattern;
+
+/// A field with everything that decides its heights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatternSpec {
+    /// The formula.
+    pub field: Pattern,
+    /// Samples along each axis.
+    pub size: [u32; 2],
+    /// Seed of its random numbers.
+    pub seed: u32,
+    /// Exponent by which the power of `fbm` and `ridges` falls with the wave number.
+    pub power: f64,
+}
+
+/// Exponents that make a picture: from white noise to one smooth hill.
+const POWERS: std::ops::RangeInclusive<f64> = 0.0..=8.0;
+
+impl PatternSpec {
+    /// A field as its name alone means it.
+    pub fn new(field: Pattern) -> Self {
+        Self {
+            field,
+            size: [256, 256],
+            seed: 1,
+            // Rough terrain.
+            power: 2.6,
+        }
+    }
+
+    /// Reads the word; `None` if it does not begin with the name of a field.
+    ///
+    /// # Errors
+    /// What stands behind the colon is wrong; in words.
+    pub fn read(text: &str) -> Option<Result<Self, String>> {
+        let (name, rest) = match text.split_once(':') {
+            Some((name, rest)) => (name, Some(rest)),
+            None => (text, None),
+        };
+        let named = Self::new(Pattern::named(name)?);
+        Some(rest.map_or(Ok(named), |rest| named.with(rest)))
+    }
+
+    fn with(mut self, rest: &str) -> Result<Self, String> {
+        for part in rest.split(',') {
+            match part.split_once('=') {
+                Some(("seed", n)) => {
+                    let why = || format!("seed={n} is no whole number from 0 to {}", u32::MAX);
+                    self.seed = whole(n).ok_or_else(why)?;
+                }
+                Some(("power", p)) => {
+                    let read: Option<f64> = p.parse().ok().filter(|p| POWERS.contains(p));
+                    let (low, high) = (POWERS.start(), POWERS.end());
+                    let why = || format!("power={p} is no number from {low} to {high}");
+                    self.power = read.ok_or_else(why)?;
+                }
+                None if part.contains(['x', 'X']) => self.size = read_size(part)?,
+                _ => {
+                    return Err(format!(
+                        "`{part}` is no size, seed or power, like {}:512x512,seed=7,power=2.2",
+                        self.field.name()
+                    ));
+                }
+            }
+        }
+        Ok(self)
+    }
+}
+
+impl fmt::Display for PatternSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [w, h] = self.size;
+        write!(f, "{}:{w}x{h},seed={}", self.field.name(), self.seed)?;
+        match self.field {
+            Pattern::Fbm | Pattern::Ridges => write!(f, ",power={}", self.power),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A number of digits alone.
+fn whole(text: &str) -> Option<u32> {
+    let digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    text.parse().ok().filter(|_| digits)
+}
+
+/// Reads `512x256` as samples along each axis.
+///
+/// # Errors
+/// In words: another form, or a side out of range.
+pub(crate) fn read_size(text: &str) -> Result<[u32; 2], String> {
+    let side = |s: &str| whole(s).filter(|n| (1..=MOST_SAMPLES).contains(n));
+    let (w, h) = text.split_once(['x', 'X']).unwrap_or_default();
+    match (side(w), side(h)) {
+        (Some(w), Some(h)) => Ok([w, h]),
+        _ => Err(format!(
+            "`{text}` is no size: width x height, each from 1 to {MOST_SAMPLES}, like 512x256"
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_read_as_they_are_written() {
+        let read = |text| {
+            PatternSpec::read(text)
+                .expect("a field")
+                .expect("a good one")
+        };
+        assert_eq!(read("fbm"), PatternSpec::new(Pattern::Fbm));
+        let all = read("ridges:12x7,seed=3,power=1.5");
+        assert_eq!((all.size, all.seed, all.power), ([12, 7], 3, 1.5));
+        let written = all.to_string();
+        assert_eq!(read(&written), all);
+        assert_eq!(read("sine:seed=4").size, [256, 256]);
+        assert!(PatternSpec::read("fmb:1x1").is_none());
+        for bad in [
+            "",
+            "0x5",
+            "5x",
+            "9000x1",
+            "seed=",
+            "seed=-1",
+            "power=9",
+            "power=nan",
+            "size=4",
+            "7",
+        ] {
+            let text = format!("fbm:{bad}");
+            assert!(
+                PatternSpec::read(&text).is_some_and(|r| r.is_err()),
+                "{text}"
+            );
+        }
+    }
+}

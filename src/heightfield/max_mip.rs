@@ -1,0 +1,70 @@
+//! Pyramids of maxima over a grid (Tevs, Ihrke, Seidel: Maximum Mipmaps, I3D 2008), of
+//! any size: each level halves the one below rounding up, so that no row or column is
+//! lost. Twin: `wgsl/heightfield/max_mip.wgsl`.
+
+/// Values of one level, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MipLevel {
+    /// Nodes along each axis.
+    pub size: [u32; 2],
+    /// The largest value under each node.
+    pub max: Vec<f32>,
+}
+
+impl MipLevel {
+    /// The value of a node.
+    pub fn at(&self, x: u32, y: u32) -> f32 {
+        self.max[(y * self.size[0] + x) as usize]
+    }
+}
+
+/// Maxima from the grid itself (level 0) to one single node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaxMip {
+    /// Fine to coarse. A node (x, y) of level n covers the places `x * 2^n` up to
+    /// `(x + 1) * 2^n - 1` of the grid, as far as there are any.
+    pub levels: Vec<MipLevel>,
+}
+
+impl MaxMip {
+    /// The pyramid over a grid of at least one value.
+    pub fn new(size: [u32; 2], values: Vec<f32>) -> Self {
+        debug_assert_eq!(values.len(), size[0] as usize * size[1] as usize);
+        let mut levels = vec![MipLevel { size, max: values }];
+        while let Some(below) = levels.last()
+            && below.size != [1, 1]
+        {
+            let above = Self::halved(below);
+            levels.push(above);
+        }
+        Self { levels }
+    }
+
+    fn halved(below: &MipLevel) -> MipLevel {
+        let size = below.size.map(|n| n.div_ceil(2));
+        let last = below.size.map(|n| n - 1);
+        let over = |x: u32, y: u32| {
+            let (right, down) = ((2 * x + 1).min(last[0]), (2 * y + 1).min(last[1]));
+            let top = below.at(2 * x, 2 * y).max(below.at(right, 2 * y));
+            top.max(below.at(2 * x, down)).max(below.at(right, down))
+        };
+        let max = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| over(x, y)));
+        MipLevel {
+            size,
+            max: max.collect(),
+        }
+    }
+
+    /// The places `low..=high` of the grid under a node.
+    pub fn places(&self, level: usize, x: u32, y: u32) -> ([u32; 2], [u32; 2]) {
+        let grid = self.levels[0].size;
+        let low = [x << level, y << level];
+        let high = [0, 1].map(|a| (low[a] + (1 << level) - 1).min(grid[a] - 1));
+        (low, high)
+    }
+
+    /// The largest value of all.
+    pub fn top(&self) -> f32 {
+        self.levels[self.levels.len() - 1].max[0]
+    }
+}

@@ -1,0 +1,324 @@
+//! The truth that pictures are compared with (docs/method.md, 5), and where it is kept.
+//!
+//! Truths are kept in the user's cache folder, under a hash of everything that decides
+//! them: the plan's text, the heights of files that it names, and this very program. A program that was built anew, or a plan
+//! with another digit, finds nothing there; so does a file that was cut or changed.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use bytemuck::{cast_slice, pod_collect_to_vec};
+use sha2::{Digest, Sha256};
+
+use crate::base::work::State;
+use crate::cpu;
+use crate::gpu::render::{RenderError, Watch};
+use crate::picture::frame::Frame;
+use crate::picture::{self, Place};
+use crate::plan::march::{Marching, Mode};
+use crate::plan::{Extras, Plan, Subject};
+use crate::preset;
+
+/// The reference frame of a plan, and how sure it is.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// Depth and states.
+    pub frame: Frame,
+    /// Factor on the estimate's steps.
+    pub stride: f64,
+    /// Share of sampled pixels that move by over 2 footprints, or change state, when
+    /// the stride is halved.
+    pub moved: f64,
+}
+
+/// Share of moved pixels under which the truth counts as converged.
+const CONVERGED: f64 = 5e-5;
+/// The last check looks at every so many pixels.
+const SAMPLE: usize = 16;
+/// The stride is not halved below this: a picture that still moves is reported so.
+const LEAST_STRIDE: f64 = 1.0 / 160.0;
+
+/// The plan that a plan's truth is rendered from: everything that only says how its work
+/// is spent has one value, so that all ways of spending it are held to the same truth.
+fn asked(plan: &Plan) -> Plan {
+    let mut asked = plan.clone();
+    if let Subject::Heightfield(shape) = &mut asked.subject {
+        *shape = shape.exact();
+    }
+    asked.march = Marching {
+        mode: Mode::Truth,
+        detail: plan.march.detail,
+        // Outside the bounds the field is its distance to them: nothing is lost by
+        // starting where a ray enters, and much time is saved.
+        clip: Some(true),
+        ..Marching::default()
+    };
+    asked
+}
+
+/// Renders a plan's truth in f64: no cones, no relaxation, the same hit rule, steps of
+/// a small factor times the estimate, halved from 0.1 until the picture stands.
+///
+/// # Errors
+/// Only [`RenderError::Cancelled`], when `watch` returns `false`.
+pub fn truth(plan: &Plan, watch: Watch<'_>) -> Result<Truth, RenderError> {
+    let mut plan = asked(plan);
+    let view = plan.view();
+    let width = plan.size[0] as usize;
+    let mut stride = 0.1;
+    loop {
+        plan.march.stride = Some(stride);
+        let frame = cpu::render(&plan, Extras::default(), watch)?;
+        let mut finer = plan.clone();
+        finer.march.stride = Some(0.5 * stride);
+        let sample = cpu::sample(&finer, SAMPLE);
+        let mut moved = 0;
+        for &(i, t, state) in &sample {
+            let before = f64::from(frame.depth[i]);
+            let grain = view
+                .view_ray([(i % width) as u32, (i / width) as u32])
+                .grain;
+            let far = state == State::Hit && (before - t).abs() > 2.0 * grain * t;
+            moved += u32::from(frame.state[i] != state as u8 || far);
+        }
+        let moved = f64::from(moved) / sample.len().max(1) as f64;
+        if moved < CONVERGED || stride <= LEAST_STRIDE {
+            return Ok(Truth {
+                frame,
+                stride,
+                moved,
+            });
+        }
+        stride *= 0.5;
+    }
+}
+
+/// Truths that are kept; the oldest go first.
+const MOST_KEPT: usize = 64;
+
+/// A folder of truths.
+#[derive(Clone, Debug)]
+pub struct Cache {
+    folder: PathBuf,
+    program: [u8; 32],
+}
+
+impl Cache {
+    /// The user's cache; `None` where there is none, or where this program cannot read
+    /// itself.
+    pub fn user() -> Option<Self> {
+        let set = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
+        let base = set("XDG_CACHE_HOME")
+            .or_else(|| set("LOCALAPPDATA"))
+            .map(PathBuf::from)
+            .or_else(|| set("HOME").map(|home| Path::new(&home).join(".cache")))?;
+        Self::at(base.join("conemarch"))
+    }
+
+    /// A cache in a folder, which need not exist yet.
+    pub fn at(folder: PathBuf) -> Option<Self> {
+        let program = fs::read(std::env::current_exe().ok()?).ok()?;
+        Some(Self {
+            folder,
+            program: Sha256::digest(program).into(),
+        })
+    }
+
+    fn file(&self, plan: &Plan) -> PathBuf {
+        let mut hash = Sha256::new();
+        hash.update(self.program);
+        hash.update(preset::write(&asked(plan)));
+        hash.update(plan.contents());
+        let name: String = hash.finalize().iter().map(|b| format!("{b:02x}")).collect();
+        self.folder.join(format!("truth-{name}"))
+    }
+
+    /// The kept truth of a plan, if there is one and it is whole.
+    pub fn find(&self, plan: &Plan) -> Option<Truth> {
+        unpack(&fs::read(self.file(plan)).ok()?, plan.size)
+    }
+
+    /// Keeps a truth. A cache that cannot be written is no reason to fail.
+    pub fn keep(&self, plan: &Plan, truth: &Truth) {
+        let write = || {
+            let mut place = Place::prepare(&self.file(plan))?;
+            place.write_all(&pack(truth))?;
+            picture::commit(vec![place])
+        };
+        if fs::create_dir_all(&self.folder).is_ok() && write().is_ok() {
+            self.forget();
+        }
+    }
+
+    /// Removes the oldest truths.
+    fn forget(&self) {
+        let Ok(entries) = fs::read_dir(&self.folder) else {
+            return;
+        };
+        let mut all: Vec<_> = entries
+            .flatten()
+            .filter(|e| e.file_name().to_string_lossy().starts_with("truth-"))
+            .filter_map(|e| Some((e.metadata().ok()?.modified().ok()?, e.path())))
+            .collect();
+        all.sort();
+        for (_, path) in all.iter().rev().skip(MOST_KEPT) {
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+/// The truth of a plan, from the cache or rendered now and kept; whether it was there.
+///
+/// # Errors
+/// Only [`RenderError::Cancelled`], when `watch` returns `false`.
+pub fn cached(
+    cache: Option<&Cache>,
+    plan: &Plan,
+    watch: Watch<'_>,
+) -> Result<(Truth, bool), RenderError> {
+    if let Some(found) = cache.and_then(|c| c.find(plan)) {
+        return Ok((found, true));
+    }
+    let made = truth(plan, watch)?;
+    if let Some(cache) = cache {
+        cache.keep(plan, &made);
+    }
+    Ok((made, false))
+}
+
+/// Stride and share moved, depth, states, colours, and a hash of it all.
+fn pack(truth: &Truth) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    bytes.extend(truth.stride.to_le_bytes());
+    bytes.extend(truth.moved.to_le_bytes());
+    bytes.extend(cast_slice::<f32, u8>(&truth.frame.depth));
+    bytes.extend(cast_slice::<[f32; 3], u8>(&truth.frame.radiance));
+    bytes.extend(&truth.frame.state);
+    let hash = Sha256::digest(&bytes);
+    bytes.extend(hash);
+    bytes
+}
+
+fn unpack(bytes: &[u8], size: [u32; 2]) -> Option<Truth> {
+    let (content, hash) = bytes.split_at_checked(bytes.len().checked_sub(32)?)?;
+    if Sha256::digest(content).as_slice() != hash {
+        return None;
+    }
+    let pixels = size[0] as usize * size[1] as usize;
+    let mut rest = content;
+    let mut take = |n: usize| {
+        let (part, after) = rest.split_at_checked(n)?;
+        rest = after;
+        Some(part)
+    };
+    let stride = f64::from_le_bytes(take(8)?.try_into().ok()?);
+    let moved = f64::from_le_bytes(take(8)?.try_into().ok()?);
+    let depth = pod_collect_to_vec(take(4 * pixels)?);
+    let radiance = pod_collect_to_vec(take(12 * pixels)?);
+    let state = take(pixels)?.to_vec();
+    Some(Truth {
+        frame: Frame {
+            size,
+            depth,
+            radiance,
+            state,
+            ..Frame::default()
+        },
+        stride,
+        moved,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::{Formula, balls::Balls};
+    use crate::heightfield::settings::HeightfieldSettings;
+    use crate::plan::Subject;
+
+    fn plan() -> Plan {
+        let mut plan = Plan::new(Subject::Distance {
+            shape: Formula::Balls(Balls::default()),
+            iterations: None,
+        });
+        plan.size = [20, 15];
+        plan
+    }
+
+    #[test]
+    fn a_truth_of_heights_is_found_while_its_file_is_the_same() {
+        let name = format!("conemarch-heights-{}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        let cache = Cache::at(folder.join("kept")).expect("this program can be read");
+        fs::create_dir_all(&folder).expect("a folder");
+        let file = folder.join("slope-4x3.raw");
+        let plan = |heights: [f32; 12]| {
+            fs::write(&file, cast_slice::<f32, u8>(&heights)).expect("can be written");
+            let mut shape = HeightfieldSettings::default();
+            shape.source.field = file.to_string_lossy().into_owned();
+            let mut plan = Plan::new(Subject::Heightfield(shape));
+            plan.size = [20, 15];
+            plan
+        };
+        let slope: [f32; 12] = std::array::from_fn(|i| i as f32 / 12.0);
+        let first = plan(slope);
+        let (_, before) = cached(Some(&cache), &first, &mut |_| true).expect("made");
+        assert!(!before && cache.find(&plan(slope)).is_some());
+        // By whom rays are traced does not matter.
+        let mut other = plan(slope);
+        let Subject::Heightfield(shape) = &mut other.subject else {
+            unreachable!("made above");
+        };
+        shape.tracing.tracer = "csm-fixed";
+        assert!(cache.find(&other).is_some());
+        // One height of the file does, with the same text of the plan.
+        let mut bent = slope;
+        bent[5] += 1e-6;
+        let second = plan(bent);
+        assert_eq!(preset::write(&first), preset::write(&second));
+        assert!(cache.find(&second).is_none());
+        fs::remove_dir_all(&folder).expect("made above");
+    }
+
+    #[test]
+    fn a_kept_truth_is_found_for_its_own_plan_only() {
+        let folder = std::env::temp_dir().join(format!("conemarch-truths-{}", std::process::id()));
+        let cache = Cache::at(folder.clone()).expect("this program can be read");
+        let (made, before) = cached(Some(&cache), &plan(), &mut |_| true).expect("made");
+        let (found, after) = cached(Some(&cache), &plan(), &mut |_| true).expect("found");
+        assert!(!before && after);
+        assert!(made.stride <= 0.1 && made.moved < CONVERGED);
+        assert_eq!(found.frame.depth, made.frame.depth);
+        assert_eq!(found.frame.state, made.frame.state);
+        assert_eq!(found.frame.radiance, made.frame.radiance);
+        assert_eq!((found.stride, found.moved), (made.stride, made.moved));
+        // How the work is spent does not matter, what is asked for does.
+        let mut other = plan();
+        other.march.shell = 0.7;
+        assert!(cache.find(&other).is_some());
+        let changes: [fn(&mut Plan); 4] = [
+            |p| p.march.detail = 2.0,
+            |p| p.size = [15, 20],
+            |p| p.camera.fov += 1e-9,
+            |p| p.look.key += 0.1,
+        ];
+        for change in changes {
+            let mut other = plan();
+            change(&mut other);
+            assert!(cache.find(&other).is_none());
+        }
+        let mut rebuilt = cache.clone();
+        rebuilt.program[7] ^= 1;
+        assert!(rebuilt.find(&plan()).is_none());
+        // A file that was cut, or changed in one bit, is not believed.
+        let file = cache.file(&plan());
+        let whole = fs::read(&file).expect("kept");
+        let mut changed = whole.clone();
+        changed[40] ^= 1;
+        for wrong in [&whole[..whole.len() - 1], &changed[..], &[]] {
+            fs::write(&file, wrong).expect("can be written");
+            assert!(cache.find(&plan()).is_none());
+        }
+        fs::remove_dir_all(folder).expect("can be removed");
+    }
+}

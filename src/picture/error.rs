@@ -1,0 +1,47 @@
+//! Why a picture could not be written.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// What can go wrong between a Frame and a file.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// The file cannot be made or written.
+    #[error("{}: {why}", .path.display())]
+    File {
+        /// Its path.
+        path: PathBuf,
+        /// What is wrong and what would do.
+        why: String,
+    },
+    /// The picture could not be encoded.
+    #[error("the picture could not be encoded as {format}: {why}")]
+    Encode {
+        /// `PNG` or `EXR`.
+        format: &'static str,
+        /// What the encoder said.
+        why: String,
+    },
+}
+
+impl OutputError {
+    pub(crate) fn file(path: &Path, why: impl Into<String>) -> Self {
+        Self::File {
+            path: path.to_path_buf(),
+            why: why.into(),
+        }
+    }
+
+    /// A failure while content is written, which is a full disk mostly.
+    pub(crate) fn full(path: &Path, e: &io::Error) -> Self {
+        let would = "free some space, or name a file elsewhere";
+        Self::file(path, format!("cannot be written: {e}; {would}"))
+    }
+
+    /// A failure of the file system while doing something.
+    pub(crate) fn io(path: &Path, doing: &str, e: &io::Error) -> Self {
+        Self::file(path, format!("{doing}: {e}"))
+    }
+}

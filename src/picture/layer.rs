@@ -1,0 +1,308 @@
+//! One layer of a Frame as display values: what a picture of it shows.
+//!
+//! Colour is tone-mapped; every other layer has a mapping of its own, said at
+//! [`Layer`]. Values are encoded for display, 0..1, so that a file only has to round.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::base::srgb::srgb;
+use crate::base::view::View;
+use crate::base::work::State;
+use crate::measure::compare::errors;
+use crate::pass::look::Light;
+use crate::picture::frame::Frame;
+use crate::plan::{Extras, Plan};
+
+/// What a picture can show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layer {
+    /// Light: exposure, tone curve, sRGB.
+    #[default]
+    Color,
+    /// Distance in grey: the nearest pixel black, the farthest 95 % white, linear
+    /// between; sky white.
+    Depth,
+    /// Unit normals in the world, x y z as red green blue, -1..1 to 0..1; sky mid grey.
+    Normal,
+    /// Positions in the world, x y z as red green blue, each from its least to its
+    /// greatest value in the picture; sky black.
+    Position,
+    /// Evaluations that led to each pixel: dark violet none, through green, to yellow
+    /// at the 99th percentile and above.
+    Steps,
+    /// Sky dark blue, hit light grey, unconverged magenta.
+    State,
+    /// Depth error against the truth: light grey none, through orange to dark red at 8
+    /// footprints too deep and for holes, through blue to dark blue at 8 too near and for
+    /// false hits; unconverged magenta.
+    Error,
+}
+
+impl Layer {
+    /// What a render must keep for the layer, and what it may leave out.
+    pub fn extras(self) -> Extras {
+        Extras {
+            count: self == Self::Steps,
+            normals: self == Self::Normal,
+            // The colour pass makes colours and normals.
+            depth_only: !matches!(self, Self::Color | Self::Normal),
+            ..Extras::default()
+        }
+    }
+
+    /// Whether red, green and blue are always the same.
+    pub fn is_grey(self) -> bool {
+        self == Self::Depth
+    }
+}
+
+/// A layer of a frame, ready to be asked for pixels.
+pub struct Shades<'a> {
+    layer: Layer,
+    frame: &'a Frame,
+    light: Light,
+    position: Vec<[f32; 3]>,
+    steps: Vec<f32>,
+    error: Vec<f64>,
+    /// What is black and what is white.
+    low: DVec3,
+    high: DVec3,
+}
+
+/// Stops of the heat map: viridis at even distances (van der Walt and Smith 2015),
+/// sRGB.
+const HEAT: [DVec3; 6] = [
+    DVec3::new(0.267, 0.005, 0.329),
+    DVec3::new(0.254, 0.265, 0.530),
+    DVec3::new(0.164, 0.471, 0.558),
+    DVec3::new(0.135, 0.659, 0.518),
+    DVec3::new(0.478, 0.821, 0.319),
+    DVec3::new(0.993, 0.906, 0.144),
+];
+
+/// Farthest grey of depth: sky stays apart from it.
+const FARTHEST: f64 = 0.95;
+
+/// Error in footprints that is as dark as any larger one.
+const MOST_APART: f64 = 8.0;
+const TOO_DEEP: [DVec3; 2] = [DVec3::new(0.90, 0.55, 0.10), DVec3::new(0.55, 0.0, 0.05)];
+const TOO_NEAR: [DVec3; 2] = [DVec3::new(0.25, 0.60, 0.90), DVec3::new(0.05, 0.10, 0.50)];
+
+const SKY: DVec3 = DVec3::new(0.09, 0.15, 0.30);
+const HIT: DVec3 = DVec3::new(0.82, 0.82, 0.82);
+const UNCONVERGED: DVec3 = DVec3::new(1.0, 0.0, 1.0);
+
+impl<'a> Shades<'a> {
+    /// A layer of a frame that was rendered with [`Layer::extras`] from a plan.
+    pub fn new(layer: Layer, frame: &'a Frame, plan: &Plan) -> Self {
+        let mut shades = Self {
+            layer,
+            frame,
+            light: plan.light(),
+            position: Vec::new(),
+            steps: Vec::new(),
+            error: Vec::new(),
+            low: DVec3::ZERO,
+            high: DVec3::ONE,
+        };
+        match layer {
+            Layer::Depth => {
+                let there = frame.depth.iter().filter(|t| t.is_finite());
+                let range = there.map(|t| DVec3::splat(f64::from(*t)));
+                shades.between(range);
+            }
+            Layer::Position => {
+                shades.position = frame.positions(&plan.view());
+                let there = shades.position.iter().filter(|p| p[0].is_finite());
+                let range: Vec<DVec3> = there.map(|p| vector(*p)).collect();
+                shades.between(range.into_iter());
+            }
+            Layer::Steps => {
+                shades.steps = frame.steps();
+                shades.high = DVec3::splat(percentile_99(&shades.steps));
+            }
+            Layer::Color | Layer::Normal | Layer::State | Layer::Error => {}
+        }
+        shades
+    }
+
+    /// The same with the truth that [`Layer::Error`] compares with.
+    pub fn against(mut self, truth: &Frame, view: &View) -> Self {
+        self.error = errors(self.frame, truth, view);
+        self
+    }
+
+    /// Pixels along each axis.
+    pub fn size(&self) -> [u32; 2] {
+        self.frame.size
+    }
+
+    /// Whether one number per pixel is enough.
+    pub fn is_grey(&self) -> bool {
+        self.layer.is_grey()
+    }
+
+    fn between(&mut self, values: impl Iterator<Item = DVec3>) {
+        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = values.fold(start, |(low, high), v| (low.min(v), high.max(v)));
+        if low.is_finite() {
+            (self.low, self.high) = (low, high);
+        }
+    }
+
+    /// Where a value stands between black and white.
+    fn share(&self, v: DVec3) -> DVec3 {
+        // An even picture has no range; any shade will do for it.
+        let range = (self.high - self.low).max(DVec3::splat(f64::MIN_POSITIVE));
+        ((v - self.low) / range).clamp(DVec3::ZERO, DVec3::ONE)
+    }
+
+    /// The display value of a pixel, counted row by row.
+    pub fn at(&self, i: usize) -> DVec3 {
+        match self.layer {
+            Layer::Color => srgb(self.light.tone(vector(self.frame.radiance[i]))),
+            Layer::Depth => {
+                let t = f64::from(self.frame.depth[i]);
+                if t.is_finite() {
+                    self.share(DVec3::splat(t)) * FARTHEST
+                } else {
+                    DVec3::ONE
+                }
+            }
+            Layer::Normal => vector(self.frame.normal[i]) * 0.5 + 0.5,
+            Layer::Position => {
+                let p = vector(self.position[i]);
+                if p.is_finite() {
+                    self.share(p)
+                } else {
+                    DVec3::ZERO
+                }
+            }
+            Layer::Steps => {
+                let x = f64::from(self.steps[i]);
+                heat(self.share(DVec3::splat(x)).x)
+            }
+            Layer::Error => apart(self.error.get(i).copied().unwrap_or(f64::NAN)),
+            Layer::State => match State::from_code(u32::from(self.frame.state[i])) {
+                Some(State::Sky) => SKY,
+                Some(State::Hit) => HIT,
+                _ => UNCONVERGED,
+            },
+        }
+    }
+
+    /// All pixels as whole numbers up to `most`, rows over threads: three per pixel,
+    /// one where the layer is grey.
+    pub(crate) fn samples(&self, most: u16) -> Vec<u16> {
+        let channels = if self.layer.is_grey() { 1 } else { 3 };
+        let width = self.frame.size[0] as usize;
+        let mut out = vec![0; self.frame.state.len() * channels];
+        let rows = out.par_chunks_mut((width * channels).max(1)).enumerate();
+        rows.for_each(|(y, row)| {
+            for (x, pixel) in row.chunks_mut(channels).enumerate() {
+                let shade = self.at(y * width + x).to_array();
+                for (to, value) in pixel.iter_mut().zip(shade) {
+                    // The cast saturates, and takes no number for black.
+                    *to = (value * f64::from(most) + 0.5).min(f64::from(most)) as u16;
+                }
+            }
+        });
+        out
+    }
+}
+
+fn vector(v: [f32; 3]) -> DVec3 {
+    DVec3::from_array(v.map(f64::from))
+}
+
+/// The colour of a signed error in footprints. The root makes small ones seen.
+fn apart(e: f64) -> DVec3 {
+    if e.is_nan() {
+        return UNCONVERGED;
+    }
+    let x = (e.abs() / MOST_APART).min(1.0).sqrt();
+    let stops = if e > 0.0 { TOO_DEEP } else { TOO_NEAR };
+    match x {
+        x if x < 0.5 => HIT.lerp(stops[0], 2.0 * x),
+        x => stops[0].lerp(stops[1], 2.0 * x - 1.0),
+    }
+}
+
+/// The colour of a share of 0..=1 in a heat map.
+pub(crate) fn heat(x: f64) -> DVec3 {
+    let at = x * (HEAT.len() - 1) as f64;
+    let i = (at as usize).min(HEAT.len() - 2);
+    HEAT[i].lerp(HEAT[i + 1], at - i as f64)
+}
+
+/// The value that 99 of 100 do not exceed; at least 1.
+fn percentile_99(values: &[f32]) -> f64 {
+    if values.is_empty() {
+        return 1.0;
+    }
+    let mut sorted = values.to_vec();
+    let at = (sorted.len() - 1) * 99 / 100;
+    let (_, value, _) = sorted.select_nth_unstable_by(at, f32::total_cmp);
+    f64::from(*value).max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::Formula;
+    use crate::plan::Subject;
+
+    fn plan() -> Plan {
+        let shape = Formula::all().remove(0);
+        let mut plan = Plan::new(Subject::Distance {
+            shape,
+            iterations: None,
+        });
+        plan.size = [3, 1];
+        plan
+    }
+
+    #[test]
+    fn depth_tells_near_far_and_sky_apart() {
+        let frame = Frame {
+            size: [3, 1],
+            depth: vec![2.0, 6.0, f32::INFINITY],
+            state: vec![1, 1, 0],
+            ..Frame::default()
+        };
+        let samples = Shades::new(Layer::Depth, &frame, &plan()).samples(255);
+        assert_eq!(samples, [0, 242, 255]);
+    }
+
+    #[test]
+    fn state_has_three_colours_and_steps_end_at_the_percentile() {
+        let mut frame = Frame {
+            size: [3, 1],
+            state: vec![0, 1, 2],
+            ..Frame::default()
+        };
+        let samples = Shades::new(Layer::State, &frame, &plan()).samples(255);
+        assert_eq!(samples[6..], [255, 0, 255]);
+        assert!(samples[0] < samples[3] && samples[3] == samples[4]);
+        frame.work = vec![crate::base::work::Work::default(); 3];
+        frame.work[2].evaluations = 50;
+        let shades = Shades::new(Layer::Steps, &frame, &plan());
+        assert_eq!(shades.at(0), HEAT[0]);
+        assert_eq!(shades.at(2), HEAT[5]);
+    }
+
+    #[test]
+    fn all_sky_and_broken_numbers_do_no_harm() {
+        let frame = Frame {
+            size: [1, 1],
+            radiance: vec![[f32::NAN, -1.0, f32::INFINITY]],
+            depth: vec![f32::INFINITY],
+            state: vec![0],
+            ..Frame::default()
+        };
+        for layer in [Layer::Color, Layer::Depth, Layer::Position] {
+            Shades::new(layer, &frame, &plan()).samples(65535);
+        }
+    }
+}

@@ -1,0 +1,4 @@
+// The stand-in of `base/real.wgsl` for adapters with 64-bit floats.
+
+alias real = f64;
+alias real3 = vec3<f64>;

@@ -1,7 +1,0 @@
-// The empty stand-in of `counters.wgsl`.
-
-fn count_evaluation() {}
-
-fn count_iterations(n: u32) {}
-
-fn counters_store(cell: u32) {}

@@ -1,4 +1,0 @@
-// The stand-in of `real.wgsl` for adapters with 64-bit floats.
-
-alias real = f64;
-alias real3 = vec3<f64>;
