@@ -79,6 +79,24 @@ pub fn formula_of(plan: &Plan) -> Option<&Formula> {
     }
 }
 
+/// The Mandelbox of a plan.
+pub fn mandelbox_of(plan: &mut Plan) -> &mut Mandelbox {
+    match &mut plan.subject {
+        Scene::Distance {
+            shape: Formula::Mandelbox(m),
+            ..
+        } => m,
+        _ => panic!("a plan of a Mandelbox"),
+    }
+}
+
+/// Gives a plan of a formula its own iteration limit.
+pub fn limit_iterations(plan: &mut Plan, most: u32) {
+    if let Scene::Distance { iterations, .. } = &mut plan.subject {
+        *iterations = Some(most);
+    }
+}
+
 /// The scene of a plan in numbers, ready to be asked.
 pub fn solid(plan: &Plan) -> AnySolid {
     plan.scene()

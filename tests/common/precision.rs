@@ -7,9 +7,9 @@ use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::formula::{DistanceEstimate, Formula};
 use glam::DVec3;
 
-use super::probe::{Numbers, Probe, probe};
+use super::probe::{Numbers, Probe};
 use super::random::Random;
-use super::setups::{four, narrow, probe_of, shape_plan};
+use super::setups::{formula_probe, four, narrow};
 
 /// Points in each distance.
 const POINTS: usize = 300;
@@ -88,8 +88,7 @@ fn two_f32(p: DVec3) -> DVec3 {
 
 /// A Mandelbox's estimate, asked in f32 or in f64.
 pub fn asker(m: &Mandelbox, double: bool) -> Probe {
-    let plan = shape_plan(Formula::Mandelbox(m.clone()), 60, DVec3::new(9.0, 0.0, 0.0));
-    let mut all = probe_of(&plan, probe!("precision"));
+    let mut all = formula_probe(Formula::Mandelbox(m.clone()), 60);
     if double {
         all.modules = Program::new("probe", all.modules).in_f64().modules;
     }

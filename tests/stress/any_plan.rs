@@ -4,17 +4,15 @@
 use conemarch::formula::Formula;
 use conemarch::formula::balls::Balls;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
-use conemarch::heightfield::heights::Patches;
-use conemarch::heightfield::settings::{HeightfieldSettings, Wrap};
+use conemarch::plan::Plan;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::look::Look;
 use conemarch::plan::march::{MODES, Marching};
-use conemarch::plan::{Plan, Subject};
 use conemarch::scene::distance::Relaxation;
-use conemarch::scene::slab::SlabSettings;
 use glam::DVec3;
 use proptest::prelude::*;
-use proptest::strategy::Union;
+
+use super::common::plans::{Scene, distance, scene};
 
 /// A vector in the cube of a half extent.
 fn cube(half: f64) -> impl Strategy<Value = DVec3> {
@@ -48,58 +46,50 @@ fn mandelbox() -> impl Strategy<Value = Mandelbox> {
     )
 }
 
-fn subject() -> impl Strategy<Value = Subject> {
+fn any_scene() -> impl Strategy<Value = Scene> {
     let iterations = prop_oneof![Just(None), (1_u32..=500).prop_map(Some)];
-    let boxes = (mandelbox(), iterations).prop_map(|(m, iterations)| Subject::Distance {
-        shape: Formula::Mandelbox(m),
-        iterations,
+    let boxes = (mandelbox(), iterations).prop_map(|(m, most)| distance(m, most));
+    let balls = (size(1e-6, 0.5), 1e-3..1.2, 1e-3..2.5).prop_map(|(rod, edge, ball)| {
+        let balls = Balls {
+            rod_radius: rod,
+            box_size: edge,
+            ball_radius: ball,
+        };
+        distance(Formula::Balls(balls), None)
     });
-    let balls =
-        (size(1e-6, 0.5), 1e-3..1.2, 1e-3..2.5).prop_map(|(rod, edge, ball)| Subject::Distance {
-            shape: Formula::Balls(Balls {
-                rod_radius: rod,
-                box_size: edge,
-                ball_radius: ball,
-            }),
-            iterations: None,
-        });
-    let slab = (size(1e-3, 1.0), size(0.1, 10.0)).prop_map(|(half, radius)| {
-        Subject::Slab(SlabSettings {
-            half,
-            radius,
-            ..SlabSettings::default()
-        })
+    let slab = (size(1e-3, 1.0), size(0.1, 10.0));
+    let slab = slab.prop_map(|(half, radius)| {
+        scene(&format!(
+            "kind = 'slab'\nhalf = {half:?}\nradius = {radius:?}"
+        ))
     });
     prop_oneof![6 => boxes, 1 => balls, 1 => slab, 2 => heightfield()]
 }
 
-/// Small heightfields of every field, surface and exact tracer.
-fn heightfield() -> impl Strategy<Value = Subject> {
-    let field = prop::sample::select(&["fbm", "spikes", "checker", "noise"][..]);
+/// Small heightfields of every pattern, surface and exact tracer.
+fn heightfield() -> impl Strategy<Value = Scene> {
+    let pattern = prop::sample::select(&["fbm", "spikes", "checker", "noise"][..]);
     let tracer = prop::sample::select(&["walk", "walk-relaxed", "max-mip"][..]);
-    let wrap = prop::sample::select(&[Wrap::None, Wrap::X, Wrap::Y, Wrap::Both][..]);
-    let numbers = (
-        1_u32..=24,
-        1_u32..=24,
-        0_u32..100,
-        size(1e-3, 1e2),
-        size(1e-3, 1e2),
-    );
-    (field, tracer, wrap, any::<bool>(), numbers, cube(180.0)).prop_map(
-        |(field, tracer, wrap, boxes, (w, h, seed, width, depth), turn)| {
-            let mut shape = HeightfieldSettings::default();
-            shape.width = width;
+    let surface = prop::sample::select(&["bilinear", "boxes"][..]);
+    let wrap = [
+        ("none", [1, 1]),
+        ("x", [2, 1]),
+        ("y", [1, 2]),
+        ("both", [2, 2]),
+    ];
+    let wrap = prop::sample::select(wrap.to_vec());
+    let source = (1_u32..=24, 1_u32..=24, 0_u32..100);
+    let lengths = (size(1e-3, 1e2), size(1e-3, 1e2));
+    (pattern, tracer, surface, wrap, source, lengths, cube(180.0)).prop_map(
+        |(pattern, tracer, surface, (wrap, tiles), (w, h, seed), (width, depth), turn)| {
             // Needles a thousand times as high as wide are no picture of anything.
-            shape.depth = depth.clamp(0.01 * width, 2.0 * width);
-            shape.turn = turn;
-            shape.source.field = format!("{field}:{w}x{h},seed={seed}");
-            shape.source.wrap = wrap;
-            shape.tiles = wrap.axes().map(|wraps| if wraps { 2 } else { 1 });
-            shape.tracing.tracer = tracer;
-            if boxes {
-                shape.patches = Patches::Boxes;
-            }
-            Subject::Heightfield(shape)
+            let depth = depth.clamp(0.01 * width, 2.0 * width);
+            scene(&format!(
+                "kind = 'heightfield'\nfield = '{pattern}:{w}x{h},seed={seed}'\nwrap = '{wrap}'
+                tiles = {tiles:?}\ntracer = '{tracer}'\nsurface = '{surface}'
+                width = {width:?}\ndepth = {depth:?}\nturn = {:?}",
+                turn.to_array()
+            ))
         },
     )
 }
@@ -130,27 +120,19 @@ fn marching() -> impl Strategy<Value = Marching> {
         (1.0..1.99).prop_map(Relaxation::Factor),
     ];
     let clip = prop::sample::select(vec![None, Some(true), Some(false)]);
-    (
-        mode,
-        0_u32..=6,
-        size(0.1, 10.0),
-        0.0..0.99,
-        relaxation,
-        1_u32..=300,
-        clip,
+    let numbers = (0_u32..=6, size(0.1, 10.0), 0.0..0.99, 1_u32..=300);
+    (mode, numbers, relaxation, clip).prop_map(
+        |(mode, (level, detail, shell, steps), relaxation, clip)| Marching {
+            mode,
+            coarsest: 1 << level,
+            detail,
+            shell,
+            relaxation,
+            steps: Some(steps),
+            clip,
+            ..Marching::default()
+        },
     )
-        .prop_map(
-            |(mode, level, detail, shell, relaxation, steps, clip)| Marching {
-                mode,
-                coarsest: 1 << level,
-                detail,
-                shell,
-                relaxation,
-                steps: Some(steps),
-                clip,
-                ..Marching::default()
-            },
-        )
 }
 
 /// Two looks, for each is a program of its own: all of it, and next to none.
@@ -169,37 +151,33 @@ fn look() -> impl Strategy<Value = Look> {
     prop_oneof![cube(1.0).prop_map(plain), cube(1.0).prop_map(full)]
 }
 
-/// Half the size of what a subject fills.
-fn extent(subject: &Subject) -> f64 {
-    match subject {
-        Subject::Distance { shape, .. } => {
+/// Half the size of what a scene fills.
+fn extent(scene: &Scene) -> f64 {
+    match scene {
+        Scene::Heightfield(settings) => 0.5 * settings.width,
+        Scene::Slab(slab) => slab.radius,
+        Scene::Distance { shape, .. } => {
             let bounds = shape.bounds();
             bounds.half.max_element().min(bounds.radius)
         }
-        Subject::Heightfield(shape) => 0.5 * shape.width,
-        Subject::Slab(slab) => slab.radius,
     }
 }
 
 /// Any plan at all that passes its own check.
 pub fn any_plan() -> impl Strategy<Value = Plan> {
-    let sizes = Union::new([
-        (1_u32..=40, 1_u32..=30).boxed(),
-        (Just(40), Just(30)).boxed(),
-    ]);
-    let rest = move |subject: Subject| {
-        let camera = camera(extent(&subject));
-        (Just(subject), camera, marching(), look(), sizes.clone())
+    let sizes = prop_oneof![(1_u32..=40, 1_u32..=30), Just((40, 30))];
+    let rest = move |scene: Scene| {
+        let camera = camera(extent(&scene));
+        (Just(scene), camera, marching(), look(), sizes.clone())
     };
-    let plan = |(subject, camera, march, look, (w, h))| {
-        let mut plan = Plan::new(subject);
-        plan.camera = camera;
-        plan.march = march;
-        plan.look = look;
-        plan.size = [w, h];
-        plan
+    let plan = |(scene, camera, march, look, (w, h))| Plan {
+        camera,
+        march,
+        look,
+        size: [w, h],
+        ..Plan::new(scene)
     };
     let checked = |plan: &Plan| plan.check().is_ok();
-    let plans = subject().prop_flat_map(rest).prop_map(plan);
+    let plans = any_scene().prop_flat_map(rest).prop_map(plan);
     plans.prop_filter("a plan that its own check refuses", checked)
 }

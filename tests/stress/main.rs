@@ -3,164 +3,50 @@
 //!
 //! Each plan is rendered on both executors. Whatever it asks for, no layer holds a number
 //! that is none, no render hangs, and the picture is within a stated bound of the truth
-//! and of the other executor; where f32 cannot hold that bound, the program says so.
-//! `docs/accuracy.md` shows what was measured.
+//! and of the other executor. Where f32 cannot hold that bound, the program says so.
+//! `docs/accuracy.md` shows what was measured, and `common/groups.rs` has the tests of most
+//! plans.
 #![allow(
     clippy::unwrap_used,
     missing_docs,
     reason = "a test fails by panicking, and has no readers of its interface"
 )]
 
+#[path = "../adapter/mod.rs"]
 mod adapter;
-#[allow(dead_code, reason = "other files use the rest")]
+mod any_plan;
+#[path = "../common"]
+#[allow(dead_code, reason = "other crates use the rest")]
 mod common {
-    pub mod any_plan;
     pub mod exact;
     pub mod groups;
     pub mod hard;
+    pub mod plans;
+    pub mod precision;
+    pub mod probe;
     pub mod random;
+    pub mod setups;
     pub mod solved;
     pub mod strain;
 }
+mod floors;
 
-use common::any_plan::any_plan;
-use common::groups;
-use common::hard::{self, Case, SIZE};
-use common::solved::camera;
-use common::strain::{self, Outcome, both, strain};
-use conemarch::base::work::State;
+use std::cell::Cell;
+
+use adapter::{HIT, SKY, UNCONVERGED, both};
+use any_plan::any_plan;
+use common::hard::{self, SIZE};
+use common::plans::{camera, distance, distance_solid, mandelbox, sized};
+use common::solved::rays;
+use common::strain;
 use conemarch::formula::DistanceEstimate;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::picture::frame::Frame;
-use conemarch::plan::march::Mode;
-use conemarch::plan::{Plan, Subject};
-use conemarch::preset::{load, read, write};
+use conemarch::plan::Plan;
+use conemarch::preset::{read, write};
 use conemarch::scene::distance::Relaxation;
 use glam::DVec3;
-use proptest::test_runner::{Config, TestRunner};
-
-/// Renders the plans of a group and asserts its bounds; what came out.
-fn check(test: &str) -> Vec<(Case, Outcome)> {
-    let group = groups::group(test);
-    let measured: Vec<(Case, Outcome)> = (group.cases)()
-        .into_iter()
-        .map(|(name, plan)| {
-            let outcome = strain(&name, &plan);
-            ((name, plan), outcome)
-        })
-        .collect();
-    for ((name, _), o) in &measured {
-        assert!(o.wrong_cpu <= group.wrong, "{name}: {o:?}");
-        if !o.warned {
-            assert!(o.apart <= group.apart, "{name}: {o:?}");
-            assert!(o.wrong_gpu <= group.wrong, "{name}: {o:?}");
-        }
-    }
-    // Pictures of something: a bound on empty ones says nothing.
-    let seen = measured.iter().filter(|(_, o)| o.hits > 0.0).count();
-    assert!(2 * seen >= measured.len(), "{seen} of {}", measured.len());
-    measured
-}
-
-#[test]
-fn cameras_near_the_surface() {
-    let all = check("cameras_near_the_surface");
-    for of_one in all.chunks(9) {
-        let outcomes: Vec<&Outcome> = of_one.iter().map(|(_, o)| o).collect();
-        let name = &of_one[0].0.0;
-        // Far enough away nothing is said, and f32 is as good as f64.
-        assert!(!outcomes[0].warned, "{name}");
-        // From where it breaks on, all pixels are noise: the comparison can see it.
-        assert!(outcomes[7].apart > 0.9, "{name}: {:?}", outcomes[7]);
-        // Once said it is said of all that is nearer, and a good while before it is true:
-        // at the first distance with a warning f32 still holds (measured up to 0.001).
-        let first = outcomes.iter().position(|o| o.warned).unwrap();
-        assert!(outcomes[first..].iter().all(|o| o.warned), "{name}");
-        assert!(
-            outcomes[first].apart < 0.005,
-            "{name}: {:?}",
-            outcomes[first]
-        );
-    }
-}
-
-#[test]
-fn eyes_in_odd_places() {
-    check("eyes_in_odd_places");
-}
-
-#[test]
-fn planes_that_are_grazed() {
-    check("planes_that_are_grazed");
-}
-
-#[test]
-fn rods_thinner_than_a_pixel() {
-    check("rods_thinner_than_a_pixel");
-}
-
-#[test]
-fn scales_from_next_to_1_to_10() {
-    check("scales_from_next_to_1_to_10");
-}
-
-#[test]
-fn scales_with_a_thick_shell() {
-    check("scales_with_a_thick_shell");
-}
-
-#[test]
-fn radii_from_nothing_to_all() {
-    let all = check("radii_from_nothing_to_all");
-    // The box is the same at every length: so is its picture, but for rounding.
-    let pictures = |unit: &str| {
-        let end = format!("lengths times {unit}, inside");
-        let found = all.iter().filter(|((name, _), _)| name.ends_with(&end));
-        found.map(|(_, o)| o.hits).collect::<Vec<f64>>()
-    };
-    let [small, large] = ["0.001", "1000"].map(pictures);
-    assert_eq!(small.len(), 2);
-    for (a, b) in small.iter().zip(&large) {
-        assert!((a - b).abs() < 1e-3, "{a} {b}");
-    }
-}
-
-#[test]
-fn iterations_from_1_to_500() {
-    check("iterations_from_1_to_500");
-}
-
-#[test]
-fn lenses_from_1_to_170_degrees() {
-    check("lenses_from_1_to_170_degrees");
-}
-
-#[test]
-fn sizes_from_1_pixel_to_a_line() {
-    check("sizes_from_1_pixel_to_a_line");
-}
-
-#[test]
-fn limits_of_a_few_steps() {
-    for ((name, plan), o) in check("limits_of_a_few_steps") {
-        // A ray alone starts at the eye, and a step does not bring it here.
-        if plan.march.mode != Mode::Safe && plan.march.steps == Some(1) {
-            assert!(o.hits == 0.0 && o.unconverged > 0.4, "{name}: {o:?}");
-        }
-    }
-}
-
-#[test]
-fn a_lipschitz_constant_twice_its_size() {
-    check("a_lipschitz_constant_twice_its_size");
-}
-
-#[test]
-fn a_lipschitz_constant_half_its_size() {
-    let all = check("a_lipschitz_constant_half_its_size");
-    // It does harm, and the comparison sees it.
-    assert!(all.iter().any(|(_, o)| o.wrong_cpu > 0.3));
-}
+use proptest::test_runner::{Config, TestRng, TestRunner};
 
 /// Least of `distance to the rod - radius`, in hit thresholds, along a ray: where it is
 /// under 1, a short enough step finds a hit. The distance to a rod is convex along a line
@@ -196,24 +82,20 @@ fn a_thin_rod_has_no_gaps_and_no_fringe() {
             // The rod stands before the sky, and aslant: it crosses pixels at all places.
             plan.camera = camera([2.4, -7.0, 0.5], [0.4, -2.0, 0.2]);
             plan.camera.up = DVec3::new(0.2, 0.1, 1.0);
-            let (view, frames) = (plan.view(), both(&plan));
+            let frames = both(&plan);
             let (mut through, mut past) = (0, 0);
-            for i in 0..frames[0].state.len() {
-                let pixel = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
-                let ray = view.view_ray(pixel);
+            for (i, ray) in rays(&plan).enumerate() {
                 let share = nearest_to_rod(&plan, ray.axis, ray.grain, radius);
                 for frame in &frames {
-                    let hit = frame.state[i] == State::Hit as u8;
+                    let hit = frame.state[i] == HIT;
                     // Thresholds are thousandths and more: f32 is off by 1e-4 of one.
                     if share < shell - 1e-3 {
-                        assert!(hit, "{name}, shell {shell}: a gap at {pixel:?}, {share}");
+                        assert!(hit, "{name}, shell {shell}: a gap at pixel {i}, {share}");
                         through += 1;
                     }
-                    let solid = f64::from(frame.depth[i]);
-                    let p = plan.camera.eye + solid * ray.axis;
-                    let at_rod = hit && (p - DVec3::new(0.4, -2.0, p.z)).length() < 0.1;
-                    if at_rod {
-                        assert!(share < 1.0 + 1e-3, "{name}: {pixel:?} sees it at {share}");
+                    let p = plan.camera.eye + f64::from(frame.depth[i]) * ray.axis;
+                    if hit && (p - DVec3::new(0.4, -2.0, p.z)).length() < 0.1 {
+                        assert!(share < 1.0 + 1e-3, "{name}: pixel {i} sees it at {share}");
                         past += 1;
                     }
                 }
@@ -234,11 +116,11 @@ fn normals_where_the_field_is_flat() {
         fold_limit: 0.928_414_247_033_647_4,
         ..Mandelbox::default()
     };
-    let eye = DVec3::new(
+    let eye = [
         0.638_620_022_163_400_7,
         -1.340_407_182_638_302_2,
         -0.751_712_268_458_604,
-    );
+    ];
     let mut plan = hard::from(m, eye, DVec3::ZERO);
     plan.march.detail = 0.180_946_275_089_425_98;
     for frame in both(&plan) {
@@ -251,31 +133,23 @@ fn normals_where_the_field_is_flat() {
 #[test]
 fn hits_are_where_the_estimate_is_within_the_threshold() {
     for (name, scale) in [("bench-inside", -1.5), ("bench-graze", 2.0)] {
-        let mut plan = load(name, &[]).unwrap().plan;
-        plan.size = SIZE;
+        let mut plan = sized(name, SIZE);
         plan.march.shell = 0.9;
         plan.march.steps = Some(2000);
         plan.march.relaxation = Relaxation::Off;
-        let Subject::Distance { shape, .. } = &mut plan.subject else {
-            unreachable!("bench presets are Mandelboxes");
-        };
-        let m = Mandelbox {
-            scale,
-            lipschitz: Some(3.0),
-            ..Mandelbox::default()
-        };
-        *shape = conemarch::formula::Formula::Mandelbox(m.clone());
-        let conemarch::scene::Scene::Distance(scene) = plan.scene() else {
-            unreachable!("made above");
-        };
-        let view = plan.view();
+        let mut m = mandelbox(scale);
+        m.lipschitz = Some(3.0);
+        plan.subject = distance(m.clone(), None);
+        let iterations = distance_solid(&plan).iterations;
         for frame in both(&plan) {
             let mut hits = 0;
-            for i in (0..frame.state.len()).filter(|i| frame.state[*i] == State::Hit as u8) {
-                let ray = view.view_ray([i as u32 % SIZE[0], i as u32 / SIZE[0]]);
+            for (i, ray) in rays(&plan)
+                .enumerate()
+                .filter(|(i, _)| frame.state[*i] == HIT)
+            {
                 let t = f64::from(frame.depth[i]);
-                let p = view.eye + t * ray.axis;
-                let (inside, _) = m.estimate(p, scene.iterations);
+                let p = plan.camera.eye + t * ray.axis;
+                let (inside, _) = m.estimate(p, iterations);
                 let value = inside.max(m.bounds().distance(p));
                 // Depths are kept in f32, six digits of a threshold of thousandths.
                 let eps = plan.march.detail * ray.grain * t;
@@ -290,13 +164,11 @@ fn hits_are_where_the_estimate_is_within_the_threshold() {
 /// A cone whose front lies in the shell has no ball, and stops instead of asking again.
 #[test]
 fn a_cone_without_a_ball_stops_at_once() {
-    let cases = (groups::group("scales_with_a_thick_shell").cases)();
-    let (_, plan) = &cases[0];
-    let limited = State::Unconverged as u8;
-    for frame in both(plan) {
+    let (_, plan) = hard::shelled(hard::scales()).swap_remove(0);
+    for frame in both(&plan) {
         for level in &frame.levels {
             let most = level.work.iter().map(|w| w.evaluations).max().unwrap();
-            assert!(!level.state.contains(&limited), "1/{}", level.divisor);
+            assert!(!level.state.contains(&UNCONVERGED), "1/{}", level.divisor);
             // Measured: 3; a cone that asks again does so 256 times.
             assert!(most <= 10, "1/{}: {most} evaluations", level.divisor);
         }
@@ -316,9 +188,10 @@ fn any_plan_renders_alike_on_both_executors() {
         failure_persistence: None,
         ..Config::default()
     };
-    let rng = proptest::test_runner::TestRng::deterministic_rng(config.rng_algorithm);
+    let rng = TestRng::deterministic_rng(config.rng_algorithm);
     let mut runner = TestRunner::new_with_rng(config, rng);
-    let kinds = std::cell::Cell::new([0; 3]);
+    let [warned_plans, solid_plans, hit_plans] = [0; 3].map(Cell::new);
+    let count = |counter: &Cell<u32>, counts: bool| counter.set(counter.get() + u32::from(counts));
     let ran = runner.run(&any_plan(), |plan| {
         let text = write(&plan);
         assert_eq!(read(&text, "a random plan").unwrap(), plan);
@@ -327,31 +200,30 @@ fn any_plan_renders_alike_on_both_executors() {
             assert_eq!(strain::faults(&plan, frame), [""; 0], "{text}");
         }
         let warned = plan.precision_warning().is_some();
-        let allowed = (APART * frames[0].state.len() as f64).max(1.0);
-        let apart = strain::apart(&plan, &frames[0], &frames[1]) * frames[0].state.len() as f64;
+        let pixels = frames[0].state.len() as f64;
+        let apart = strain::apart(&plan, &frames[0], &frames[1]) * pixels;
+        let allowed = (APART * pixels).max(1.0);
         assert!(warned || apart <= allowed, "{apart} pixels, {text}");
-        let solid = strain::solids(&plan);
-        let exact = matches!(
-            plan.march.mode,
-            Mode::Safe | Mode::Calibrated | Mode::Ray | Mode::RayRelaxed | Mode::Truth
-        );
-        if solid && exact && !warned {
+        let solid = common::solved::solids(&plan).is_some();
+        let inexact = plan.march.mode.name().starts_with("slides");
+        if solid && !inexact && !warned {
             let truth = strain::reference(&plan);
             for frame in &frames {
                 assert_eq!(strain::wrong(&plan, frame, &truth), 0.0, "{text}");
             }
         }
-        let mut k = kinds.get();
-        k[0] += u32::from(warned);
-        k[1] += u32::from(solid);
-        k[2] += u32::from(frames[1].census()[1] > 0);
-        kinds.set(k);
+        count(&warned_plans, warned);
+        count(&solid_plans, solid);
+        count(&hit_plans, frames[1].census()[1] > 0);
         Ok(())
     });
     ran.unwrap_or_else(|e| panic!("{e}"));
     // What the bounds are for did occur: plans without a warning, solids, hits.
-    let [warned, solid, hit] = kinds.get();
-    assert!(warned < 72 && solid > 10 && hit > 40, "{:?}", kinds.get());
+    let [warned, solid, hit] = [warned_plans, solid_plans, hit_plans].map(Cell::into_inner);
+    assert!(
+        warned < 72 && solid > 10 && hit > 40,
+        "{warned} {solid} {hit}"
+    );
 }
 
 /// Each measure finds what it is there for.
@@ -359,18 +231,13 @@ fn any_plan_renders_alike_on_both_executors() {
 fn the_measures_see_what_is_wrong() {
     let (_, plan) = hard::scales().swap_remove(9);
     let [frame, _] = both(&plan);
-    let at = frame
-        .state
-        .iter()
-        .position(|s| *s == State::Hit as u8)
-        .unwrap();
+    let at = frame.state.iter().position(|s| *s == HIT).unwrap();
     let spoilt = |spoil: &dyn Fn(&mut Frame)| {
         let mut other = frame.clone();
         spoil(&mut other);
         strain::faults(&plan, &other).join(", ")
     };
     assert_eq!(spoilt(&|_| ()), "");
-    let hit = State::Hit as u8;
     assert_eq!(spoilt(&|f| f.state[at] = 7), "1 in state");
     assert!(spoilt(&|f| f.depth[at] = f32::NAN).starts_with("1 in depth, 1 in position"));
     assert!(spoilt(&|f| f.depth[at] = f32::INFINITY).starts_with("1 in depth"));
@@ -391,7 +258,7 @@ fn the_measures_see_what_is_wrong() {
     let mut behind = frame.clone();
     behind.depth[at] *= 1.1;
     let mut missing = frame.clone();
-    missing.state[at] = State::Sky as u8;
+    missing.state[at] = SKY;
     for other in [&behind, &missing] {
         assert_eq!(strain::wrong(&plan, other, &frame), one);
         assert_eq!(strain::apart(&plan, other, &frame), one);
@@ -400,7 +267,7 @@ fn the_measures_see_what_is_wrong() {
     moved.depth.rotate_left(3);
     moved.state.rotate_left(3);
     assert!(strain::apart(&plan, &moved, &frame) > 0.1);
-    assert!(frame.state.iter().filter(|s| **s == hit).count() > 500);
+    assert!(frame.state.iter().filter(|s| **s == HIT).count() > 500);
 }
 
 /// Settings past the ends of their ranges are refused, by name.
@@ -429,16 +296,14 @@ fn what_cannot_be_rendered_is_refused() {
         ("image", "size = [10, 65537]", "size"),
     ];
     for (section, line, key) in refused {
-        let head = "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n";
-        let text = if section == "scene" {
-            format!("{head}{line}\n")
-        } else {
-            format!("{head}\n[{section}]\n{line}\n")
-        };
-        let error = read(&text, "hard.toml").expect_err(line).to_string();
-        assert!(
-            error.contains("hard.toml") && error.contains(key),
-            "{line}: {error}"
-        );
+        let mut text = "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n".to_string();
+        if section != "scene" {
+            text += &format!("[{section}]\n");
+        }
+        let error = read(&(text + line), "hard.toml")
+            .expect_err(line)
+            .to_string();
+        let named = error.contains("hard.toml") && error.contains(key);
+        assert!(named, "{line}: {error}");
     }
 }
