@@ -6,7 +6,7 @@ use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::formula::rotation::Rotation;
 use glam::{DMat3, DVec3};
 
-use super::random::Random;
+use super::common::random::Random;
 
 /// Iterations after which nothing is left to converge.
 const MANY: u32 = 300;

@@ -5,7 +5,7 @@ use conemarch::base::view::View;
 use conemarch::plan::camera::Camera;
 use glam::DVec3;
 
-use super::random::Random;
+use super::common::random::Random;
 
 const SIZES: [[u32; 2]; 5] = [[1, 1], [33, 17], [1366, 768], [1, 400], [200, 1]];
 const FOVS: [f64; 4] = [1.0, 48.5, 90.0, 170.0];
