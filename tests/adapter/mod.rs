@@ -50,7 +50,7 @@ pub const COUNTED: Extras = Extras {
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// What to do where there is no adapter.
-const NO_ADAPTER: &str = "this test needs a GPU adapter and finds none that opens; any will do, and `apt-get install mesa-vulkan-drivers` installs a software one";
+pub const NO_ADAPTER: &str = "this test needs a GPU adapter and finds none that opens; any will do, and `apt-get install mesa-vulkan-drivers` installs a software one";
 
 /// A fresh renderer, or the sentence.
 fn try_open() -> Result<Renderer, String> {

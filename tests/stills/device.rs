@@ -1,73 +1,69 @@
 //! Choosing a device, losing it, and stopping on request: an error that says what was
 //! lost and what would do, never a panic and never a frame.
-#![allow(
-    clippy::unwrap_used,
-    missing_docs,
-    reason = "a test fails by panicking, and has no readers of its interface"
-)]
 
-mod adapter;
-
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
 
 use conemarch::gpu::device::{Adapters, Choice, DeviceError, kind};
-use conemarch::gpu::render::{RenderError, Renderer};
+use conemarch::gpu::render::{RenderError, Renderer, Watch};
 use conemarch::plan::{Extras, Plan};
-use conemarch::preset::load;
+
+use super::common::plans::{passes, sized};
+use crate::adapter;
 
 fn small() -> Plan {
-    let mut plan = load("mandelbox", &[]).unwrap().plan;
-    plan.size = [64, 36];
-    plan
+    sized("mandelbox", [64, 36])
 }
 
-/// Asserts that a loss is told: what was lost, that nothing was written, what would do.
-fn assert_lost(error: &RenderError, name: &str) {
+fn passes_of_small() -> usize {
+    passes(&small(), Extras::default()).len()
+}
+
+/// Renders a small plan: how many pixels hit.
+fn hits(renderer: &mut Renderer, watch: Watch<'_>) -> Result<usize, RenderError> {
+    let frame = renderer.render(&small(), Extras::default(), watch)?;
+    Ok(frame.census()[1])
+}
+
+/// Asserts that a loss is reported: what was lost, that nothing was written, what would do.
+fn assert_lost(result: Result<usize, RenderError>, renderer: &Renderer) {
+    let error = result.unwrap_err();
     let RenderError::Device(DeviceError::Lost { .. }) = error else {
         panic!("not a loss: {error:?}")
     };
     let said = error.to_string();
+    let name = &renderer.device.info.name;
     for part in [name, "was lost", "nothing was written", "--device cpu"] {
         assert!(said.contains(part), "`{part}` not in: {said}");
     }
     assert!(!said.contains('\n'), "more than a line: {said}");
 }
 
-fn name(renderer: &Renderer) -> String {
-    renderer.device.info.name.clone()
-}
-
-fn all(renderer: &mut Renderer) -> Result<usize, RenderError> {
-    let frame = renderer.render(&small(), Extras::default(), &mut |_| true)?;
-    Ok(frame.census()[1])
-}
-
 #[test]
 fn a_device_lost_before_a_render_is_an_error_and_a_fresh_one_works() {
+    let all = |renderer: &mut Renderer| hits(renderer, &mut |_| true);
     let mut renderer = adapter::open();
     // The same renderer renders until it loses its device.
-    let hits = all(&mut renderer).unwrap();
-    assert!(hits > 500);
+    let before = all(&mut renderer).unwrap();
+    assert!(before > 500);
     renderer.device.device.destroy();
     for _ in 0..2 {
-        assert_lost(&all(&mut renderer).unwrap_err(), &name(&renderer));
+        assert_lost(all(&mut renderer), &renderer);
     }
     // A renderer that has never rendered has kernels to compile, too.
     let mut fresh = adapter::open();
     fresh.device.device.destroy();
-    assert_lost(&all(&mut fresh).unwrap_err(), &name(&fresh));
-    assert_eq!(all(&mut adapter::open()).unwrap(), hits);
+    assert_lost(all(&mut fresh), &fresh);
+    assert_eq!(all(&mut adapter::open()).unwrap(), before);
 }
 
 #[test]
 fn a_device_lost_between_any_two_passes_is_an_error() {
-    let passes = small().passes().len();
-    for lose_at in 1..=passes {
+    for lose_at in 1..=passes_of_small() {
         let mut renderer = adapter::open();
         let device = renderer.device.device.clone();
         let mut done = 0;
-        let result = renderer.render(&small(), Extras::default(), &mut |_| {
+        let result = hits(&mut renderer, &mut |_| {
             done += 1;
             if done == lose_at {
                 device.destroy();
@@ -75,7 +71,7 @@ fn a_device_lost_between_any_two_passes_is_an_error() {
             true
         });
         // After the last pass too: what it made has not been read yet.
-        assert_lost(&result.unwrap_err(), &name(&renderer));
+        assert_lost(result, &renderer);
         assert_eq!(done, lose_at, "a pass ran on a lost device");
     }
 }
@@ -83,10 +79,9 @@ fn a_device_lost_between_any_two_passes_is_an_error() {
 #[test]
 fn a_render_stops_on_request_after_any_pass() {
     let mut renderer = adapter::open();
-    let passes = small().passes().len();
-    for stop_at in 1..=passes {
+    for stop_at in 1..=passes_of_small() {
         let mut done = Vec::new();
-        let result = renderer.render(&small(), Extras::default(), &mut |progress| {
+        let result = hits(&mut renderer, &mut |progress| {
             done.push(progress.done);
             done.len() < stop_at
         });
@@ -96,11 +91,11 @@ fn a_render_stops_on_request_after_any_pass() {
     }
     // It has lost nothing by that.
     let mut last = 0.0;
-    let frame = renderer.render(&small(), Extras::default(), &mut |progress| {
+    let hits = hits(&mut renderer, &mut |progress| {
         last = progress.done;
         true
     });
-    assert!(frame.unwrap().census()[1] > 500);
+    assert!(hits.unwrap() > 500);
     assert!((last - 1.0).abs() < 1e-12);
 }
 
@@ -181,14 +176,15 @@ impl Folder {
         Self(path)
     }
 
-    fn render(&self, args: &[&str]) -> Output {
-        self.run(&[&["render"], args].concat())
-    }
-
-    fn run(&self, args: &[&str]) -> Output {
+    /// Runs the program with arguments that are separated by blanks: exit code, lines of
+    /// stderr and stdout.
+    fn run(&self, args: &str) -> (Option<i32>, Vec<String>, String) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_conemarch"));
-        command.args(args).current_dir(&self.0);
-        command.stdin(Stdio::null()).output().unwrap()
+        command.args(args.split(' ')).current_dir(&self.0);
+        let output = command.stdin(Stdio::null()).output().unwrap();
+        let [said, told] = [&output.stderr, &output.stdout].map(|t| String::from_utf8_lossy(t));
+        let said = said.lines().map(str::to_string).collect();
+        (output.status.code(), said, told.into_owned())
     }
 }
 
@@ -198,64 +194,47 @@ impl Drop for Folder {
     }
 }
 
-fn said(output: &Output) -> Vec<String> {
-    let text = String::from_utf8_lossy(&output.stderr);
-    text.lines().map(str::to_string).collect()
-}
-
-fn assert_done(output: &Output, path: &Path) {
-    let said = said(output);
-    assert_eq!(output.status.code(), Some(0), "{said:?}");
-    // Who renders, and what has become of it; nothing else, the driver's talk included.
-    assert_eq!(said.len(), 2, "{said:?}");
-    assert!(said[0].starts_with("rendering on "), "{said:?}");
-    assert!(said[0].ends_with(" (as asked)"), "{said:?}");
-    let file = path.file_name().unwrap().to_string_lossy();
-    assert!(
-        said[1].starts_with(&format!("{file}  64 x 36  ")),
-        "{said:?}"
-    );
-    assert!(output.stdout.is_empty());
-}
-
 /// An adapter by the name of its kind: software, or hardware where there is no other.
 fn some_adapter() -> &'static str {
     let adapters = Adapters::find();
-    let found = [("software", Choice::Software), ("gpu", Choice::Hardware)]
-        .into_iter()
-        .find(|(_, choice)| adapters.choose(choice).is_ok());
-    found.map(|(name, _)| name).expect(
-        "this test needs a GPU adapter; any will do, and `apt-get install mesa-vulkan-drivers` installs a software one",
-    )
+    let kinds = [("software", Choice::Software), ("gpu", Choice::Hardware)];
+    let mut found = kinds
+        .iter()
+        .filter(|(_, choice)| adapters.choose(choice).is_ok());
+    found.next().expect(adapter::NO_ADAPTER).0
 }
 
 #[test]
 fn the_program_renders_on_an_adapter_and_its_picture_renders_the_same_again() {
-    let folder = Folder::new("adapter");
-    let device = some_adapter();
-    let (first, second) = (folder.0.join("f.png"), folder.0.join("g.png"));
-    let size = ["--size", "64x36", "--device", device, "-o"];
-    let output = folder.render(&[&["mandelbox"], &size[..], &["f.png"]].concat());
-    assert_done(&output, &first);
-    let output = folder.render(&["f.png", "--device", device, "-o", "g.png"]);
-    assert_done(&output, &second);
-    let bytes = std::fs::read(&first).unwrap();
-    assert!(bytes == std::fs::read(&second).unwrap());
+    let (folder, device) = (Folder::new("adapter"), some_adapter());
+    let render = |preset: &str, file: &str| {
+        let args = format!("render {preset} --device {device} -o {file}");
+        let (code, said, told) = folder.run(&args);
+        // Who renders, and what has become of it; nothing else, the driver's talk included.
+        assert_eq!(
+            (code, said.len(), told.as_str()),
+            (Some(0), 2, ""),
+            "{said:?}"
+        );
+        let who = said[0].starts_with("rendering on ") && said[0].ends_with(" (as asked)");
+        let done = said[1].starts_with(&format!("{file}  64 x 36  "));
+        assert!(who && done, "{said:?}");
+        std::fs::read(folder.0.join(file)).unwrap()
+    };
+    let bytes = render("mandelbox --size 64x36", "f.png");
+    assert!(bytes == render("f.png", "g.png"));
     // Another picture has other bytes.
-    let other = [&["mandelbox", "--set", "look.key=1"], &size[..], &["h.png"]].concat();
-    assert_eq!(folder.render(&other).status.code(), Some(0));
-    assert!(bytes != std::fs::read(folder.0.join("h.png")).unwrap());
+    assert!(bytes != render("mandelbox --size 64x36 --set look.key=1", "h.png"));
 }
 
 #[test]
 fn the_program_says_what_there_is_instead_of_a_device_it_has_not() {
     let folder = Folder::new("nothing");
     for device in ["no-such", "99"] {
-        let output = folder.render(&["mandelbox", "--device", device, "-o", "f.png"]);
-        let said = said(&output);
-        assert_eq!(output.status.code(), Some(1), "{said:?}");
+        let args = format!("render mandelbox --device {device} -o f.png");
+        let (code, said, _) = folder.run(&args);
         let errors: Vec<&String> = said.iter().filter(|l| l.starts_with("error: ")).collect();
-        assert_eq!(errors.len(), 1, "{said:?}");
+        assert_eq!((code, errors.len()), (Some(1), 1), "{said:?}");
         assert!(errors[0].contains(device) && errors[0].contains("there is: "));
         assert!(!folder.0.join("f.png").exists());
     }
@@ -265,21 +244,16 @@ fn the_program_says_what_there_is_instead_of_a_device_it_has_not() {
 #[test]
 fn measurements_under_the_floor_of_f32_are_marked() {
     let folder = Folder::new("floor");
-    let near = "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n[camera]\neye = [0, 0, 6.001]\nup = [0, 1, 0]\nfov = 2\n";
+    let near = "scene = { kind = 'distance', formula = 'mandelbox' }
+        camera = { eye = [0, 0, 6.001], up = [0, 1, 0], fov = 2 }\n";
     std::fs::write(folder.0.join("near.toml"), near).unwrap();
-    let verbs: [&[&str]; 3] = [
-        &["error"],
-        &["steps", "--mode", "safe"],
-        &["calibrate", "--rays", "100"],
-    ];
-    for verb in verbs {
+    for verb in ["error", "steps --mode safe", "calibrate --rays 100"] {
         for (device, marked) in [(some_adapter(), true), ("cpu", false)] {
-            let preset = ["near.toml", "--size", "16x9", "--device", device];
-            let output = folder.run(&[&["bench"], verb, &preset].concat());
-            assert_eq!(output.status.code(), Some(0), "{:?}", said(&output));
-            let table = String::from_utf8_lossy(&output.stdout).into_owned();
+            let args = format!("bench {verb} near.toml --size 16x9 --device {device}");
+            let (code, said, table) = folder.run(&args);
+            assert_eq!(code, Some(0), "{said:?}");
             let found = table.contains("Precision: the finest footprint");
-            assert_eq!(found, marked, "{verb:?} on {device}: {table}");
+            assert_eq!(found, marked, "{verb} on {device}: {table}");
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Small stills: the two executors against each other on every built-in preset, and every
-//! mode against the truth.
+//! Whole pictures: the two executors against each other on every built-in preset, every mode
+//! against the truth, the work that modes do, and devices that are chosen, lost or stopped.
 //!
 //! The GPU computes in f32, the CPU in f64; both run the same passes.
 #![allow(
@@ -8,28 +8,35 @@
     reason = "a test fails by panicking, and has no readers of its interface"
 )]
 
+#[path = "../adapter/mod.rs"]
 mod adapter;
+#[path = "../common"]
+#[allow(dead_code, reason = "other crates use the rest")]
+mod common {
+    pub mod plans;
+}
+mod device;
 
-use adapter::render;
+use adapter::{COUNTED, LEVELS, on_cpu, render};
+use common::plans::{preset, sized};
 use conemarch::base::srgb::srgb;
 use conemarch::base::work::State;
-use conemarch::cpu;
 use conemarch::measure::compare::{Report, compare, quantile};
+use conemarch::measure::truth::truth;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::march::{MODES, Mode};
 use conemarch::plan::{Extras, Plan};
-use conemarch::preset::{BUILTIN, Override, load};
+use conemarch::preset::BUILTIN;
 use glam::DVec3;
 
-fn preset(name: &str, size: [u32; 2]) -> Plan {
-    let mut plan = load(name, &[]).unwrap().plan;
-    plan.size = size;
-    plan
-}
-
-fn on_cpu(plan: &Plan, extras: Extras) -> Frame {
-    cpu::render(plan, extras, &mut |_| true).unwrap()
-}
+/// The views that are measured.
+const BENCHMARKS: [&str; 5] = [
+    "bench-far",
+    "bench-graze",
+    "bench-inside",
+    "bench-outside",
+    "bench-thin",
+];
 
 /// Two frames of a plan side by side: depth, and the shown picture in steps of 1/255,
 /// median and 95 %.
@@ -84,7 +91,7 @@ fn faults(apart: &Apart) -> Vec<&'static str> {
 #[test]
 fn the_two_executors_agree_on_every_preset() {
     for (name, _) in BUILTIN {
-        let plan = preset(name, [320, 180]);
+        let plan = sized(name, [320, 180]);
         let frame = render(&plan, Extras::default());
         let reference = on_cpu(&plan, Extras::default());
         let apart = apart(&plan, &frame, &reference);
@@ -101,37 +108,24 @@ fn the_two_executors_agree_on_every_preset() {
 #[test]
 fn the_comparison_notices_small_changes() {
     let size = [160, 90];
-    let plan = preset("mandelbox", size);
+    let plan = sized("mandelbox", size);
     let frame = render(&plan, Extras::default());
-    let set = [Override::read("scene.scale=2.001").unwrap()];
-    let mut scaled = load("mandelbox", &set).unwrap().plan;
-    scaled.size = size;
-    let other = on_cpu(&scaled, Extras::default());
-    assert_eq!(
-        faults(&apart(&plan, &frame, &other)),
-        ["depth", "most shades"]
-    );
+    let against = |plan: &Plan, frame: &Frame, other: &Plan| {
+        faults(&apart(plan, frame, &on_cpu(other, Extras::default())))
+    };
+    let scaled = preset("mandelbox", &["scene.scale=2.001", "image.size=[160, 90]"]);
+    assert_eq!(against(&plan, &frame, &scaled), ["depth", "most shades"]);
     let mut moved = plan.clone();
     moved.camera.eye *= 1.01;
-    let other = on_cpu(&moved, Extras::default());
-    assert!(faults(&apart(&plan, &frame, &other)).contains(&"mask"));
+    assert!(against(&plan, &frame, &moved).contains(&"mask"));
     // A little more light, where no sky covers half the picture.
-    let plan = preset("bench-inside", size);
+    let plan = sized("bench-inside", size);
     let frame = render(&plan, Extras::default());
     let mut lit = plan.clone();
     lit.look.fill *= 1.05;
-    let other = on_cpu(&lit, Extras::default());
-    let found = faults(&apart(&plan, &frame, &other));
+    let found = against(&plan, &frame, &lit);
     assert_eq!(found[0], "shade", "{found:?}");
 }
-
-const DEPTH_ONLY: Extras = Extras {
-    count: false,
-    normals: false,
-    levels: true,
-    depth_only: true,
-    time: false,
-};
 
 /// Cones and relaxed rays with a shell err no more than classical sphere tracing with
 /// the same hit rule does, and the slides' rule errs more: on every bench view.
@@ -139,12 +133,12 @@ const DEPTH_ONLY: Extras = Extras {
 fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
     // Room for one pixel of 14 400 that f32 decides otherwise.
     let allowed = 1e-4;
-    for name in ["far", "graze", "inside", "outside", "thin"] {
-        let mut plan = preset(&format!("bench-{name}"), [160, 90]);
-        let truth = conemarch::measure::truth::truth(&plan, &mut |_| true).unwrap();
+    for name in BENCHMARKS {
+        let mut plan = sized(name, [160, 90]);
+        let truth = truth(&plan, &mut |_| true).unwrap();
         let mut wrong = |mode| {
             plan.march.mode = mode;
-            let frame = render(&plan, DEPTH_ONLY);
+            let frame = render(&plan, LEVELS);
             let report = compare(&frame, &truth.frame, &plan);
             let starts: u64 = report.start_violations.iter().map(|v| v.1).sum();
             (report.behind + report.holes, starts)
@@ -163,7 +157,7 @@ fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
 
 #[test]
 fn every_mode_renders_on_both_executors() {
-    let mut plan = preset("bench-outside", [96, 54]);
+    let mut plan = sized("bench-outside", [96, 54]);
     for (name, mode) in MODES {
         plan.march.mode = *mode;
         let pair = [
@@ -171,20 +165,11 @@ fn every_mode_renders_on_both_executors() {
             on_cpu(&plan, Extras::default()),
         ];
         for frame in &pair {
-            assert!(
-                frame
-                    .state
-                    .iter()
-                    .all(|s| State::from_code(u32::from(*s)).is_some())
-            );
+            let known = |s: &u8| State::from_code(u32::from(*s)).is_some();
+            assert!(frame.state.iter().all(known));
             assert!(frame.census()[1] > 1000, "{name}: {:?}", frame.census());
-            assert!(
-                frame
-                    .radiance
-                    .iter()
-                    .flatten()
-                    .all(|x| x.is_finite() && *x >= 0.0)
-            );
+            let mut light = frame.radiance.iter().flatten();
+            assert!(light.all(|x| x.is_finite() && *x >= 0.0));
         }
         // The modes differ; the executors do not, whatever the mode.
         assert_eq!(faults(&apart(&plan, &pair[0], &pair[1])), [""; 0], "{name}");
@@ -193,22 +178,15 @@ fn every_mode_renders_on_both_executors() {
 
 #[test]
 fn a_comparison_with_itself_is_nothing_and_with_a_shift_is_not() {
-    let plan = preset("bench-outside", [160, 90]);
-    let frame = render(&plan, DEPTH_ONLY);
+    let plan = sized("bench-outside", [160, 90]);
+    let frame = render(&plan, LEVELS);
     let same = compare(&frame, &frame, &plan);
     assert_eq!(same.depth_error, [0.0; 4]);
     let shares = |r: &Report| {
-        [
-            r.behind,
-            r.front,
-            r.behind8,
-            r.front8,
-            r.holes,
-            r.false_hits,
-            r.mask,
-        ]
+        let sides = [r.behind, r.front, r.behind8, r.front8];
+        [&sides[..], &[r.holes, r.false_hits, r.mask]].concat()
     };
-    assert_eq!((shares(&same), same.unconverged), ([0.0; 7], 0.0));
+    assert_eq!((shares(&same), same.unconverged), (vec![0.0; 7], 0.0));
     let starts: Vec<(u32, u64)> = [16, 8, 4, 2].map(|d| (d, 0)).to_vec();
     assert_eq!(same.start_violations, starts);
     // A few pixels to the side: every kind of error occurs.
@@ -220,4 +198,25 @@ fn a_comparison_with_itself_is_nothing_and_with_a_shift_is_not() {
     assert!(shares(&other).iter().all(|x| *x > 0.0), "{other:?}");
     // The shares of holes and false hits add up to that of the mask.
     assert!((other.holes + other.false_hits - other.mask).abs() < 1e-12);
+}
+
+/// What the program claims of its work, on the benchmarks at their own size. Counts of
+/// evaluations are the same on every machine but for the rounding of its arithmetic.
+#[test]
+fn cones_need_far_fewer_evaluations_than_rays() {
+    let mut logs = [0.0, 0.0];
+    for name in BENCHMARKS {
+        let mut plan = preset(name, &[]);
+        let [ray, relaxed, safe] = [Mode::Ray, Mode::RayRelaxed, Mode::Safe].map(|mode| {
+            plan.march.mode = mode;
+            render(&plan, COUNTED).work_per_pixel().unwrap().0
+        });
+        let what = format!("{name}: {ray} {relaxed} {safe}");
+        assert!(relaxed < 0.97 * ray, "{what}");
+        assert!(ray > 1.5 * safe && relaxed > 1.5 * safe, "{what}");
+        logs[0] += (ray / safe).ln();
+        logs[1] += (relaxed / safe).ln();
+    }
+    let [ray, relaxed] = logs.map(|sum: f64| (sum / 5.0).exp());
+    assert!(ray > 2.5 && relaxed > 2.0, "{ray} {relaxed}");
 }
