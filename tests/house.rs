@@ -8,7 +8,13 @@
     reason = "a test may panic, and is read by its name"
 )]
 
+mod common {
+    pub mod files;
+}
+
 use std::path::Path;
+
+use common::files::files_below;
 
 /// The rooms of `src/`, lowest first. Rooms on the same line do not import each other.
 const FLOORS: [&[&str]; 9] = [
@@ -29,40 +35,11 @@ fn floor(room: &str) -> Option<usize> {
     FLOORS.iter().position(|rooms| rooms.contains(&room))
 }
 
-/// Every file below a folder of the repository: its path from the root, and its text.
-fn files(folder: &str) -> Vec<(String, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let (mut folders, mut found) = (vec![root.join(folder)], Vec::new());
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let name = path.strip_prefix(root).unwrap().to_str().unwrap();
-            let text = std::fs::read_to_string(&path).unwrap();
-            found.push((name.replace('\\', "/"), text));
-        }
-    }
-    found.sort();
-    found
-}
-
-/// Asserts that a rule finds nothing below a folder.
-fn assert_kept(folder: &str, rule: impl Fn(&str, &str) -> Vec<String>) {
-    let all = files(folder);
-    assert!(all.len() > 20, "only {} files below {folder}", all.len());
-    let found: Vec<String> = all
-        .iter()
-        .flat_map(|(path, text)| rule(path, text))
-        .collect();
-    assert!(
-        found.is_empty(),
-        "{} violations:\n{}",
-        found.len(),
-        found.join("\n")
-    );
+/// Asserts that a rule finds nothing in the sources.
+fn assert_kept(rule: fn(&str, &str) -> Vec<String>) {
+    let files = files_below("src").into_iter();
+    let found: Vec<String> = files.flat_map(|(path, text)| rule(&path, &text)).collect();
+    assert!(found.is_empty(), "violations:\n{}", found.join("\n"));
 }
 
 /// The code of a file: without comments and without its test module, which stands last.
@@ -158,17 +135,17 @@ fn too_long(path: &str, text: &str) -> Vec<String> {
 
 #[test]
 fn imports_point_downward() {
-    assert_kept("src", upward_paths);
+    assert_kept(upward_paths);
 }
 
 #[test]
 fn twins_share_a_path() {
-    assert_kept("src", broken_twins);
+    assert_kept(broken_twins);
 }
 
 #[test]
 fn no_file_is_too_long() {
-    assert_kept("src", too_long);
+    assert_kept(too_long);
 }
 
 #[test]

@@ -40,11 +40,11 @@ fn a_rotation_by_nothing_is_no_rotation() {
 
 #[test]
 fn features_that_are_off_are_not_joined() {
-    for feature in FEATURES {
-        let module = format!("pass/{}", feature.name);
+    for (name, set) in FEATURES {
+        let module = format!("pass/{name}");
         for on in [true, false] {
             let mut plan = preset("mandelbox", &[]);
-            (feature.set)(&mut plan, on);
+            set(&mut plan, on);
             let text = explain(&plan, Extras::default());
             assert_joins(&text, on, &module, &format!("{module}_off"));
         }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::mem::{offset_of, size_of};
-use std::path::Path;
 
 use conemarch::base::view::ViewUniform;
 use conemarch::formula::balls::BallsUniform;
@@ -18,18 +17,17 @@ use conemarch::pass::queue::{COUNT_AT, Turn};
 use conemarch::scene::distance::DistanceUniform;
 use conemarch::scene::heightfield::HeightfieldUniform;
 use conemarch::scene::slab::SlabUniform;
-use wgpu::naga::{AddressSpace, Module, TypeInner};
+use wgpu::naga::{StructMember, TypeInner};
 
-use super::files_below;
+use super::common::files::files_below;
 use super::programs::ALL;
 
-/// The layout of a struct.
-#[derive(Clone, Debug, PartialEq)]
-struct Layout {
-    /// Name, offset and size of each field, in order.
-    fields: Vec<(String, usize, usize)>,
-    /// Bytes of the struct.
-    size: usize,
+/// Name, offset and size of each field of a struct; last the end of the struct.
+type Layout = Vec<(String, usize, usize)>;
+
+/// The end of a struct as a field of its layout.
+fn end(size: usize) -> (String, usize, usize) {
+    ("its end".into(), size, 0)
 }
 
 /// Size of the field that a function picks.
@@ -40,14 +38,14 @@ fn field_size<T, F>(_pick: fn(&T) -> &F) -> usize {
 /// Makes the list of layouts out of the structs' names and fields.
 macro_rules! layouts {
     ($($type:ident: $($field:ident)*;)*) => {
-        vec![$((stringify!($type), Layout {
-            fields: vec![$((
-                stringify!($field).to_string(),
+        vec![$((stringify!($type), vec![
+            $((
+                stringify!($field).into(),
                 offset_of!($type, $field),
                 field_size(|t: &$type| &t.$field),
-            )),*],
-            size: size_of::<$type>(),
-        })),*]
+            ),)*
+            end(size_of::<$type>()),
+        ])),*]
     };
 }
 
@@ -78,29 +76,23 @@ fn layouts() -> Vec<(&'static str, Layout)> {
     }
 }
 
-/// The layouts of a module's structs, by name.
-fn structs(module: &Module) -> Vec<(String, Layout)> {
-    let mut found = Vec::new();
-    for (_, kind) in module.types.iter() {
-        if let (Some(name), TypeInner::Struct { members, span }) = (&kind.name, &kind.inner) {
-            let fields = members.iter().map(|m| {
-                let size = module.types[m.ty].inner.size(module.to_ctx());
-                (m.name.clone().unwrap(), m.offset as usize, size as usize)
-            });
-            let (fields, size) = (fields.collect(), *span as usize);
-            found.push((name.clone(), Layout { fields, size }));
-        }
-    }
-    found
-}
-
 /// The layouts of all structs of all programs. A name may stand for different structs in
 /// different scenes (`Walk`, say).
 fn in_wgsl() -> BTreeMap<String, Vec<Layout>> {
     let mut all = BTreeMap::<String, Vec<Layout>>::new();
-    for checked in ALL.values() {
-        for (name, layout) in structs(checked.module.as_ref().unwrap()) {
-            let known = all.entry(name).or_default();
+    for module in ALL.values().map(|made| &made.module) {
+        for (_, kind) in module.types.iter() {
+            let (Some(name), TypeInner::Struct { members, span }) = (&kind.name, &kind.inner)
+            else {
+                continue;
+            };
+            let field = |m: &StructMember| {
+                let size = module.types[m.ty].inner.size(module.to_ctx());
+                (m.name.clone().unwrap(), m.offset as usize, size as usize)
+            };
+            let mut layout: Layout = members.iter().map(field).collect();
+            layout.push(end(*span as usize));
+            let known = all.entry(name.clone()).or_default();
             if !known.contains(&layout) {
                 known.push(layout);
             }
@@ -111,64 +103,46 @@ fn in_wgsl() -> BTreeMap<String, Vec<Layout>> {
 
 #[test]
 fn structs_have_the_layout_that_the_shaders_read() {
-    let wgsl = in_wgsl();
+    let all = in_wgsl();
     for (name, own) in layouts() {
-        let filled: usize = own.fields.iter().map(|f| f.2).sum();
-        assert_eq!(
-            filled, own.size,
-            "{name}: a field is not listed, or there is a gap"
-        );
-        let found = wgsl
-            .get(name)
-            .unwrap_or_else(|| panic!("no program has a struct {name}"));
-        let [wgsl] = &found[..] else {
-            panic!("{name} has several layouts: {found:?}");
+        let full = own.windows(2).all(|f| f[0].1 + f[0].2 == f[1].1);
+        assert!(full, "{name}: a field is not listed, or there is a gap");
+        let [wgsl] = &all[name][..] else {
+            panic!("{name} has several layouts: {:?}", all[name]);
         };
-        let led = if name == "Turn" {
-            &truncated(wgsl, own.fields.len())
-        } else {
-            wgsl
-        };
-        assert_eq!(&own, led, "{name}");
+        let mut wgsl = wgsl.clone();
+        if name == "Turn" {
+            // In WGSL the count follows.
+            let (_, count_at, _) = wgsl[own.len() - 1];
+            wgsl.truncate(own.len() - 1);
+            wgsl.push(end(count_at));
+        }
+        assert_eq!(own, wgsl, "{name}");
         // The comparison sees a field that is moved, renamed, resized or lost.
         let spoil: [fn(&mut Layout); 4] = [
-            |l| l.fields[1].1 += 4,
-            |l| l.fields[0].0 = l.fields[1].0.clone(),
-            |l| l.fields[1].2 += 4,
-            |l| drop(l.fields.pop()),
+            |l| l[1].1 += 4,
+            |l| l[0].0 = l[1].0.clone(),
+            |l| l[1].2 += 4,
+            |l| drop(l.remove(1)),
         ];
         for spoil in spoil {
             let mut spoilt = own.clone();
             spoil(&mut spoilt);
-            assert_ne!(&spoilt, led, "{name}");
+            assert_ne!(spoilt, wgsl, "{name}");
         }
-    }
-}
-
-/// The struct that a struct's first fields make.
-fn truncated(layout: &Layout, fields: usize) -> Layout {
-    Layout {
-        size: layout.fields[fields].1,
-        fields: layout.fields[..fields].to_vec(),
     }
 }
 
 #[test]
 fn a_turn_leads_both_queues() {
-    let wgsl = in_wgsl();
-    let turn = &wgsl["Turn"][0];
-    let count = turn.fields.len() - 1;
-    let queue = &wgsl["Queue"][0].fields;
-    assert_eq!(queue[..=count], turn.fields);
-    assert_ne!(queue[1..=count], turn.fields[..count]);
-    assert_eq!(turn.fields[count], ("count".into(), COUNT_AT as usize, 4));
-    for name in ["Listed", "Queue"] {
-        let (cells, at, _) = wgsl[name][0].fields.last().unwrap();
-        assert_eq!(
-            (cells.as_str(), *at as u64),
-            ("cells", COUNT_AT + 4),
-            "{name}"
-        );
+    let (all, count_at) = (in_wgsl(), COUNT_AT as usize);
+    let [turn, queue, listed] = ["Turn", "Queue", "Listed"].map(|name| &all[name][0]);
+    let count = turn.len() - 2;
+    assert_eq!(turn[count], ("count".into(), count_at, 4));
+    assert_eq!(queue[..=count], turn[..=count]);
+    assert_ne!(queue[1..=count], turn[..count]);
+    for cells in [&queue[count + 1], &listed[1]] {
+        assert_eq!((cells.0.as_str(), cells.1), ("cells", count_at + 4));
     }
 }
 
@@ -177,27 +151,21 @@ fn no_struct_that_both_sides_read_is_left_out() {
     let listed: Vec<&str> = layouts().into_iter().map(|l| l.0).collect();
     // In Rust: what is laid out for the device.
     let mut found = 0;
-    for path in files_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
-        let text = std::fs::read_to_string(&path).unwrap();
+    for (path, text) in files_below("src") {
         for part in text.split("#[repr(C)]").skip(1) {
             let after = part.split("pub struct ").nth(1).unwrap();
             let name = after.split([' ', '(', '<']).next().unwrap();
-            assert!(listed.contains(&name), "{name} in {}", path.display());
+            assert!(listed.contains(&name), "{name} in {path}");
             found += 1;
         }
     }
     assert_eq!(found, listed.len());
     // In WGSL: what is bound. The queues are only led by numbers of the host.
     let mut bound = 0;
-    for (listing, checked) in ALL.iter() {
-        let module = checked.module.as_ref().unwrap();
-        for (_, global) in module.global_variables.iter() {
-            let kind = &module.types[global.ty];
-            let host = matches!(
-                global.space,
-                AddressSpace::Uniform | AddressSpace::Storage { .. }
-            );
-            if host && matches!(kind.inner, TypeInner::Struct { .. }) {
+    for (listing, made) in ALL.iter() {
+        for (_, global) in made.module.global_variables.iter() {
+            let kind = &made.module.types[global.ty];
+            if global.binding.is_some() && matches!(kind.inner, TypeInner::Struct { .. }) {
                 let name = kind.name.as_deref().unwrap();
                 let known = listed.contains(&name) || ["Queue", "Listed"].contains(&name);
                 assert!(known, "no Rust struct for {name} in {listing}");

@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use conemarch::base::shader::{Program, ShaderError};
+use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
-use conemarch::heightfield::conemap::generate;
+use conemarch::heightfield::conemap::generate::program::every_program;
 use conemarch::plan::march::MODES;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
@@ -16,28 +16,17 @@ use wgpu::naga::{self, valid::Capabilities};
 
 use super::common::plans::{Scene, distance, passes, preset, program, solid};
 
-/// A feature of the look: its switch, and its file with that of the stand-in.
-pub struct Feature {
-    /// Switches it on or off.
-    pub set: fn(&mut Plan, bool),
-    /// The name of its file; the stand-in's ends in `_off`.
-    pub name: &'static str,
-}
+/// A feature of the look: the name of its file, and its switch. The stand-in's name ends in
+/// `_off`.
+type Feature = (&'static str, fn(&mut Plan, bool));
 
 /// All features of the look.
 pub const FEATURES: [Feature; 3] = [
-    Feature {
-        set: |p, on| p.look.shadow = on,
-        name: "shadow",
-    },
-    Feature {
-        set: |p, on| p.look.occlusion = f64::from(u8::from(on)),
-        name: "occlusion",
-    },
-    Feature {
-        set: |p, on| p.look.fog = f64::from(u8::from(on)),
-        name: "fog",
-    },
+    ("shadow", |p, on| p.look.shadow = on),
+    ("occlusion", |p, on| {
+        p.look.occlusion = f64::from(u8::from(on))
+    }),
+    ("fog", |p, on| p.look.fog = f64::from(u8::from(on))),
 ];
 
 /// All values worth trying for a key: the other state of a switch, every word of a list of
@@ -116,8 +105,8 @@ fn plans() -> Vec<Plan> {
                 }
                 let mut one = plan.clone();
                 one.march.mode = *mode;
-                for (at, feature) in FEATURES.iter().enumerate() {
-                    (feature.set)(&mut one, look & (1 << at) > 0);
+                for (at, (_, set)) in FEATURES.iter().enumerate() {
+                    set(&mut one, look & (1 << at) > 0);
                 }
                 all.push(one);
             }
@@ -132,10 +121,10 @@ pub fn programs_of(plan: &Plan) -> Vec<Program> {
     let solid = solid(plan);
     let mut all: Vec<Program> = Vec::new();
     for pass in passes(plan, Extras::default()) {
-        for bits in 0..4 {
+        for [count, normals] in [[false; 2], [true, false], [false, true], [true; 2]] {
             let extras = Extras {
-                count: bits & 1 > 0,
-                normals: bits & 2 > 0,
+                count,
+                normals,
                 ..Extras::default()
             };
             let program = program(plan, &solid, pass, extras);
@@ -147,29 +136,29 @@ pub fn programs_of(plan: &Plan) -> Vec<Program> {
     all
 }
 
-/// A program, and what validation in f32 makes of it.
-pub struct Checked {
+/// A valid program.
+pub struct Made {
     /// The program.
     pub program: Program,
-    /// Its naga module, or its fault.
-    pub module: Result<naga::Module, ShaderError>,
+    /// What naga makes of it.
+    pub module: naga::Module,
 }
 
 /// All different programs by entry and listing.
-pub static ALL: LazyLock<BTreeMap<String, Checked>> = LazyLock::new(|| {
+///
+/// # Panics
+/// When one is not valid in f32 with exactly its constants.
+pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     let mut found = BTreeMap::new();
     let of_plans = plans().into_iter().flat_map(|plan| programs_of(&plan));
-    for program in generate::program::every_program()
-        .into_iter()
-        .chain(of_plans)
-    {
+    for program in every_program().into_iter().chain(of_plans) {
         let listing = format!("{}\n{}", program.entry, program.describe());
         found.entry(listing).or_insert(program);
     }
-    let checked = |(listing, program): (String, Program)| {
+    let made = |(listing, program): (String, Program)| {
         let valid = program.validate(Capabilities::default());
-        let module = valid.map(|(module, _)| module);
-        (listing, Checked { program, module })
+        let (module, _) = valid.unwrap_or_else(|e| panic!("{e}\n{listing}"));
+        (listing, Made { program, module })
     };
-    found.into_par_iter().map(checked).collect()
+    found.into_par_iter().map(made).collect()
 });

@@ -9,9 +9,8 @@ use glam::DVec3;
 
 use super::common::plans::{distance, distance_solid, mandelbox, scene, solid};
 use super::common::probe::{Numbers, probe};
-use super::common::random::Random;
 use super::common::setups::{four, probe_of, seen_from};
-use super::compare::{Allowed, DECIDED, MOVED, Pairs, Quantity, Twins};
+use super::compare::{Allowed, DECIDED, MOVED, Pairs, Quantities, Twins, questions};
 use super::{balls, three};
 
 /// The beam of a question.
@@ -28,24 +27,23 @@ pub fn beam(q: &Numbers) -> Beam {
 
 /// A comparison of the cones and rays of a scene.
 struct Beams<'a> {
-    what: String,
+    what: &'a str,
     plan: &'a Plan,
     /// Steps that each ray takes.
     steps: f64,
-    quantities: &'a [Quantity],
+    quantities: Quantities<'a>,
     /// Plans that are moved, with the quantities in which this must be seen.
-    moved: &'a [(Plan, &'a [&'a str])],
+    moved: &'a [(&'a str, Plan)],
 }
 
 impl Task for Beams<'_> {
     type Output = ();
 
     fn run<S: Solid>(self, solid: &S) {
-        let mut random = Random::new(5);
         let far = solid.bounds_far();
         // From near the eye towards points about the origin: origin and front, axis and
         // chord, r0, grain, t_max and steps.
-        let question = |_| {
+        let asked = questions(5, |random| {
             let origin = random.cube(0.01);
             let axis = (random.cube(3.0) - self.plan.camera.eye).normalize();
             let front = far * random.between(0.0, 0.45);
@@ -53,20 +51,13 @@ impl Task for Beams<'_> {
             let grain = random.between(0.001, 0.01);
             let end = DVec3::new(r0, grain, random.between(0.8, 2.0) * far);
             [four(origin, front), four(axis, k), four(end, self.steps)]
-        };
-        let asked: Vec<Numbers> = (0..8192).map(question).collect();
-        let twins = Twins {
-            asked: &asked,
-            quantities: self.quantities,
-            pair: |pairs: &mut Pairs, q: &Numbers, a: &Numbers| pair(solid, pairs, q, a),
-        };
+        });
+        let twins = Twins::new(&asked, self.quantities, |pairs, q, a| {
+            pair(solid, pairs, q, a)
+        });
         let probe = |plan: &Plan| probe_of(plan, probe!("beam"));
-        let moved: Vec<_> = self
-            .moved
-            .iter()
-            .map(|(p, seen)| (probe(p), *seen))
-            .collect();
-        twins.assert_agree(&self.what, &probe(self.plan), &moved);
+        let moved = self.moved.iter().map(|(seen, plan)| (*seen, probe(plan)));
+        twins.assert_agree(self.what, &probe(self.plan), &moved.collect::<Vec<_>>());
     }
 }
 
@@ -75,11 +66,8 @@ fn pair<S: Solid>(solid: &S, pairs: &mut Pairs, q: &Numbers, a: &Numbers) {
     let (ray, front, work) = (beam(q), f64::from(q[0][3]), &mut Work::default());
     let next = solid.advance(&ray, front, work);
     // What is gained: the front itself would hide an error behind the way so far.
-    pairs.add(
-        "advance",
-        (f64::from(a[0][0]) - front) as f32,
-        next.front - front,
-    );
+    let gained = (f64::from(a[0][0]) - front) as f32;
+    pairs.add("advance", gained, next.front - front);
     pairs.add("going", a[0][1], f64::from(u8::from(next.going)));
     pairs.add("clearance", a[0][2], solid.clearance(ray.at(front)));
     let mut walk = solid.begin(&ray, front, f64::from(q[2][2]), work);
@@ -116,24 +104,20 @@ fn beams_in_a_distance_scene_agree() {
         plan.march.clip = Some(false);
         plan
     };
-    let allowed = Allowed(1e-6, 1e-5);
     for relaxation in [Relaxation::Auto, Relaxation::Off, Relaxation::Factor(1.4)] {
         for steps in [1.0, 4.0, 9.0] {
             let plan = &of(1.0, 0.9, relaxation);
             solid(plan).run(Beams {
-                what: format!("after {steps} steps, {relaxation:?}"),
+                what: &format!("after {steps} steps, {relaxation:?}"),
                 plan,
                 steps,
                 quantities: &[
-                    ("advance", 0.1, allowed),
-                    ("clearance", 0.1, allowed),
-                    ("walk", 0.1, allowed),
-                    ("going", 1.0, DECIDED),
-                    ("step", 1.0, DECIDED),
+                    ("advance clearance walk", 0.1, Allowed(1e-6, 1e-5)),
+                    ("going step", 0.1, DECIDED),
                 ],
                 moved: &[
-                    (of(MOVED, 0.9, relaxation), &["advance", "clearance"]),
-                    (of(1.0, 0.9 * MOVED, relaxation), &["walk"]),
+                    ("advance clearance", of(MOVED, 0.9, relaxation)),
+                    ("walk", of(1.0, 0.9 * MOVED, relaxation)),
                 ],
             });
         }
@@ -147,13 +131,13 @@ fn beams_in_a_mandelbox_agree() {
         plan.march.clip = Some(false);
         plan
     };
-    let (plan, allowed) = (&of(2.0), Allowed(1e-5, 2e-4));
+    let plan = &of(2.0);
     solid(plan).run(Beams {
-        what: "mandelbox".into(),
+        what: "mandelbox",
         plan,
         steps: 4.0,
-        quantities: &[("advance", 0.1, allowed), ("walk", 0.1, allowed)],
-        moved: &[(of(2.0 * MOVED), &["advance", "walk"])],
+        quantities: &[("advance walk", 0.1, Allowed(1e-5, 2e-4))],
+        moved: &[("advance walk", of(2.0 * MOVED))],
     });
 }
 
@@ -170,19 +154,18 @@ fn the_heightfield_agrees() {
             2.0 * factor
         ))
     };
-    let (plan, allowed) = (&of(1.0), Allowed(1e-6, 1e-4));
+    let plan = &of(1.0);
     solid(plan).run(Beams {
-        what: "heightfield".into(),
+        what: "heightfield",
         plan,
         steps: 6.0,
         quantities: &[
-            ("clearance", 0.1, allowed),
-            ("walk", 0.1, allowed),
+            ("clearance walk", 0.1, Allowed(1e-6, 1e-4)),
             // Fronts are the way so far or one of a row of halved lengths: all or nothing,
             // and the depth is no part of the lengths.
             ("advance", 0.1, Allowed(1e-6, 1e-5)),
         ],
-        moved: &[(of(MOVED), &["clearance", "walk"])],
+        moved: &[("clearance walk", of(MOVED))],
     });
 }
 
@@ -194,20 +177,17 @@ fn the_slab_agrees() {
             "kind = 'slab'\nnormal = [0.3, -0.2, 1]\nhalf = {half}\nradius = {radius}"
         ))
     };
-    let (plan, allowed) = (&of(1.0), Allowed(2e-7, 1e-6));
+    let plan = &of(1.0);
     solid(plan).run(Beams {
-        what: "slab".into(),
+        what: "slab",
         plan,
         steps: 1.0,
         quantities: &[
-            ("advance", 0.1, allowed),
-            ("clearance", 0.1, allowed),
-            ("walk", 0.1, allowed),
+            ("advance clearance walk", 0.1, Allowed(2e-7, 1e-6)),
             ("mark", 0.1, Allowed(3e-7, 2e-5)),
-            ("going", 1.0, DECIDED),
-            ("step", 1.0, DECIDED),
+            ("going step", 0.1, DECIDED),
         ],
-        moved: &[(of(MOVED), &["advance", "clearance", "walk", "mark"])],
+        moved: &[("advance clearance walk mark", of(MOVED))],
     });
 }
 
@@ -220,28 +200,19 @@ fn the_part_of_a_ray_near_the_bounds_agrees() {
     };
     let plan = of(2.0);
     let scene = distance_solid(&plan);
-    let mut random = Random::new(6);
-    let question = |_| {
+    let asked = questions(6, |random| {
         let axis = (random.cube(12.0) - plan.camera.eye).normalize();
         let grain = DVec3::Y * random.between(0.0, 0.001);
-        [
-            four(random.cube(0.1), 0.0),
-            four(axis, 0.0),
-            four(grain, 0.0),
-        ]
-    };
-    let asked: Vec<Numbers> = (0..8192).map(question).collect();
-    let twins = Twins {
-        asked: &asked,
-        quantities: &[("interval", 1.0, Allowed(3e-6, 2e-5))],
-        pair: |pairs: &mut Pairs, q: &Numbers, a: &Numbers| {
-            let (near, far) = scene.bounds_interval(&beam(q));
-            pairs.add("interval", a[0][0], near);
-            pairs.add("interval", a[0][1], far);
-        },
-    };
+        [random.cube(0.1), axis, grain].map(|v| four(v, 0.0))
+    });
+    let quantities = [("interval", 1.0, Allowed(3e-6, 2e-5))];
+    let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+        let (near, far) = scene.bounds_interval(&beam(q));
+        pairs.add("interval", a[0][0], near);
+        pairs.add("interval", a[0][1], far);
+    });
     let probe = |plan: &Plan| probe_of(plan, probe!("interval"));
-    let moved = [(probe(&of(2.0 * MOVED)), &["interval"][..])];
+    let moved = [("interval", probe(&of(2.0 * MOVED)))];
     twins.assert_agree("mandelbox", &probe(&plan), &moved);
     // Nothing within the bounds is cut off: where f32 starts later than f64 it is still
     // outside them, but for the rounding of a position 30 away.

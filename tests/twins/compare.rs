@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::common::probe::{Errors, Numbers, Probe};
+use super::common::random::Random;
 
 /// What is multiplied into a constant to show that a check sees it.
 pub const MOVED: f64 = 1.0001;
@@ -24,9 +25,9 @@ impl Allowed {
 /// No error but in one answer of a hundred: decisions agree but for a few at a threshold.
 pub const DECIDED: Allowed = Allowed(0.0, 0.0);
 
-/// What is compared: its name, the size that errors are relative to where the number itself
-/// is smaller, and the errors that are allowed.
-pub type Quantity = (&'static str, f64, Allowed);
+/// What is compared: names separated by blanks, the size that errors are relative to where
+/// the number itself is smaller, and the errors that are allowed.
+pub type Quantities<'a> = &'a [(&'a str, f64, Allowed)];
 
 /// Pairs of got and wanted numbers, by quantity.
 #[derive(Default)]
@@ -46,45 +47,54 @@ impl Pairs {
     }
 }
 
-/// Questions to both sides, and the CPU's answers to them.
-pub struct Twins<'a, F: Fn(&mut Pairs, &Numbers, &Numbers)> {
-    /// What is asked.
-    pub asked: &'a [Numbers],
-    /// What is compared.
-    pub quantities: &'a [Quantity],
-    /// Adds what is wanted to what was got: pairs, question and the GPU's answer.
-    pub pair: F,
+/// As many questions as quantiles want, at random.
+pub fn questions(seed: u64, mut of: impl FnMut(&mut Random) -> Numbers) -> Vec<Numbers> {
+    let mut random = Random::new(seed);
+    (0..8192).map(|_| of(&mut random)).collect()
 }
 
-impl<F: Fn(&mut Pairs, &Numbers, &Numbers)> Twins<'_, F> {
-    /// The errors of a probe, in the order of the quantities.
-    fn errors(&self, probe: &Probe) -> Vec<Errors> {
+/// Questions to both sides, what is compared, and the CPU's answers.
+pub struct Twins<'a, F> {
+    asked: &'a [Numbers],
+    quantities: Quantities<'a>,
+    pair: F,
+}
+
+impl<'a, F: Fn(&mut Pairs, &Numbers, &Numbers)> Twins<'a, F> {
+    /// `pair` adds what is wanted to what was got, for a question and the GPU's answer.
+    pub fn new(asked: &'a [Numbers], quantities: Quantities<'a>, pair: F) -> Self {
+        Self {
+            asked,
+            quantities,
+            pair,
+        }
+    }
+
+    /// The names of the quantities that a probe has wrong.
+    pub fn wrong(&self, what: &str, probe: &Probe) -> Vec<&'a str> {
         let mut pairs = Pairs::default();
         for (question, answer) in self.asked.iter().zip(&probe.ask(self.asked)) {
             (self.pair)(&mut pairs, question, answer);
         }
-        let of = |(name, floor, _): &Quantity| Errors::of(pairs.0[name].iter().copied(), *floor);
-        self.quantities.iter().map(of).collect()
-    }
-
-    /// The names of the quantities that a probe has wrong.
-    pub fn wrong(&self, what: &str, probe: &Probe) -> Vec<&'static str> {
-        let pairs = self.quantities.iter().zip(self.errors(probe));
-        let broken = |(quantity, errors): (&Quantity, Errors)| {
-            println!("{what}, {}: {errors}", quantity.0);
-            (!quantity.2.hold(errors)).then_some(quantity.0)
-        };
-        pairs.filter_map(broken).collect()
+        let mut wrong = Vec::new();
+        for (names, floor, allowed) in self.quantities {
+            for name in names.split(' ') {
+                let errors = Errors::of(pairs.0[name].iter().copied(), *floor);
+                println!("{what}, {name}: {errors}");
+                wrong.extend((!allowed.hold(errors)).then_some(name));
+            }
+        }
+        wrong
     }
 
     /// Asserts that a probe agrees in all quantities, and that each moved one is seen to be
     /// wrong in those that are named with it.
-    pub fn assert_agree(&self, what: &str, own: &Probe, moved: &[(Probe, &[&str])]) {
+    pub fn assert_agree(&self, what: &str, own: &Probe, moved: &[(&str, Probe)]) {
         assert_eq!(self.wrong(what, own), [""; 0], "{what}");
-        for (probe, seen) in moved {
+        for (seen, probe) in moved {
             let wrong = self.wrong("moved", probe);
-            for name in *seen {
-                assert!(wrong.contains(name), "{what}: a moved {name} is not seen");
+            for name in seen.split(' ') {
+                assert!(wrong.contains(&name), "{what}: a moved {name} is not seen");
             }
         }
     }

@@ -28,12 +28,11 @@ use common::plans::{mandelbox, scene};
 use common::probe::{Numbers, Probe, probe};
 use common::random::Random;
 use common::setups::{formula_probe, four, narrow, probe_of, seen_from};
-use compare::{Allowed, MOVED, Pairs, Quantity, Twins};
+use compare::{Allowed, MOVED, Twins, questions};
 use conemarch::base::cone::ConeRule;
 use conemarch::formula::Formula;
 use conemarch::formula::balls::Balls;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
-use conemarch::plan::Plan;
 use glam::DVec3;
 use toml::Value;
 
@@ -107,27 +106,19 @@ fn allowed(formula: &Formula) -> [Allowed; 2] {
 fn formulas_agree() {
     const ITERATIONS: u32 = 6;
     for formula in formulas() {
-        let mut random = Random::new(1);
         let bounds = formula.bounds();
         let reach = 1.2 * bounds.half.max_element().min(bounds.radius);
-        let question = |_| {
-            [
-                four(random.cube(reach), f64::from(ITERATIONS)),
-                [0.0; 4],
-                [0.0; 4],
-            ]
-        };
-        let asked: Vec<Numbers> = (0..8192).map(question).collect();
+        let most = f64::from(ITERATIONS);
+        let asked = questions(1, |random| {
+            [four(random.cube(reach), most), [0.0; 4], [0.0; 4]]
+        });
         let [estimate, trap] = allowed(&formula);
-        let twins = Twins {
-            asked: &asked,
-            quantities: &[("estimate", 0.01, estimate), ("trap", 0.01, trap)],
-            pair: |pairs: &mut Pairs, q: &Numbers, a: &Numbers| {
-                let p = three(q[0]);
-                pairs.add("estimate", a[0][0], formula.estimate(p, ITERATIONS).0);
-                pairs.add_vector("trap", a[1], formula.trap(p, ITERATIONS));
-            },
-        };
+        let quantities = [("estimate", 0.01, estimate), ("trap", 0.01, trap)];
+        let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+            let p = three(q[0]);
+            pairs.add("estimate", a[0][0], formula.estimate(p, ITERATIONS).0);
+            pairs.add_vector("trap", a[1], formula.trap(p, ITERATIONS));
+        });
         let what = format!("{formula:?}");
         twins.assert_agree(&what, &formula_probe(formula.clone(), ITERATIONS), &[]);
         // Some parameter is seen in the estimate, and one in the traps if they read any.
@@ -183,19 +174,16 @@ fn cone_probe() -> Probe {
 #[test]
 fn the_cone_step_agrees() {
     let asked = cones(8192, 0.9, 2);
-    let twins = Twins {
-        asked: &asked,
-        quantities: &[("front", 1e-9, Allowed(2e-7, 1e-6))],
-        pair: |pairs: &mut Pairs, q: &Numbers, a: &Numbers| {
-            let [front, t, d, k] = q[0].map(f64::from);
-            pairs.add("front", a[0][0], ConeRule::Exact.cone_front(front, t, d, k));
-        },
-    };
+    let quantities = [("front", 1e-9, Allowed(2e-7, 1e-6))];
+    let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+        let [front, t, d, k] = q[0].map(f64::from);
+        pairs.add("front", a[0][0], ConeRule::Exact.cone_front(front, t, d, k));
+    });
     let scaled = |name| cone_probe().with_constant_scaled(name, 1.0 / MOVED);
     let mut slides = cone_probe();
     slides.modules[0] = ConeRule::Slides.module();
     let moved = [scaled("CONE_TRUST"), scaled("CONE_ROUND_DOWN"), slides];
-    let moved = moved.map(|probe| (probe, &["front"][..]));
+    let moved = moved.map(|probe| ("front", probe));
     twins.assert_agree("cone", &cone_probe(), &moved);
 }
 
@@ -232,14 +220,12 @@ fn f32_never_claims_more_than_the_exact_front() {
 
 #[test]
 fn rays_and_cones_of_the_view_agree() {
-    let mut random = Random::new(4);
-    let question = |i: u32| {
+    let asked = questions(4, |random| {
         let x = random.between(0.0, 1366.0).floor();
         let y = random.between(0.0, 768.0).floor();
-        let divisor = f64::from(2_u32 << (i % 5));
+        let divisor = random.between(1.0, 6.0).floor().exp2();
         [four(DVec3::new(x, y, divisor), 0.0), [0.0; 4], [0.0; 4]]
-    };
-    let asked: Vec<Numbers> = (0..8192).map(question).collect();
+    });
     let of = |fov: f64| {
         let mut plan = seen_from([4.0, -9.0, 6.0], scene("kind = 'slab'"));
         plan.camera.fov = fov;
@@ -247,35 +233,23 @@ fn rays_and_cones_of_the_view_agree() {
         plan
     };
     let allowed = Allowed(3e-7, 1e-6);
+    let quantities = [("axes", 1.0, allowed), ("chords grains", 0.0, allowed)];
     for fov in [1.0, 48.5, 170.0] {
         let view = of(fov).view();
-        let quantities: [Quantity; 3] = [
-            ("axes", 1.0, allowed),
-            ("chords", 0.0, allowed),
-            ("grains", 0.0, allowed),
-        ];
-        let twins = Twins {
-            asked: &asked,
-            quantities: &quantities,
-            pair: |pairs: &mut Pairs, q: &Numbers, a: &Numbers| {
-                let [x, y, d, _] = q[0].map(|n| n as u32);
-                let (ray, cone) = (view.view_ray([x, y]), view.view_cone([x / d, y / d], d));
-                pairs.add_vector("axes", a[0], ray.axis);
-                pairs.add_vector("axes", a[1], cone.axis);
-                pairs.add("chords", a[2][0], cone.k);
-                pairs.add("grains", a[0][3], ray.grain);
-                pairs.add("grains", a[1][3], cone.grain);
-                assert_eq!((a[2][1], a[2][2]), (0.0, 0.0));
-            },
-        };
-        let probe = |plan: &Plan| probe_of(plan, probe!("view"));
+        let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+            let [x, y, d, _] = q[0].map(|n| n as u32);
+            let (ray, cone) = (view.view_ray([x, y]), view.view_cone([x / d, y / d], d));
+            pairs.add_vector("axes", a[0], ray.axis);
+            pairs.add_vector("axes", a[1], cone.axis);
+            pairs.add("chords", a[2][0], cone.k);
+            pairs.add("grains", a[0][3], ray.grain);
+            pairs.add("grains", a[1][3], cone.grain);
+            assert_eq!((a[2][1], a[2][2]), (0.0, 0.0));
+        });
+        let probe = |fov| probe_of(&of(fov), probe!("view"));
         // In so narrow a view as one of 1 degree all axes are nearly one.
-        let seen = if fov > 1.0 {
-            &["axes", "chords", "grains"][..]
-        } else {
-            &["chords", "grains"]
-        };
-        let moved = [(probe(&of(fov * MOVED)), seen)];
-        twins.assert_agree(&format!("{fov} degrees"), &probe(&of(fov)), &moved);
+        let seen = ["chords grains", "axes chords grains"][usize::from(fov > 1.0)];
+        let moved = [(seen, probe(fov * MOVED))];
+        twins.assert_agree(&format!("{fov} degrees"), &probe(fov), &moved);
     }
 }
