@@ -2,10 +2,11 @@
 //! rule, and rotations.
 
 use conemarch::formula::DistanceEstimate;
-use conemarch::formula::mandelbox::Mandelbox;
+use conemarch::formula::mandelbox::{Estimate, Mandelbox};
 use conemarch::formula::rotation::Rotation;
 use glam::{DMat3, DVec3};
 
+use super::common::plans::mandelbox;
 use super::common::random::Random;
 
 /// Iterations after which nothing is left to converge.
@@ -40,15 +41,7 @@ fn converged(m: &Mandelbox, p: DVec3) -> f64 {
     let [x, y, z] = m.rotation.to_array().map(f64::to_radians);
     let turn = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
     let c = if m.julia { m.julia_constant } else { p };
-    let fold = |x: f64| {
-        if x > m.fold_limit {
-            2.0 * m.fold_limit - x
-        } else if x < -m.fold_limit {
-            -2.0 * m.fold_limit - x
-        } else {
-            x
-        }
-    };
+    let fold = |x: f64| 2.0 * x.clamp(-m.fold_limit, m.fold_limit) - x;
     let (mut z, mut w) = (p, 1.0);
     for _ in 0..1000 {
         // Past this the quotient gains nothing that f64 could hold.
@@ -57,13 +50,7 @@ fn converged(m: &Mandelbox, p: DVec3) -> f64 {
         }
         let b = z.map(fold);
         let r = b.length();
-        let factor = if r < m.min_radius {
-            (m.fixed_radius / m.min_radius).powi(2)
-        } else if r < m.fixed_radius {
-            (m.fixed_radius / r).powi(2)
-        } else {
-            1.0
-        };
+        let factor = (m.fixed_radius / r.clamp(m.min_radius, m.fixed_radius)).powi(2);
         z = m.scale * factor * (turn * b) + c;
         w = m.scale.abs() * factor * w + if m.julia { 0.0 } else { 1.0 };
     }
@@ -100,18 +87,17 @@ fn the_estimate_grows_with_iterations_and_never_passes_the_converged_value() {
 
 #[test]
 fn the_classic_estimate_fails_where_the_proven_one_holds() {
-    use conemarch::formula::mandelbox::Estimate;
     let random = &mut Random::new(13);
-    let mut above = 0;
-    for _ in 0..3000 {
+    let above = (0..3000).filter(|_| {
         let m = Mandelbox {
             estimate: Estimate::Classic,
             ..random_box(random)
         };
         let p = random_point(&m, random);
         let end = converged(&m, p);
-        above += u32::from(m.estimate(p, 12).0 > end + 1e-9 * (1.0 + end));
-    }
+        m.estimate(p, 12).0 > end + 1e-9 * (1.0 + end)
+    });
+    let above = above.count();
     assert!(above > 30, "only {above}");
 }
 
@@ -135,10 +121,7 @@ fn nothing_lies_outside_the_bounds() {
     }
     // Tighter bounds would not do: the corners belong to the set.
     for scale in [2.0, 3.0, -1.5, -2.0] {
-        let m = Mandelbox {
-            scale,
-            ..Mandelbox::default()
-        };
+        let m = mandelbox(scale);
         assert!(m.estimate(m.bounds().half, MANY).0 <= 0.0, "scale {scale}");
     }
 }
@@ -146,17 +129,15 @@ fn nothing_lies_outside_the_bounds() {
 /// Points whose estimate still grows by more than `eps` after so many iterations.
 fn unfinished(eps: f64, count: impl Fn(&Mandelbox) -> u32) -> usize {
     let random = &mut Random::new(15);
-    let mut all = 0;
-    for _ in 0..3000 {
+    let unfinished = (0..3000).filter(|_| {
         let m = random_box(random);
         let p = random_point(&m, random);
         let n = count(&m);
-        let (d, later) = (m.estimate(p, n).0, m.estimate(p, n + 20).0);
-        // Both are a hit: how deep it is does not matter.
-        let grown = later.max(0.0) - d.max(0.0);
-        all += usize::from(grown > eps);
-    }
-    all
+        // Of two hits it does not matter how deep they are.
+        let [now, later] = [n, n + 20].map(|n| m.estimate(p, n).0.max(0.0));
+        later - now > eps
+    });
+    unfinished.count()
 }
 
 #[test]
@@ -173,11 +154,7 @@ fn after_the_iterations_of_the_rule_little_is_left() {
 
 #[test]
 fn a_rotation_is_one_and_whole_turns_are_none() {
-    for none in [
-        DVec3::ZERO,
-        DVec3::splat(360.0),
-        DVec3::new(-360.0, 0.0, 720.0),
-    ] {
+    for none in [[0.0; 3], [360.0; 3], [-360.0, 0.0, 720.0]].map(DVec3::from) {
         assert_eq!(Rotation::new(none), None);
     }
     let quarter = Rotation::new(DVec3::new(90.0, 0.0, 0.0)).unwrap();

@@ -9,8 +9,10 @@
 
 mod boxes;
 #[path = "../common"]
+#[allow(dead_code, reason = "other crates use the rest")]
 mod common {
     pub mod exact;
+    pub mod plans;
     pub mod random;
 }
 mod cones;

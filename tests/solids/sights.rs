@@ -26,18 +26,14 @@ fn cells(size: [u32; 2], divisor: u32, random: &mut Random) -> Vec<[u32; 2]> {
     if w * h <= 1000 {
         return (0..w * h).map(|i| [i % w, i / w]).collect();
     }
-    let mut all = vec![
-        [0, 0],
-        [w - 1, 0],
-        [0, h - 1],
-        [w - 1, h - 1],
-        [w / 2, h / 2],
-    ];
-    for _ in 0..200 {
-        let at = |n: u32, r: f64| (f64::from(n) * r) as u32;
-        all.push([at(w, random.unit()), at(h, random.unit())]);
-    }
-    all
+    let corners = [[0, 0], [w - 1, 0], [0, h - 1], [w - 1, h - 1]];
+    let at = |n: u32, r: f64| (f64::from(n) * r) as u32;
+    let sample = (0..200).map(|_| [at(w, random.unit()), at(h, random.unit())]);
+    corners
+        .into_iter()
+        .chain([[w / 2, h / 2]])
+        .chain(sample)
+        .collect()
 }
 
 /// Pixels of a cell, cut by the image.
@@ -78,13 +74,12 @@ fn every_ray_lies_in_the_cone_of_its_cell_at_every_size() {
             let (seen, out) = outside(size, fov, 1.0);
             assert!(seen >= 6);
             assert_eq!(out, 0, "{size:?} at {fov} degrees, of {seen}");
-        }
-    }
-    // The cones are not much wider than that: a little narrower, and rays fall out.
-    for size in [[33, 17], [1366, 768], [1, 400], [200, 1]] {
-        for fov in FOVS {
-            let (seen, out) = outside(size, fov, 0.95);
-            assert!(out > 0, "{size:?} at {fov} degrees, of {seen}");
+            // The cones are not much wider than that: a little narrower, and rays fall out.
+            let (_, out) = outside(size, fov, 0.95);
+            assert!(
+                out > 0 || size == [1, 1],
+                "{size:?} at {fov} degrees, of {seen}"
+            );
         }
     }
 }
@@ -96,10 +91,7 @@ fn rays_go_through_the_middles_of_their_pixels() {
             let view = view(size, fov);
             let [w, h] = size.map(f64::from);
             // From the upper to the lower edge it is the field of view.
-            let (top, bottom) = (
-                view.view_direction(0.5 * w, 0.0),
-                view.view_direction(0.5 * w, h),
-            );
+            let [top, bottom] = [0.0, h].map(|y| view.view_direction(0.5 * w, y));
             let angle = top.angle_between(bottom).to_degrees();
             assert!((angle - fov).abs() < 1e-9 * fov + 1e-6, "{angle} {fov}");
             let middle = view.view_direction(0.5 * w, 0.5 * h);
@@ -108,17 +100,10 @@ fn rays_go_through_the_middles_of_their_pixels() {
             assert!(top.y > bottom.y, "up is down");
             // Right-handed: right is forward x up.
             let right = view.view_direction(w, 0.5 * h) - middle;
-            assert!(
-                right
-                    .normalize()
-                    .distance(middle.cross(DVec3::Y).normalize())
-                    < 1e-9
-            );
-            for pixel in [
-                [0, 0],
-                [size[0] / 2, size[1] / 3],
-                [size[0] - 1, size[1] - 1],
-            ] {
+            let square = middle.cross(DVec3::Y).normalize();
+            assert!(right.normalize().distance(square) < 1e-9);
+            let [last_x, last_y] = size.map(|n| n - 1);
+            for pixel in [[0, 0], [size[0] / 2, size[1] / 3], [last_x, last_y]] {
                 let [x, y] = pixel.map(|n| f64::from(n) + 0.5);
                 let u = view.view_direction(x, y);
                 let ray = view.view_ray(pixel);
