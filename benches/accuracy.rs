@@ -17,6 +17,7 @@ mod common {
     pub mod exact;
     pub mod groups;
     pub mod hard;
+    pub mod plans;
     pub mod precision;
     pub mod probe;
     pub mod random;

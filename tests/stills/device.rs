@@ -1,13 +1,11 @@
 //! Choosing a device, losing it, and stopping on request: an error that says what was
 //! lost and what would do, never a panic and never a frame.
 
-use std::path::PathBuf;
-use std::process::{Command, Stdio};
-
 use conemarch::gpu::device::{Adapters, Choice, DeviceError, kind};
 use conemarch::gpu::render::{RenderError, Renderer, Watch};
 use conemarch::plan::{Extras, Plan};
 
+use super::common::folder::{Folder, said, text};
 use super::common::plans::{passes, sized};
 use crate::adapter;
 
@@ -165,35 +163,6 @@ fn choices_are_read_from_words() {
     }
 }
 
-/// A folder of its own, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let name = format!("conemarch-device-{name}-{}", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    /// Runs the program with arguments that are separated by blanks: exit code, lines of
-    /// stderr and stdout.
-    fn run(&self, args: &str) -> (Option<i32>, Vec<String>, String) {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_conemarch"));
-        command.args(args.split(' ')).current_dir(&self.0);
-        let output = command.stdin(Stdio::null()).output().unwrap();
-        let [said, told] = [&output.stderr, &output.stdout].map(|t| String::from_utf8_lossy(t));
-        let said = said.lines().map(str::to_string).collect();
-        (output.status.code(), said, told.into_owned())
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 /// An adapter by the name of its kind: software, or hardware where there is no other.
 fn some_adapter() -> &'static str {
     let adapters = Adapters::find();
@@ -206,54 +175,49 @@ fn some_adapter() -> &'static str {
 
 #[test]
 fn the_program_renders_on_an_adapter_and_its_picture_renders_the_same_again() {
-    let (folder, device) = (Folder::new("adapter"), some_adapter());
-    let render = |preset: &str, file: &str| {
-        let args = format!("render {preset} --device {device} -o {file}");
-        let (code, said, told) = folder.run(&args);
+    let folder = Folder::new();
+    let render = |args: &[&str], file: &str| {
+        let device = ["--device", some_adapter(), "-o", file];
+        let output = folder.done(&[&["render"], args, &device].concat());
         // Who renders, and what has become of it; nothing else, the driver's talk included.
-        assert_eq!(
-            (code, said.len(), told.as_str()),
-            (Some(0), 2, ""),
-            "{said:?}"
+        let said = said(&output);
+        let lines: Vec<&str> = said.lines().collect();
+        assert_eq!((lines.len(), output.stdout.len()), (2, 0), "{said}");
+        assert!(lines[0].starts_with("rendering on ") && lines[0].ends_with(" (as asked)"));
+        assert!(
+            lines[1].starts_with(&format!("{file}  64 x 36  ")),
+            "{said}"
         );
-        let who = said[0].starts_with("rendering on ") && said[0].ends_with(" (as asked)");
-        let done = said[1].starts_with(&format!("{file}  64 x 36  "));
-        assert!(who && done, "{said:?}");
-        std::fs::read(folder.0.join(file)).unwrap()
+        folder.bytes(file)
     };
-    let bytes = render("mandelbox --size 64x36", "f.png");
-    assert!(bytes == render("f.png", "g.png"));
+    let small = ["mandelbox", "--size", "64x36"];
+    let bytes = render(&small, "f.png");
+    assert!(bytes == render(&["f.png"], "g.png"));
     // Another picture has other bytes.
-    assert!(bytes != render("mandelbox --size 64x36 --set look.key=1", "h.png"));
+    assert!(bytes != render(&[&small[..], &["--set", "look.key=1"]].concat(), "h.png"));
 }
 
 #[test]
 fn the_program_says_what_there_is_instead_of_a_device_it_has_not() {
-    let folder = Folder::new("nothing");
     for device in ["no-such", "99"] {
-        let args = format!("render mandelbox --device {device} -o f.png");
-        let (code, said, _) = folder.run(&args);
-        let errors: Vec<&String> = said.iter().filter(|l| l.starts_with("error: ")).collect();
-        assert_eq!((code, errors.len()), (Some(1), 1), "{said:?}");
-        assert!(errors[0].contains(device) && errors[0].contains("there is: "));
-        assert!(!folder.0.join("f.png").exists());
+        let args = ["render", "mandelbox", "--device", device, "-o", "f.png"];
+        Folder::new().fails(&args, 1, &[device, "there is: "]);
     }
 }
 
 /// Measurements of what f32 cannot hold say so in their tables, where f32 measures.
 #[test]
 fn measurements_under_the_floor_of_f32_are_marked() {
-    let folder = Folder::new("floor");
-    let near = "scene = { kind = 'distance', formula = 'mandelbox' }
-        camera = { eye = [0, 0, 6.001], up = [0, 1, 0], fov = 2 }\n";
-    std::fs::write(folder.0.join("near.toml"), near).unwrap();
+    let folder = Folder::new();
+    let near = "[scene]\nkind = 'distance'\nformula = 'mandelbox'
+        [camera]\neye = [0, 0, 6.001]\nup = [0, 1, 0]\nfov = 2\n";
+    folder.write("near.toml", near);
     for verb in ["error", "steps --mode safe", "calibrate --rays 100"] {
         for (device, marked) in [(some_adapter(), true), ("cpu", false)] {
             let args = format!("bench {verb} near.toml --size 16x9 --device {device}");
-            let (code, said, table) = folder.run(&args);
-            assert_eq!(code, Some(0), "{said:?}");
+            let table = text(&folder.done(&args.split(' ').collect::<Vec<_>>()));
             let found = table.contains("Precision: the finest footprint");
-            assert_eq!(found, marked, "{verb} on {device}: {table}");
+            assert_eq!(found, marked, "{args}: {table}");
         }
     }
 }

@@ -13,6 +13,7 @@ mod adapter;
 #[path = "../common"]
 #[allow(dead_code, reason = "other crates use the rest")]
 mod common {
+    pub mod folder;
     pub mod plans;
 }
 mod device;
