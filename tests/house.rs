@@ -12,6 +12,7 @@ mod common {
     pub mod files;
 }
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use common::files::files_below;
@@ -49,88 +50,83 @@ fn code(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// The first name of each path in a list such as `base::view, pass::{self, look}}; ...`,
-/// up to the brace that closes it; or the one name that the text starts with.
+/// The first names of the paths in a text such as `{base::view, pass::{self, look}}; ...`, or
+/// the one name that the text starts with.
 fn first_names(text: &str) -> Vec<String> {
-    let name = |part: &str| -> String {
-        let word = part.trim_start().chars();
-        word.take_while(|c| c.is_alphanumeric() || *c == '_')
-            .collect()
-    };
-    let Some(list) = text.strip_prefix('{') else {
-        return vec![name(text)];
-    };
-    let (mut depth, mut parts) = (0_i32, vec![String::new()]);
-    for c in list.chars() {
+    let mut depth = 0;
+    let mut outer = String::new();
+    for c in text.chars() {
         depth += i32::from(c == '{') - i32::from(c == '}');
-        match c {
-            _ if depth < 0 => break,
-            ',' if depth == 0 => parts.push(String::new()),
-            _ => parts.last_mut().unwrap().push(c),
+        match depth {
+            0 => break,
+            1 => outer.push(c),
+            _ => {}
         }
     }
-    parts
-        .iter()
-        .map(|part| name(part))
-        .filter(|n| !n.is_empty())
-        .collect()
+    // Without braces nothing was kept.
+    let paths = outer
+        .strip_prefix('{')
+        .map_or(vec![text], |list| list.split(',').collect());
+    let name = |path: &str| {
+        let end = path.find(|c: char| !c.is_alphanumeric() && c != '_');
+        path[..end.unwrap_or(path.len())].to_string()
+    };
+    paths.into_iter().map(|path| name(path.trim())).collect()
 }
 
 /// Paths of a file in `src/ROOM/` that name a room which is not below its own.
 fn upward_paths(path: &str, text: &str) -> Vec<String> {
-    let inner = path.strip_prefix("src/").unwrap();
-    let Some((room, rest)) = inner.split_once('/') else {
-        return Vec::new(); // `lib.rs` and `main.rs` stand above all rooms.
+    let parts: Vec<&str> = path
+        .split(['/', '.'])
+        .filter(|p| !["mod", "rs"].contains(p))
+        .collect();
+    let ["src", room, ..] = parts[..] else {
+        panic!("{path} is not in src");
     };
+    if ["lib", "main"].contains(&room) {
+        return Vec::new();
+    }
     let Some(own) = floor(room) else {
         return vec![format!("{path}: the room `{room}` has no floor")];
     };
     // As many `super::` as there are modules around the file lead to the root.
-    let modules = 1 + rest
-        .replace("mod.rs", "")
-        .split('/')
-        .filter(|p| !p.is_empty())
-        .count();
-    let text = code(text).replace(&"super::".repeat(modules), "crate::");
-    let named = text.split("crate::").skip(1).flat_map(first_names);
-    let mut upward: Vec<String> = named
-        .filter(|name| name != room && floor(name).is_some_and(|other| other >= own))
-        .map(|name| format!("{path}: `{room}` must not name `{name}`"))
+    let text = code(text).replace(&"super::".repeat(parts.len() - 1), "crate::");
+    let names: BTreeSet<String> = text
+        .split("crate::")
+        .skip(1)
+        .flat_map(first_names)
         .collect();
-    upward.sort();
-    upward.dedup();
+    let upward = |name: &String| name != room && floor(name).is_some_and(|other| other >= own);
+    let upward = names.into_iter().filter(upward);
     upward
+        .map(|name| format!("{path}: `{room}` must not name `{name}`"))
+        .collect()
 }
 
 /// A Rust file that has a twin names the WGSL file at its own path, and that file exists.
 fn broken_twins(path: &str, text: &str) -> Vec<String> {
-    let inner = path
-        .strip_prefix("src/")
-        .unwrap()
-        .strip_suffix(".rs")
-        .unwrap();
-    let own = format!("wgsl/{inner}.wgsl");
-    let docs: Vec<&str> = text
+    let twin = path.replace("src/", "wgsl/").replace(".rs", ".wgsl");
+    let docs: String = text
         .lines()
         .map_while(|line| line.strip_prefix("//!"))
         .collect();
-    let docs = docs.join("");
-    let says = docs.contains("Twin: `wgsl/") || docs.contains(&own);
-    let exists = Path::new(env!("CARGO_MANIFEST_DIR")).join(&own).exists();
-    match (says && docs.contains(&own), exists) {
-        (false, true) => vec![format!("{path}: its docs do not name its twin {own}")],
-        (true, false) => vec![format!("{path}: its twin {own} does not exist")],
-        (false, false) if says => vec![format!("{path}: its twin has another path")],
-        _ => Vec::new(),
-    }
+    let fault = match (
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(&twin).exists(),
+        docs.contains(&twin),
+        docs.contains("Twin: `wgsl/"),
+    ) {
+        (true, false, _) => "the docs do not name it",
+        (false, true, _) => "it does not exist",
+        (false, _, true) => "the docs name a twin at another path",
+        _ => return Vec::new(),
+    };
+    vec![format!("{path}: of the twin {twin}, {fault}")]
 }
 
 fn too_long(path: &str, text: &str) -> Vec<String> {
     let lines = text.lines().count();
-    let long = lines > MOST_LINES;
-    long.then(|| format!("{path}: {lines} lines, at most {MOST_LINES}"))
-        .into_iter()
-        .collect()
+    let fault = format!("{path}: {lines} lines, at most {MOST_LINES}");
+    Vec::from_iter((lines > MOST_LINES).then_some(fault))
 }
 
 #[test]
@@ -152,10 +148,10 @@ fn no_file_is_too_long() {
 fn upward_paths_are_found_in_every_form() {
     let of = |text: &str| {
         let found = upward_paths("src/scene/distance.rs", text);
-        let rooms = found
+        found
             .iter()
-            .map(|f| f.rsplit('`').nth(1).unwrap().to_string());
-        rooms.collect::<Vec<String>>()
+            .map(|f| f.split('`').nth(3).unwrap().to_string())
+            .collect::<Vec<_>>()
     };
     for downward in [
         "use crate::base::view::View;\nuse crate::{formula::Formula, scene::Solid, wgsl};",
@@ -173,40 +169,34 @@ fn upward_paths_are_found_in_every_form() {
     ] {
         assert_eq!(of(upward), ["plan"], "{upward}");
     }
-    assert_eq!(
-        of("use crate::{plan::Plan, gpu};\nuse crate::gpu::device;"),
-        ["gpu", "plan"]
-    );
-    // A neighbour on the same floor is not below.
-    assert_eq!(
-        upward_paths("src/cpu/mod.rs", "use super::gpu::render;").len(),
-        1
-    );
-    assert_eq!(upward_paths("src/attic/mod.rs", "").len(), 1);
-    assert_eq!(
-        upward_paths("src/lib.rs", "use crate::command::line;"),
-        [""; 0]
-    );
+    let two = of("use crate::{plan::Plan, gpu};\nuse crate::gpu::device;");
+    assert_eq!(two, ["gpu", "plan"]);
+    for (path, text, found) in [
+        // A neighbour on the same floor is not below.
+        ("src/cpu/mod.rs", "use super::gpu::render;", 1),
+        ("src/cpu/mod.rs", "use super::picture::frame;", 0),
+        ("src/attic/mod.rs", "", 1),
+        ("src/lib.rs", "use crate::command::line;", 0),
+    ] {
+        assert_eq!(upward_paths(path, text).len(), found, "{path}: {text}");
+    }
 }
 
 #[test]
 fn broken_twins_and_long_files_are_found() {
-    let kept = "//! Rays. Twin: `wgsl/pass/trace.wgsl`.";
-    assert_eq!(broken_twins("src/pass/trace.rs", kept), [""; 0]);
-    for (path, docs) in [
-        ("src/pass/trace.rs", "//! Rays."),
-        (
-            "src/pass/trace.rs",
-            "//! Rays. Twin: `wgsl/pass/march.wgsl`.",
-        ),
-        (
-            "src/pass/rays.rs",
-            "//! Rays. Twin: `wgsl/pass/trace.wgsl`.",
-        ),
-        ("src/pass/rays.rs", "//! Rays. Twin: `wgsl/pass/rays.wgsl`."),
+    for (path, docs, found) in [
+        ("src/pass/trace.rs", "Twin: `wgsl/pass/trace.wgsl`.", 0),
+        ("src/pass/trace.rs", "Rays.", 1),
+        ("src/pass/trace.rs", "Twin: `wgsl/pass/march.wgsl`.", 1),
+        ("src/pass/rays.rs", "Rays.", 0),
+        ("src/pass/rays.rs", "Twin: `wgsl/pass/trace.wgsl`.", 1),
+        ("src/pass/rays.rs", "Twin: `wgsl/pass/rays.wgsl`.", 1),
     ] {
-        assert_eq!(broken_twins(path, docs).len(), 1, "{path}: {docs}");
+        let docs = format!("//! {docs}\n");
+        assert_eq!(broken_twins(path, &docs).len(), found, "{path}: {docs}");
     }
-    assert_eq!(too_long("src/a.rs", &"\n".repeat(MOST_LINES)), [""; 0]);
-    assert_eq!(too_long("src/a.rs", &"\n".repeat(MOST_LINES + 1)).len(), 1);
+    for lines in [MOST_LINES, MOST_LINES + 1] {
+        let found = too_long("src/a.rs", &"\n".repeat(lines));
+        assert_eq!(found.len(), lines - MOST_LINES);
+    }
 }
