@@ -8,11 +8,13 @@
 
 mod adapter;
 
+use conemarch::scene::Assets;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use conemarch::gpu::RenderError;
 use conemarch::gpu::device::{Adapters, Choice, DeviceError, kind};
-use conemarch::gpu::render::{RenderError, Renderer};
+use conemarch::gpu::render::Renderer;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::load;
 
@@ -39,7 +41,9 @@ fn name(renderer: &Renderer) -> String {
 }
 
 fn all(renderer: &mut Renderer) -> Result<usize, RenderError> {
-    let frame = renderer.render(&small(), Extras::default(), &mut |_| true)?;
+    let frame = renderer.render(&small(), &Assets::default(), Extras::default(), &mut |_| {
+        true
+    })?;
     Ok(frame.census()[1])
 }
 
@@ -62,12 +66,12 @@ fn a_device_lost_before_a_render_is_an_error_and_a_fresh_one_works() {
 
 #[test]
 fn a_device_lost_between_any_two_passes_is_an_error() {
-    let passes = small().passes().len();
+    let passes = small().passes(Extras::default()).len();
     for lose_at in 1..=passes {
         let mut renderer = adapter::open();
         let device = renderer.device.device.clone();
         let mut done = 0;
-        let result = renderer.render(&small(), Extras::default(), &mut |_| {
+        let result = renderer.render(&small(), &Assets::default(), Extras::default(), &mut |_| {
             done += 1;
             if done == lose_at {
                 device.destroy();
@@ -83,23 +87,33 @@ fn a_device_lost_between_any_two_passes_is_an_error() {
 #[test]
 fn a_render_stops_on_request_after_any_pass() {
     let mut renderer = adapter::open();
-    let passes = small().passes().len();
+    let passes = small().passes(Extras::default()).len();
     for stop_at in 1..=passes {
         let mut done = Vec::new();
-        let result = renderer.render(&small(), Extras::default(), &mut |progress| {
-            done.push(progress.done);
-            done.len() < stop_at
-        });
+        let result = renderer.render(
+            &small(),
+            &Assets::default(),
+            Extras::default(),
+            &mut |progress| {
+                done.push(progress.done);
+                done.len() < stop_at
+            },
+        );
         assert!(matches!(result, Err(RenderError::Cancelled)), "{stop_at}");
         assert_eq!(done.len(), stop_at);
         assert!(done.is_sorted() && done.iter().all(|d| (0.0..=1.0).contains(d)));
     }
     // It has lost nothing by that.
     let mut last = 0.0;
-    let frame = renderer.render(&small(), Extras::default(), &mut |progress| {
-        last = progress.done;
-        true
-    });
+    let frame = renderer.render(
+        &small(),
+        &Assets::default(),
+        Extras::default(),
+        &mut |progress| {
+            last = progress.done;
+            true
+        },
+    );
     assert!(frame.unwrap().census()[1] > 500);
     assert!((last - 1.0).abs() < 1e-12);
 }

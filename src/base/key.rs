@@ -39,6 +39,14 @@ impl<'a> Key<'a> {
     }
 }
 
+/// Lists keys as `"name" = slot, "help";`.
+#[macro_export]
+macro_rules! keys {
+    ($($name:literal = $slot:expr, $help:literal;)*) => {
+        vec![$($crate::base::key::Key::new($name, $slot, $help)),*]
+    };
+}
+
 /// A value that is impossible together with others, found after reading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {

@@ -240,6 +240,13 @@ pub struct Device {
 }
 
 impl Device {
+    /// Fills a buffer with zeros.
+    pub fn clear(&self, buffer: &wgpu::Buffer) {
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.clear_buffer(buffer, 0, None);
+        self.queue.submit([encoder.finish()]);
+    }
+
     /// Opens an adapter with its own limits, timestamps and f64 where it has them, for
     /// programs that bind up to so many storage buffers.
     ///

@@ -2,6 +2,7 @@
 
 use crate::base::cone::ConeRule;
 use crate::base::key::{AutoCount, AutoNumber, Count, Fault, Key, List, Number, Slot, Word};
+use crate::keys;
 use crate::plan::pyramid::Pyramid;
 use crate::scene::distance::{Relaxation, Stepping};
 use toml::Value;
@@ -155,51 +156,25 @@ impl Slot for Divisor<'_> {
 impl Marching {
     /// The keys of `[march]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
-        vec![
-            Key::new("mode", Word(&mut self.mode, MODES), "how the work is spent"),
-            Key::new(
-                "coarsest",
-                Divisor(&mut self.coarsest),
-                "divisor of the first cone pass",
-            ),
-            Key::new(
-                "detail",
-                Number(&mut self.detail, 1e-3, 1e3),
-                "hit where the estimate is below this many footprints",
-            ),
-            Key::new(
-                "shell",
-                Number(&mut self.shell, 0.0, 0.99),
-                "share of that threshold that steps keep clear of: time against error",
-            ),
-            Key::new(
-                "relaxation",
-                RelaxationSlot(&mut self.relaxation),
-                "how rays stretch their steps",
-            ),
-            Key::new(
-                "fudge",
-                List(&mut self.fudge, 1..=6, 0.01, 1.0),
-                "factors on the cones' width in mode calibrated, coarse to fine, the last repeated",
-            ),
-            Key::new(
-                "steps",
-                AutoCount(&mut self.steps, 1, 1_000_000),
-                "steps per level and of a ray; auto is 256, and for rays over a heightfield as many as they can take",
-            ),
-            Key::new(
-                "stride",
-                AutoNumber(&mut self.stride, 1e-3, 1.0),
-                "factor on ray steps; auto is 1, and 0.1 for the truth",
-            ),
-            Key::new(
-                "clip",
-                Word(
-                    &mut self.clip,
-                    &[("auto", None), ("on", Some(true)), ("off", Some(false))],
-                ),
-                "start rays where they enter the bounds; auto: on after cones",
-            ),
+        keys![
+            "mode" = Word(&mut self.mode, MODES),
+                "how the work is spent";
+            "coarsest" = Divisor(&mut self.coarsest),
+                "divisor of the first cone pass";
+            "detail" = Number(&mut self.detail, 1e-3, 1e3),
+                "hit where the estimate is below this many footprints";
+            "shell" = Number(&mut self.shell, 0.0, 0.99),
+                "share of that threshold that steps keep clear of: time against error";
+            "relaxation" = RelaxationSlot(&mut self.relaxation),
+                "how rays stretch their steps";
+            "fudge" = List(&mut self.fudge, 1..=6, 0.01, 1.0),
+                "factors on the cones' width in mode calibrated, coarse to fine, the last repeated";
+            "steps" = AutoCount(&mut self.steps, 1, 1_000_000),
+                "steps per level and of a ray; auto is 256, and for rays over a heightfield as many as they can take";
+            "stride" = AutoNumber(&mut self.stride, 1e-3, 1.0),
+                "factor on ray steps; auto is 1, and 0.1 for the truth";
+            "clip" = Word(&mut self.clip, &[("auto", None), ("on", Some(true)), ("off", Some(false))]),
+                "start rays where they enter the bounds; auto: on after cones";
         ]
     }
 
