@@ -113,18 +113,17 @@ impl Slot for RelaxationSlot<'_> {
             Relaxation::Factor(f) => Value::Float(*f),
         }
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
+    fn put(&mut self, value: &Value) -> Option<()> {
         *self.0 = match value.as_str() {
             Some("off") => Relaxation::Off,
             Some("auto") => Relaxation::Auto,
             _ => {
                 let mut f = 0.0;
-                let read = Number(&mut f, 1.0, 1.99).set(value);
-                read.map_err(|_| self.expects())?;
+                Number(&mut f, 1.0, 1.99).put(value)?;
                 Relaxation::Factor(f)
             }
         };
-        Ok(())
+        Some(())
     }
     fn expects(&self) -> String {
         "\"off\", \"auto\" or a factor from 1 to 1.99".into()
@@ -138,15 +137,11 @@ impl Slot for Divisor<'_> {
     fn get(&self) -> Value {
         Value::Integer(i64::from(*self.0))
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
+    fn put(&mut self, value: &Value) -> Option<()> {
         let mut n = 0;
-        let read = Count(&mut n, 1, 64).set(value);
-        read.map_err(|_| self.expects())?;
-        if !n.is_power_of_two() {
-            return Err(self.expects());
-        }
-        *self.0 = n;
-        Ok(())
+        Count(&mut n, 1, 64).put(value)?;
+        *self.0 = Some(n).filter(|n| n.is_power_of_two())?;
+        Some(())
     }
     fn expects(&self) -> String {
         "a power of two: 1 (no cones), 2, 4, 8, 16, 32 or 64".into()
