@@ -124,7 +124,7 @@ fn a_choice_that_matches_nothing_lists_what_there_is() {
     let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
     let hardware = adapters.iter().any(|a| kind(&a.get_info()) != "software");
     let mut wrong = vec![
-        (Choice::PatternSpec("no-such".into()), "no-such"),
+        (Choice::Name("no-such".into()), "no-such"),
         (Choice::Index(99), "99"),
     ];
     if !hardware {
@@ -154,7 +154,7 @@ fn every_adapter_can_be_chosen_by_index_and_by_part_of_its_name() {
         };
         assert_eq!(chosen(Choice::Index(i)), Some(info.name.clone()));
         let part = info.name.to_uppercase().chars().take(6).collect();
-        let found = chosen(Choice::PatternSpec(part)).unwrap();
+        let found = chosen(Choice::Name(part)).unwrap();
         assert_eq!(found[..6], info.name[..6]);
     }
     assert!(adapters.choose(&Choice::Cpu).unwrap().is_none());
@@ -172,9 +172,9 @@ fn choices_are_read_from_words() {
         ("cpu", Choice::Cpu),
         ("0", Choice::Index(0)),
         ("17", Choice::Index(17)),
-        ("-1", Choice::PatternSpec("-1".into())),
-        ("RTX 40", Choice::PatternSpec("RTX 40".into())),
-        ("gpus", Choice::PatternSpec("gpus".into())),
+        ("-1", Choice::Name("-1".into())),
+        ("RTX 40", Choice::Name("RTX 40".into())),
+        ("gpus", Choice::Name("gpus".into())),
     ];
     for (text, choice) in cases {
         assert_eq!(Choice::read(text), Some(choice), "`{text}`");
