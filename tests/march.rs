@@ -20,15 +20,15 @@ mod common {
 use adapter::{COUNTED, EVERYTHING, HIT, LEVELS, SKY, UNCONVERGED, on_cpu, render, render_cut};
 use common::exact::first_hit;
 use common::overclaims::{brought_near, overclaims};
-use common::plans::{Scene, camera, passes, sized};
+use common::plans::{camera, compared, sized};
 use common::solved::{balls, cameras, rays, slab, solids, solved};
 use conemarch::base::work::Work;
 use conemarch::gpu::render::Cutting;
-use conemarch::measure::compare::compare;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Scene;
 
 /// Asserts that no cell of a render claims too much; says how near they bring rays.
 fn assert_sound(plan: &Plan, what: &str) -> f64 {
@@ -37,7 +37,7 @@ fn assert_sound(plan: &Plan, what: &str) -> f64 {
     let divisors: Vec<u32> = frame.levels.iter().map(|l| l.divisor).collect();
     assert_eq!(divisors, [32, 16, 8, 4, 2]);
     assert_eq!(overclaims(&frame, &t), 0, "{what}");
-    let report = compare(&frame, &reference, plan);
+    let report = compared(&frame, &reference, plan);
     for (divisor, pixels) in report.start_violations {
         assert_eq!(pixels, 0, "{what}: level 1/{divisor}");
     }
@@ -95,7 +95,7 @@ fn the_rule_of_the_slides_is_caught() {
         let (reference, t) = solved(&plan);
         let frame = render(&plan, LEVELS);
         assert!(overclaims(&frame, &t) > 100);
-        let report = compare(&frame, &reference, &plan);
+        let report = compared(&frame, &reference, &plan);
         let found: u64 = report.start_violations.iter().map(|v| v.1).sum();
         assert!(found > 100, "{:?}", report.start_violations);
         assert!(report.behind > 0.001, "{}", report.behind);
@@ -134,7 +134,7 @@ fn blocks_and_chunks_never_change_a_bit() {
             plan.march.coarsest = coarsest;
             plan.march.steps = Some(steps);
             let frame = render(&plan, EVERYTHING);
-            let limited = steps == 7 && !matches!(plan.subject, Scene::Slab(_));
+            let limited = steps == 7 && !matches!(plan.scene, Scene::Slab(_));
             assert_eq!(frame.census()[2] > 0, limited);
             let whole = bits(&frame);
             for (block, chunk) in [(64, 4), (96, 4), (1024, 1), (1024, 3), (1024, 256), (96, 3)] {
@@ -205,7 +205,7 @@ fn cells_cut_by_the_image_are_complete() {
                 if !last_column && i as u32 / w < h - 1 {
                     continue;
                 }
-                if let Scene::Slab(_) = plan.subject {
+                if let Scene::Slab(_) = plan.scene {
                     assert_eq!(frame.state[i], HIT);
                     let t = first_hit(&solids, plan.camera.eye, ray.axis);
                     assert!((f64::from(frame.depth[i]) / t - 1.0).abs() < 1e-5);
@@ -245,7 +245,7 @@ fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
         let frame = render(&plan, Extras::default());
         let other = on_cpu(&plan, Extras::default());
         assert!(frame.census()[1] > 100 && frame.census()[2] > 20);
-        let report = compare(&frame, &other, &plan);
+        let report = compared(&frame, &other, &plan);
         // Of 5184 rays, those that end within a rounding of the threshold.
         assert!(report.mask < 1e-3, "{}", report.mask);
         for f in [&frame, &other] {
@@ -262,7 +262,7 @@ fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
 #[test]
 fn passes_figures_and_fudge_are_what_the_plan_says() {
     let mut plan = sized("bench-outside", [160, 90]);
-    let names = |f: &Frame| f.passes.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
+    let names = |f: &Frame| f.passes.iter().map(|p| p.pass.name()).collect::<Vec<_>>();
     let marched = render(&plan, COUNTED);
     assert_eq!(
         names(&marched),
@@ -305,8 +305,10 @@ fn passes_do_not_know_what_they_march() {
     let size = [333, 217];
     for camera in &cameras()[..4] {
         let plan = slab(camera, size);
-        let same = passes(&balls(0.05, camera, size), LEVELS);
-        assert_eq!(passes(&plan, LEVELS), same);
+        assert_eq!(
+            plan.passes(LEVELS),
+            balls(0.05, camera, size).passes(LEVELS)
+        );
         let (reference, t) = solved(&plan);
         // An f32 solution is off by some roundings of the eye's coordinates, up to 20,
         // times the slope at which a ray meets the planes.

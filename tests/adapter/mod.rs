@@ -13,9 +13,11 @@ use std::time::{Duration, Instant};
 
 use conemarch::base::work::State;
 use conemarch::gpu::device::{Adapters, Choice, Device, STORAGE_BUFFERS};
-use conemarch::gpu::render::{Cutting, Progress, Renderer};
+use conemarch::gpu::render::{Cutting, Renderer};
+use conemarch::pass::progress::Progress;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Assets;
 
 /// The states of pixels and cells, as frames hold them.
 pub const SKY: u8 = State::Sky as u8;
@@ -116,14 +118,14 @@ pub fn render_cut(plan: &Plan, extras: Extras, cutting: Cutting) -> Frame {
     plan.check().expect("a plan that can be rendered");
     let frame = with(move |renderer| {
         renderer.cutting = cutting;
-        renderer.render(&asked, extras, &mut patient())
+        renderer.render(&asked, &Assets::default(), extras, &mut patient())
     });
     frame.unwrap_or_else(|e| panic!("the render fails: {e}, {plan:?}"))
 }
 
 /// Renders a plan that must render, on the CPU.
 pub fn on_cpu(plan: &Plan, extras: Extras) -> Frame {
-    let frame = conemarch::cpu::render(plan, extras, &mut patient());
+    let frame = conemarch::cpu::render(plan, &Assets::default(), extras, &mut patient());
     frame.unwrap_or_else(|e| panic!("the render fails on the CPU: {e}, {plan:?}"))
 }
 

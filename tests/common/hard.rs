@@ -8,7 +8,7 @@ use conemarch::plan::march::Mode;
 use conemarch::scene::slab::SlabSettings;
 use glam::{DVec3, Vec3Swizzles};
 
-use super::plans::{camera, distance, limit_iterations, mandelbox, mandelbox_of, sized};
+use super::plans::{boxed, camera, limit_iterations, mandelbox, mandelbox_of, sized};
 use super::random::Random;
 use super::solved::{balls, slab};
 
@@ -43,7 +43,7 @@ fn twice(name: &str, change: impl FnOnce(&mut Mandelbox)) -> [Case; 2] {
 
 /// A Mandelbox seen from one point towards another.
 pub fn from(m: Mandelbox, eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Plan {
-    let mut plan = Plan::new(distance(m, None));
+    let mut plan = Plan::new(boxed(m, None));
     plan.camera = camera(eye, target);
     plan.size = SIZE;
     plan

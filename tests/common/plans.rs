@@ -4,14 +4,16 @@
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
 use conemarch::formula::mandelbox::Mandelbox;
+use conemarch::measure::compare::{Report, compare};
+use conemarch::pass;
+use conemarch::pass::look::Light;
+use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::preset::{Override, load, read};
-use conemarch::scene::distance::Distance;
+use conemarch::scene::distance::{Distance, DistanceSettings};
+use conemarch::scene::{AnySolid, Assets, Scene};
 use glam::DVec3;
-
-pub use conemarch::plan::Subject as Scene;
-pub use conemarch::scene::Scene as AnySolid;
 
 /// The plan of a built-in preset, with settings as `--set` takes them.
 pub fn preset(name: &str, settings: &[&str]) -> Plan {
@@ -29,28 +31,20 @@ pub fn sized(name: &str, [w, h]: [u32; 2]) -> Plan {
 /// A scene, given by the keys of its section.
 pub fn scene(keys: &str) -> Scene {
     let plan = read(&format!("[scene]\n{keys}\n"), "a scene");
-    plan.unwrap_or_else(|e| panic!("{keys}: {e}")).subject
+    plan.unwrap_or_else(|e| panic!("{keys}: {e}")).scene
 }
 
 /// A scene of a formula with its own iteration limit, or the automatic one.
-pub fn distance(formula: impl Into<AnyFormula>, iterations: Option<u32>) -> Scene {
-    let shape = formula.into().0;
-    Scene::Distance { shape, iterations }
+pub fn distance(formula: Formula, iterations: Option<u32>) -> Scene {
+    Scene::Distance(DistanceSettings {
+        formula,
+        iterations,
+    })
 }
 
-/// A formula, or what can be made one.
-pub struct AnyFormula(Formula);
-
-impl From<Formula> for AnyFormula {
-    fn from(formula: Formula) -> Self {
-        Self(formula)
-    }
-}
-
-impl From<Mandelbox> for AnyFormula {
-    fn from(m: Mandelbox) -> Self {
-        Self(Formula::Mandelbox(m))
-    }
+/// The same for a Mandelbox.
+pub fn boxed(m: Mandelbox, iterations: Option<u32>) -> Scene {
+    distance(Formula::Mandelbox(m), iterations)
 }
 
 /// A camera that looks at a point, +z up.
@@ -71,35 +65,31 @@ pub fn mandelbox(scale: f64) -> Mandelbox {
     }
 }
 
-/// The formula of a plan, if it has one.
-pub fn formula_of(plan: &Plan) -> Option<&Formula> {
-    match &plan.subject {
-        Scene::Distance { shape, .. } => Some(shape),
-        _ => None,
+/// The settings of a plan of a formula.
+fn settings(plan: &mut Plan) -> &mut DistanceSettings {
+    match &mut plan.scene {
+        Scene::Distance(settings) => settings,
+        _ => panic!("a plan of a formula"),
     }
 }
 
 /// The Mandelbox of a plan.
 pub fn mandelbox_of(plan: &mut Plan) -> &mut Mandelbox {
-    match &mut plan.subject {
-        Scene::Distance {
-            shape: Formula::Mandelbox(m),
-            ..
-        } => m,
+    match &mut settings(plan).formula {
+        Formula::Mandelbox(m) => m,
         _ => panic!("a plan of a Mandelbox"),
     }
 }
 
 /// Gives a plan of a formula its own iteration limit.
 pub fn limit_iterations(plan: &mut Plan, most: u32) {
-    if let Scene::Distance { iterations, .. } = &mut plan.subject {
-        *iterations = Some(most);
-    }
+    settings(plan).iterations = Some(most);
 }
 
 /// The scene of a plan in numbers, ready to be asked.
 pub fn solid(plan: &Plan) -> AnySolid {
-    plan.scene()
+    let solid = plan.solid(&Assets::default());
+    solid.unwrap_or_else(|e| panic!("{e}, {plan:?}"))
 }
 
 /// The same for a plan of a formula.
@@ -110,17 +100,22 @@ pub fn distance_solid(plan: &Plan) -> Distance {
     }
 }
 
-/// The passes of a frame with extras.
-pub fn passes(plan: &Plan, extras: Extras) -> Vec<Pass> {
-    plan.passes_for(extras)
+/// The light of a plan.
+pub fn light(plan: &Plan) -> Light {
+    Light::of(plan, &Assets::default())
+}
+
+/// The report on a frame of a plan against a reference.
+pub fn compared(frame: &Frame, reference: &Frame, plan: &Plan) -> Report {
+    compare(frame, reference, plan, &solid(plan))
 }
 
 /// The program of a pass.
 pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Program {
-    plan.program(solid, pass, extras)
+    pass::program(plan, solid, pass, extras)
 }
 
 /// What `--explain` prints.
 pub fn explain(plan: &Plan, extras: Extras) -> String {
-    plan.explain(extras)
+    pass::explain(plan, &Assets::default(), extras).expect("an explanation")
 }

@@ -5,10 +5,11 @@ use conemarch::base::shader::Module;
 use conemarch::base::view;
 use conemarch::formula::Formula;
 use conemarch::plan::Plan;
+use conemarch::scene::Scene;
 use conemarch::wgsl;
 use glam::DVec3;
 
-use super::plans::{Scene, distance, solid};
+use super::plans::{distance, solid};
 use super::probe::Probe;
 
 /// f64 to f32, and back: what both sides are asked is the same number.

@@ -5,9 +5,10 @@ use conemarch::formula::{Formula, balls::Balls};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::Plan;
 use conemarch::plan::camera::Camera;
+use conemarch::scene::Scene;
 
 use super::exact::{self, Exact};
-use super::plans::{Scene, camera, distance, formula_of, scene};
+use super::plans::{camera, distance, scene};
 
 /// From far, from near, eight thousandths off the largest ball and along it, inside the
 /// bounds between the solids, and straight along an axis.
@@ -39,15 +40,18 @@ pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
 /// A disc, solved in closed form by the scene itself.
 pub fn slab(camera: &Camera, size: [u32; 2]) -> Plan {
     let mut plan = balls(0.05, camera, size);
-    plan.subject = scene("kind = 'slab'");
+    plan.scene = scene("kind = 'slab'");
     plan
 }
 
 /// The solids of a plan in closed form, if that is known.
 pub fn solids(plan: &Plan) -> Option<Vec<Exact>> {
-    match (&plan.subject, formula_of(plan)) {
-        (Scene::Slab(s), _) => Some(vec![Exact::Disc(s.normal, s.half, s.radius)]),
-        (_, Some(Formula::Balls(b))) => Some(exact::balls(b.rod_radius, b.box_size, b.ball_radius)),
+    match &plan.scene {
+        Scene::Slab(s) => Some(vec![Exact::Disc(s.normal, s.half, s.radius)]),
+        Scene::Distance(settings) => match &settings.formula {
+            Formula::Balls(b) => Some(exact::balls(b.rod_radius, b.box_size, b.ball_radius)),
+            _ => None,
+        },
         _ => None,
     }
 }

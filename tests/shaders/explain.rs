@@ -1,11 +1,12 @@
 //! Which modules a plan joins, as `--explain` tells it: a snapshot, and one feature after
 //! another.
 
+use conemarch::pass::LookFeature;
 use conemarch::plan::{Extras, Pass, Plan};
 
-use super::common::plans::{explain, passes, preset, program, solid};
+use super::common::plans::{explain, preset, program, solid};
 use super::has;
-use super::programs::{FEATURES, programs_of};
+use super::programs::{programs_of, switch};
 
 /// The explanation of a built-in preset with settings as `--set` takes them.
 fn explained(name: &str, settings: &[&str]) -> String {
@@ -15,11 +16,7 @@ fn explained(name: &str, settings: &[&str]) -> String {
 /// Asserts that a plan joins a module and not its stand-in, or the other way about.
 fn assert_joins(text: &str, on: bool, module: &str, stand_in: &str) {
     for (module, wanted) in [(module, on), (stand_in, !on)] {
-        assert_eq!(
-            text.contains(&format!("wgsl/{module}.wgsl")),
-            wanted,
-            "{module}\n{text}"
-        );
+        assert_eq!(text.contains(module), wanted, "{module}\n{text}");
     }
 }
 
@@ -34,19 +31,23 @@ fn a_rotation_by_nothing_is_no_rotation() {
     let degree = turned("[0, 0, 1]");
     assert_ne!(none, degree);
     for (text, on) in [(&none, false), (&degree, true)] {
-        assert_joins(text, on, "formula/rotation", "formula/rotation_none");
+        assert_joins(
+            text,
+            on,
+            "wgsl/formula/rotation.wgsl",
+            "wgsl/formula/rotation_none.wgsl",
+        );
     }
 }
 
 #[test]
 fn features_that_are_off_are_not_joined() {
-    for (name, set) in FEATURES {
-        let module = format!("pass/{name}");
-        for on in [true, false] {
+    for feature in LookFeature::ALL {
+        let [off, on] = [false, true].map(|on| feature.module(on).path);
+        for wanted in [true, false] {
             let mut plan = preset("mandelbox", &[]);
-            set(&mut plan, on);
-            let text = explain(&plan, Extras::default());
-            assert_joins(&text, on, &module, &format!("{module}_off"));
+            switch(&mut plan, *feature, wanted);
+            assert_joins(&explain(&plan, Extras::default()), wanted, on, off);
         }
     }
 }
@@ -76,8 +77,8 @@ fn what_is_asked_for_beside_the_picture_is_explained() {
             assert_joins(
                 program_lines(text, entry),
                 on,
-                "base/counters",
-                "base/counters_off",
+                "wgsl/base/counters.wgsl",
+                "wgsl/base/counters_off.wgsl",
             );
         };
         counters(&plain, false);
@@ -121,8 +122,8 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
         assert_joins(
             &text,
             painted,
-            "heightfield/paint",
-            "heightfield/paint_height",
+            "wgsl/heightfield/paint.wgsl",
+            "wgsl/heightfield/paint_height.wgsl",
         );
     }
 }
@@ -131,7 +132,7 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
 fn work_is_counted_only_where_it_is_asked_for() {
     let plan = preset("mandelbox", &[]);
     let solid = solid(&plan);
-    for pass in passes(&plan, Extras::default()) {
+    for pass in plan.passes(Extras::default()) {
         for count in [false, true] {
             let extras = Extras {
                 count,
@@ -175,7 +176,12 @@ fn what_a_slider_moves_compiles_nothing_new() {
 fn the_rule_of_the_slides_takes_the_place_of_the_exact_one() {
     for (mode, exact) in [("safe", true), ("slides-deep", false)] {
         let text = explained("mandelbox", &[&format!("march.mode={mode}")]);
-        assert_joins(&text, exact, "base/cone", "base/cone_slides");
+        assert_joins(
+            &text,
+            exact,
+            "wgsl/base/cone.wgsl",
+            "wgsl/base/cone_slides.wgsl",
+        );
     }
 }
 

@@ -7,27 +7,37 @@ use std::sync::LazyLock;
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
 use conemarch::heightfield::conemap::generate::program::every_program;
+use conemarch::pass::LookFeature;
 use conemarch::plan::march::MODES;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
+use conemarch::scene::Scene;
 use rayon::prelude::*;
 use toml::Value;
 use wgpu::naga::{self, valid::Capabilities};
 
-use super::common::plans::{Scene, distance, passes, preset, program, solid};
+use super::common::plans::{distance, preset, program, solid};
 
-/// A feature of the look: the name of its file, and its switch. The stand-in's name ends in
-/// `_off`.
-type Feature = (&'static str, fn(&mut Plan, bool));
-
-/// All features of the look.
-pub const FEATURES: [Feature; 3] = [
-    ("shadow", |p, on| p.look.shadow = on),
-    ("occlusion", |p, on| {
-        p.look.occlusion = f64::from(u8::from(on))
-    }),
-    ("fog", |p, on| p.look.fog = f64::from(u8::from(on))),
-];
+/// Switches a feature of the look, by the key that does and nothing else.
+pub fn switch(plan: &mut Plan, feature: LookFeature, on: bool) {
+    let old = plan.look.clone();
+    let wanted = |f: &LookFeature| if *f == feature { on } else { f.is_on(&old) };
+    let values = [Value::Boolean(on), Value::Float(f64::from(u8::from(on)))];
+    for index in 0..old.clone().keys().len() {
+        for value in &values {
+            plan.look = old.clone();
+            let fits = plan.look.keys()[index].slot.set(value).is_ok();
+            if fits
+                && LookFeature::ALL
+                    .iter()
+                    .all(|f| f.is_on(&plan.look) == wanted(f))
+            {
+                return;
+            }
+        }
+    }
+    panic!("no key switches {feature:?}");
+}
 
 /// All values worth trying for a key: the other state of a switch, every word of a list of
 /// words, and a triple away from zero.
@@ -98,15 +108,15 @@ fn plans() -> Vec<Plan> {
     let mut all = Vec::new();
     for plan in first {
         for (_, mode) in MODES {
-            for look in 0..1 << FEATURES.len() {
-                let apart = matches!(plan.subject, Scene::Heightfield(_));
+            for look in 0..1 << LookFeature::ALL.len() {
+                let apart = matches!(plan.scene, Scene::Heightfield(_));
                 if apart && look > 0 && *mode != plan.march.mode {
                     continue;
                 }
                 let mut one = plan.clone();
                 one.march.mode = *mode;
-                for (at, (_, set)) in FEATURES.iter().enumerate() {
-                    set(&mut one, look & (1 << at) > 0);
+                for (at, feature) in LookFeature::ALL.iter().enumerate() {
+                    switch(&mut one, *feature, look & (1 << at) > 0);
                 }
                 all.push(one);
             }
@@ -120,7 +130,7 @@ fn plans() -> Vec<Plan> {
 pub fn programs_of(plan: &Plan) -> Vec<Program> {
     let solid = solid(plan);
     let mut all: Vec<Program> = Vec::new();
-    for pass in passes(plan, Extras::default()) {
+    for pass in plan.passes(Extras::default()) {
         for [count, normals] in [[false; 2], [true, false], [false, true], [true; 2]] {
             let extras = Extras {
                 count,

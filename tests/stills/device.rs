@@ -1,12 +1,15 @@
 //! Choosing a device, losing it, and stopping on request: an error that says what was
 //! lost and what would do, never a panic and never a frame.
 
+use conemarch::gpu::RenderError;
 use conemarch::gpu::device::{Adapters, Choice, DeviceError, kind};
-use conemarch::gpu::render::{RenderError, Renderer, Watch};
+use conemarch::gpu::render::Renderer;
+use conemarch::pass::progress::Watch;
 use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Assets;
 
 use super::common::folder::{Folder, said, text};
-use super::common::plans::{passes, sized};
+use super::common::plans::sized;
 use crate::adapter;
 
 fn small() -> Plan {
@@ -14,12 +17,12 @@ fn small() -> Plan {
 }
 
 fn passes_of_small() -> usize {
-    passes(&small(), Extras::default()).len()
+    small().passes(Extras::default()).len()
 }
 
 /// Renders a small plan: how many pixels hit.
 fn hits(renderer: &mut Renderer, watch: Watch<'_>) -> Result<usize, RenderError> {
-    let frame = renderer.render(&small(), Extras::default(), watch)?;
+    let frame = renderer.render(&small(), &Assets::default(), Extras::default(), watch)?;
     Ok(frame.census()[1])
 }
 
@@ -103,7 +106,7 @@ fn a_choice_that_matches_nothing_lists_what_there_is() {
     let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
     let hardware = adapters.iter().any(|a| kind(&a.get_info()) != "software");
     let mut wrong = vec![
-        (Choice::PatternSpec("no-such".into()), "no-such"),
+        (Choice::Name("no-such".into()), "no-such"),
         (Choice::Index(99), "99"),
     ];
     if !hardware {
@@ -133,7 +136,7 @@ fn every_adapter_can_be_chosen_by_index_and_by_part_of_its_name() {
         };
         assert_eq!(chosen(Choice::Index(i)), Some(info.name.clone()));
         let part = info.name.to_uppercase().chars().take(6).collect();
-        let found = chosen(Choice::PatternSpec(part)).unwrap();
+        let found = chosen(Choice::Name(part)).unwrap();
         assert_eq!(found[..6], info.name[..6]);
     }
     assert!(adapters.choose(&Choice::Cpu).unwrap().is_none());
@@ -151,9 +154,9 @@ fn choices_are_read_from_words() {
         ("cpu", Choice::Cpu),
         ("0", Choice::Index(0)),
         ("17", Choice::Index(17)),
-        ("-1", Choice::PatternSpec("-1".into())),
-        ("RTX 40", Choice::PatternSpec("RTX 40".into())),
-        ("gpus", Choice::PatternSpec("gpus".into())),
+        ("-1", Choice::Name("-1".into())),
+        ("RTX 40", Choice::Name("RTX 40".into())),
+        ("gpus", Choice::Name("gpus".into())),
     ];
     for (text, choice) in cases {
         assert_eq!(Choice::read(text), Some(choice), "`{text}`");

@@ -19,15 +19,17 @@ mod common {
 mod device;
 
 use adapter::{COUNTED, LEVELS, on_cpu, render};
-use common::plans::{preset, sized};
+use common::plans::{compared, preset, sized};
 use conemarch::base::srgb::srgb;
 use conemarch::base::work::State;
-use conemarch::measure::compare::{Report, compare, quantile};
+use conemarch::measure::compare::{Report, quantile};
 use conemarch::measure::truth::truth;
+use conemarch::pass::look::tone;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::march::{MODES, Mode};
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
+use conemarch::scene::Assets;
 use glam::DVec3;
 
 /// The views that are measured.
@@ -48,15 +50,15 @@ struct Apart {
 }
 
 fn apart(plan: &Plan, frame: &Frame, reference: &Frame) -> Apart {
-    let light = plan.light();
-    let shown = |c: [f32; 3]| srgb(light.tone(DVec3::from_array(c.map(f64::from))));
+    let exposure = plan.look.exposure.exp2();
+    let shown = |c: [f32; 3]| srgb(tone(exposure, DVec3::from_array(c.map(f64::from))));
     let pairs = frame.radiance.iter().zip(&reference.radiance);
     let mut shades: Vec<f64> = pairs
         .map(|(a, b)| 255.0 * (shown(*a) - shown(*b)).abs().max_element())
         .collect();
     shades.sort_by(f64::total_cmp);
     Apart {
-        report: compare(frame, reference, plan),
+        report: compared(frame, reference, plan),
         shade: [0.5, 0.95].map(|q| quantile(&shades, q)),
     }
 }
@@ -136,11 +138,11 @@ fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
     let allowed = 1e-4;
     for name in BENCHMARKS {
         let mut plan = sized(name, [160, 90]);
-        let truth = truth(&plan, &mut |_| true).unwrap();
+        let truth = truth(&plan, &Assets::default(), &mut |_| true).unwrap();
         let mut wrong = |mode| {
             plan.march.mode = mode;
             let frame = render(&plan, LEVELS);
-            let report = compare(&frame, &truth.frame, &plan);
+            let report = compared(&frame, &truth.frame, &plan);
             let starts: u64 = report.start_violations.iter().map(|v| v.1).sum();
             (report.behind + report.holes, starts)
         };
@@ -181,7 +183,7 @@ fn every_mode_renders_on_both_executors() {
 fn a_comparison_with_itself_is_nothing_and_with_a_shift_is_not() {
     let plan = sized("bench-outside", [160, 90]);
     let frame = render(&plan, LEVELS);
-    let same = compare(&frame, &frame, &plan);
+    let same = compared(&frame, &frame, &plan);
     assert_eq!(same.depth_error, [0.0; 4]);
     let shares = |r: &Report| {
         let sides = [r.behind, r.front, r.behind8, r.front8];
@@ -194,7 +196,7 @@ fn a_comparison_with_itself_is_nothing_and_with_a_shift_is_not() {
     let mut shifted = frame.clone();
     shifted.depth.rotate_left(4);
     shifted.state.rotate_left(4);
-    let other = compare(&shifted, &frame, &plan);
+    let other = compared(&shifted, &frame, &plan);
     assert!(other.depth_error[0] > 0.1, "{other:?}");
     assert!(shares(&other).iter().all(|x| *x > 0.0), "{other:?}");
     // The shares of holes and false hits add up to that of the mask.

@@ -8,11 +8,12 @@ use conemarch::plan::Plan;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::look::Look;
 use conemarch::plan::march::{MODES, Marching};
+use conemarch::scene::Scene;
 use conemarch::scene::distance::Relaxation;
 use glam::DVec3;
 use proptest::prelude::*;
 
-use super::common::plans::{Scene, distance, scene};
+use super::common::plans::{boxed, distance, scene};
 
 /// A vector in the cube of a half extent.
 fn cube(half: f64) -> impl Strategy<Value = DVec3> {
@@ -48,7 +49,7 @@ fn mandelbox() -> impl Strategy<Value = Mandelbox> {
 
 fn any_scene() -> impl Strategy<Value = Scene> {
     let iterations = prop_oneof![Just(None), (1_u32..=500).prop_map(Some)];
-    let boxes = (mandelbox(), iterations).prop_map(|(m, most)| distance(m, most));
+    let boxes = (mandelbox(), iterations).prop_map(|(m, most)| boxed(m, most));
     let balls = (size(1e-6, 0.5), 1e-3..1.2, 1e-3..2.5).prop_map(|(rod, edge, ball)| {
         let balls = Balls {
             rod_radius: rod,
@@ -156,8 +157,8 @@ fn extent(scene: &Scene) -> f64 {
     match scene {
         Scene::Heightfield(settings) => 0.5 * settings.width,
         Scene::Slab(slab) => slab.radius,
-        Scene::Distance { shape, .. } => {
-            let bounds = shape.bounds();
+        Scene::Distance(settings) => {
+            let bounds = settings.formula.bounds();
             bounds.half.max_element().min(bounds.radius)
         }
     }

@@ -36,7 +36,7 @@ use std::cell::Cell;
 use adapter::{HIT, SKY, UNCONVERGED, both};
 use any_plan::any_plan;
 use common::hard::{self, SIZE};
-use common::plans::{camera, distance, distance_solid, mandelbox, sized};
+use common::plans::{boxed, camera, distance_solid, mandelbox, sized};
 use common::solved::rays;
 use common::strain;
 use conemarch::formula::DistanceEstimate;
@@ -139,7 +139,7 @@ fn hits_are_where_the_estimate_is_within_the_threshold() {
         plan.march.relaxation = Relaxation::Off;
         let mut m = mandelbox(scale);
         m.lipschitz = Some(3.0);
-        plan.subject = distance(m.clone(), None);
+        plan.scene = boxed(m.clone(), None);
         let iterations = distance_solid(&plan).iterations;
         for frame in both(&plan) {
             let mut hits = 0;

@@ -7,7 +7,7 @@ use conemarch::scene::distance::Relaxation;
 use conemarch::scene::{Solid, Step, Task};
 use glam::DVec3;
 
-use super::common::plans::{distance, distance_solid, mandelbox, scene, solid};
+use super::common::plans::{boxed, distance, distance_solid, mandelbox, scene, solid};
 use super::common::probe::{Numbers, probe};
 use super::common::setups::{four, probe_of, seen_from};
 use super::compare::{Allowed, DECIDED, MOVED, Pairs, Quantities, Twins, questions};
@@ -127,7 +127,7 @@ fn beams_in_a_distance_scene_agree() {
 #[test]
 fn beams_in_a_mandelbox_agree() {
     let of = |scale: f64| {
-        let mut plan = seen_from([3.0, -12.0, 5.0], distance(mandelbox(scale), Some(8)));
+        let mut plan = seen_from([3.0, -12.0, 5.0], boxed(mandelbox(scale), Some(8)));
         plan.march.clip = Some(false);
         plan
     };
@@ -196,7 +196,7 @@ fn the_part_of_a_ray_near_the_bounds_agrees() {
     let of = |scale: f64| {
         let mut m = mandelbox(scale);
         m.rotation = DVec3::X;
-        seen_from([9.0, -17.0, 8.0], distance(m, Some(6)))
+        seen_from([9.0, -17.0, 8.0], boxed(m, Some(6)))
     };
     let plan = of(2.0);
     let scene = distance_solid(&plan);
@@ -216,7 +216,7 @@ fn the_part_of_a_ray_near_the_bounds_agrees() {
     twins.assert_agree("mandelbox", &probe(&plan), &moved);
     // Nothing within the bounds is cut off: where f32 starts later than f64 it is still
     // outside them, but for the rounding of a position 30 away.
-    let bounds = scene.shape.bounds();
+    let bounds = scene.formula.bounds();
     for (q, a) in asked.iter().zip(&probe(&plan).ask(&asked)) {
         let ray = beam(q);
         let (near, far) = scene.bounds_interval(&ray);

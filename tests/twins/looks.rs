@@ -2,13 +2,13 @@
 
 use bytemuck::bytes_of;
 use conemarch::base::view::{Beam, footprint};
-use conemarch::pass::{fog, look, occlusion, shadow};
+use conemarch::pass::{LookFeature, fog, look, occlusion, shadow};
 use conemarch::plan::Plan;
 use conemarch::scene::{Hit, Solid};
 use glam::DVec3;
 
 use super::beams::beam;
-use super::common::plans::{distance, distance_solid, scene};
+use super::common::plans::{distance, distance_solid, light, scene};
 use super::common::probe::{Probe, probe};
 use super::common::setups::{four, probe_of, seen_from};
 use super::compare::{Allowed, MOVED, Twins, questions};
@@ -16,7 +16,7 @@ use super::{balls, three};
 
 /// Adds the look of a plan to what a probe binds.
 fn with_look(mut probe: Probe, plan: &Plan) -> Probe {
-    let look = plan.light().uniform();
+    let look = light(plan).uniform();
     probe.modules.push(look::module());
     probe
         .parameters
@@ -40,7 +40,7 @@ fn palette_pigment_and_sky_agree() {
         let pigment = DVec3::new(random.unit(), random.unit(), random.unit());
         [DVec3::X * x, sky, pigment].map(|v| four(v, 0.0))
     });
-    let light = plan.light();
+    let light = light(&plan);
     let quantities = [("palette_at sky pigment_color", 0.01, Allowed(1e-6, 1e-5))];
     let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
         pairs.add_vector("palette_at", a[0], light.palette_at(f64::from(q[0][0])));
@@ -73,7 +73,7 @@ fn surfaces_and_their_light_agree() {
         let (t, grain) = (point.length(), 0.002);
         [four(point, t), four(point / t, grain), four(normal, 0.0)]
     });
-    let (scene, light) = (distance_solid(&plan), plan.light());
+    let (scene, light) = (distance_solid(&plan), light(&plan));
     let quantities = [
         ("normal", 0.1, Allowed(5e-5, 5e-4)),
         ("pigment", 0.1, Allowed(2e-6, 3e-5)),
@@ -108,8 +108,8 @@ fn surfaces_and_their_light_agree() {
     let probe = |change| {
         let plan = changed(&plan, change);
         let mut lit = probe_of(&plan, probe!("lit"));
-        let features = [shadow::module, occlusion::module, fog::module];
-        lit.modules.extend(features.map(|module| module(true)));
+        lit.modules
+            .extend(LookFeature::ALL.iter().map(|feature| feature.module(true)));
         with_look(lit, &plan)
     };
     let moved = [
