@@ -115,10 +115,10 @@ fn row<'a>(
     }
     write!(text, "| {label} | {} ", all.len())?;
     let mut pair = |[median, most]: [f64; 2]| write!(text, "| {median:.0e} | {most:.0e} ");
-    pair(quantiles(all.iter().map(|s| s.computed())))?;
-    pair(quantiles(all.iter().map(|s| s.in_all())))?;
+    pair(quantiles(all.iter().map(|s| s.computed)))?;
+    pair(quantiles(all.iter().map(|s| s.in_all)))?;
     if double {
-        pair(quantiles(all.iter().filter_map(|s| s.doubled())))?;
+        pair(quantiles(all.iter().filter_map(|s| s.doubled)))?;
     }
     writeln!(text, "|")?;
     Ok(())

@@ -31,12 +31,12 @@ fn assert_within(power: i32, error: fn(&Sample) -> f64, bounds: [f64; 2]) {
 fn f32_holds_down_to_its_floor_and_not_below() {
     // The noise is 1e-7 at coordinates of 5: a ten-thousandth of a distance of 1e-3.
     for power in [-1, -2, -3] {
-        assert_within(power, Sample::in_all, [5e-4, 0.05]);
+        assert_within(power, |s| s.in_all, [5e-4, 0.05]);
     }
     // At 1e-8 nothing is left of it, and the comparison sees that.
     for (scale, all) in SAMPLES.iter() {
         let here = all.iter().filter(|s| s.power == -8);
-        let [median, _] = quantiles(here.map(Sample::in_all));
+        let [median, _] = quantiles(here.map(|s| s.in_all));
         assert!(median > 0.5, "{scale}: {median}");
     }
 }
@@ -53,6 +53,6 @@ fn f64_on_an_adapter_is_f64() {
     }
     for power in -9..=-1 {
         // Its parameters are read in f32, as ever: K is rounded, by 3e-8 of itself.
-        assert_within(power, |s| s.doubled().unwrap(), [1e-7, 1e-5]);
+        assert_within(power, |s| s.doubled.unwrap(), [1e-7, 1e-5]);
     }
 }
