@@ -88,25 +88,24 @@ fn estimates(scale: f64) -> String {
 
 /// A table of relative errors: the median and the 99th percentile of each group of samples.
 fn errors<'a>(what: &str, groups: impl Iterator<Item = (String, Vec<&'a Sample>)>) -> String {
-    let mut head = vec![what, "points", "f32, at its own point: median", "99 %"];
-    head.extend(["f32, in all: median", "99 %"]);
+    let mut head = format!("{what} | points | f32, at its own point: median | 99 %");
+    head += " | f32, in all: median | 99 %";
     if has_f64() {
-        head.extend(["f64 on the adapter: median", "99 %"]);
+        head += " | f64 on the adapter: median | 99 %";
     }
-    let rows = groups
-        .filter(|(_, all)| !all.is_empty())
-        .map(|(label, all)| {
-            let mut pairs = vec![
-                quantiles(all.iter().map(|s| s.computed())),
-                quantiles(all.iter().map(|s| s.in_all())),
-            ];
-            if has_f64() {
-                pairs.push(quantiles(all.iter().filter_map(|s| s.doubled())));
-            }
-            let mut cells = vec![label, all.len().to_string()];
-            cells.extend(pairs.into_iter().flatten().map(|e| format!("{e:.0e}")));
-            cells
-        });
+    let groups = groups.filter(|(_, all)| !all.is_empty());
+    let rows = groups.map(|(label, all)| {
+        let mut pairs = vec![
+            quantiles(all.iter().map(|s| s.computed())),
+            quantiles(all.iter().map(|s| s.in_all())),
+        ];
+        if has_f64() {
+            pairs.push(quantiles(all.iter().filter_map(|s| s.doubled())));
+        }
+        let errors = pairs.into_iter().flatten();
+        let errors: String = errors.map(|e| format!(" | {e:.0e}")).collect();
+        format!("{label} | {}{errors}", all.len())
+    });
     table(&head, "lr", rows)
 }
 
@@ -116,16 +115,10 @@ fn near() -> String {
         let o = strain(&name, &plan);
         let [apart, gpu, cpu] = [o.apart, o.wrong_gpu, o.wrong_cpu].map(percent);
         let warned = if o.warned { "yes" } else { "no" };
-        vec![name, apart, gpu, cpu, warned.into()]
+        format!("{name} | {apart} | {gpu} | {cpu} | {warned}")
     });
-    let head = [
-        "view",
-        "executors apart",
-        "wrong, f32",
-        "wrong, f64",
-        "warned",
-    ];
-    let rows = table(&head, "lrrrl", rows);
+    let head = "view | executors apart | wrong, f32 | wrong, f64 | warned";
+    let rows = table(head, "lrrrl", rows);
     format!("\n### Cameras near the surface\n\n{rows}")
 }
 
@@ -138,32 +131,22 @@ fn groups() -> String {
             .map(|(name, plan)| strain(name, plan))
             .collect();
         let worst = |of: fn(&Outcome) -> f64| percent(all.iter().map(of).fold(0.0, f64::max));
-        vec![
-            group.what.into(),
-            all.len().to_string(),
-            all.iter().filter(|o| o.warned).count().to_string(),
+        format!(
+            "{} | {} | {} | {} | {} | {} | {} | {} | {} | `{}`",
+            group.what,
+            all.len(),
+            all.iter().filter(|o| o.warned).count(),
             worst(|o| if o.warned { 0.0 } else { o.apart }),
             percent(group.apart),
             worst(|o| if o.warned { 0.0 } else { o.wrong_gpu }),
             worst(|o| o.wrong_cpu),
             percent(group.wrong),
             worst(|o| o.unconverged),
-            format!("`{}`", group.test),
-        ]
+            group.test
+        )
     });
-    let head = [
-        "what is hard",
-        "plans",
-        "warned",
-        "executors apart",
-        "bound",
-        "wrong, f32",
-        "wrong, f64",
-        "bound",
-        "unconverged",
-        "test",
-    ];
-    let rows = table(&head, "lrrrrrrrrl", rows);
+    let head = "what is hard | plans | warned | executors apart | bound | wrong, f32 | wrong, f64 | bound | unconverged | test";
+    let rows = table(head, "lrrrrrrrrl", rows);
     format!("\n### The worst of each kind, and its bound\n\n{rows}")
 }
 

@@ -2,19 +2,17 @@
 
 use anyhow::{Context, Result};
 
-/// A table. `align` has an `l` for each column that is aligned to the left and an `r` for each
-/// that is aligned to the right; its last letter holds for all further columns.
-pub fn table(head: &[&str], align: &str, rows: impl IntoIterator<Item = Vec<String>>) -> String {
+/// A table. The head and each row have ` | ` between their cells. `align` has an `l` for each
+/// column that is aligned to the left and an `r` for each that is aligned to the right; its last
+/// letter holds for all further columns.
+pub fn table(head: &str, align: &str, rows: impl IntoIterator<Item = String>) -> String {
     let last = align.chars().last().into_iter().cycle();
-    let letters = align.chars().chain(last).take(head.len());
+    let letters = align.chars().chain(last).take(head.split('|').count());
     let rule: String = letters
         .map(|l| if l == 'l' { ":--|" } else { "--:|" })
         .collect();
-    let mut text = format!("| {} |\n|{rule}\n", head.join(" | "));
-    for row in rows {
-        text += &format!("| {} |\n", row.join(" | "));
-    }
-    text
+    let rows = rows.into_iter().map(|row| format!("| {row} |\n"));
+    format!("| {head} |\n|{rule}\n{}", rows.collect::<String>())
 }
 
 /// Puts text between the two lines that mark a section.

@@ -60,9 +60,14 @@ fn once<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     kept
 }
 
-/// Numbers of several views in one cell.
+/// Figures of several views in one cell.
 fn joined(all: impl IntoIterator<Item = String>) -> String {
     all.into_iter().collect::<Vec<_>>().join(" / ")
+}
+
+/// Cells of a row.
+fn cells(all: impl IntoIterator<Item = String>) -> String {
+    all.into_iter().collect::<Vec<_>>().join(" | ")
 }
 
 /// A share in per cent. Only 0 itself is shown as 0.
@@ -104,9 +109,9 @@ pub fn means(rows: &[ConesRow], size: u32) -> String {
     let fields = once(rows.iter().map(|r| r.field.as_str()));
     let body = pairs(&rows).into_iter().map(|(tracer, map)| {
         let of_view = |view| {
-            let own =
-                move |r: &&&TracerRow| (&*r.tracer, &*r.map, r.view_deg) == (tracer, map, view);
-            rows.iter().filter(own)
+            let key = (tracer, map, view);
+            rows.iter()
+                .filter(move |r| (&*r.tracer, &*r.map, r.view_deg) == key)
         };
         let mean = |figure: fn(&TracerRow) -> f64| {
             VIEWS.map(|view| {
@@ -119,60 +124,34 @@ pub fn means(rows: &[ConesRow], size: u32) -> String {
             n if n < fields.len() => format!(" ({n} of {})", fields.len()),
             _ => String::new(),
         };
-        let mut cells = vec![tracer.to_owned(), format!("{map}{note}")];
-        cells.extend(mean(|r| r.steps_mean).map(|steps| format!("{steps:.1}")));
-        cells
-            .extend([mean(|r| r.skipped), mean(|r| r.unconverged)].map(|m| joined(m.map(percent))));
-        cells
+        let steps = cells(mean(|r| r.steps_mean).map(|steps| format!("{steps:.1}")));
+        let skipped = joined(mean(|r| r.skipped).map(percent));
+        let unconverged = joined(mean(|r| r.unconverged).map(percent));
+        format!("{tracer} | {map}{note} | {steps} | {skipped} | {unconverged}")
     });
-    let head = [
-        "tracer",
-        "map",
-        "steps at 30",
-        "at 60",
-        "at 80",
-        "skipped %",
-        "unconverged %",
-    ];
-    let fields = fields.join(", ");
-    format!(
-        "### In the mean of {fields}, {size} x {size}\n\n{}\n",
-        table(&head, "llr", body)
-    )
+    let head = "tracer | map | steps at 30 | at 60 | at 80 | skipped % | unconverged %";
+    let (table, fields) = (table(head, "llr", body), fields.join(", "));
+    format!("### In the mean of {fields}, {size} x {size}\n\n{table}\n")
 }
 
 /// Tracers, first in the mean of the fields, then field by field.
 pub fn tracers(rows: &[ConesRow]) -> String {
     let mut text = means(rows, SMALL) + &means(rows, SHOWN);
     let rows = tracer_rows(rows, SHOWN);
-    let head = [
-        "tracer",
-        "map",
-        "steps at 30, mean / p99",
-        "at 60",
-        "at 80",
-        "skipped %",
-        "unconverged %",
-        "error, texels",
-    ];
+    let head = "tracer | map | steps at 30, mean / p99 | at 60 | at 80 | skipped % | unconverged % | error, texels";
     for field in once(rows.iter().map(|r| r.field.as_str())) {
         let own: Vec<&TracerRow> = rows.iter().copied().filter(|r| r.field == field).collect();
         let body = pairs(&own).into_iter().map(|(tracer, map)| {
-            let views = || {
-                own.iter()
-                    .filter(|r| (&*r.tracer, &*r.map) == (tracer, map))
-            };
-            let mut cells = vec![tracer.to_owned(), map.to_owned()];
-            cells.extend(views().map(|r| format!("{:.1} / {}", r.steps_mean, r.steps_p99)));
-            cells.push(joined(views().map(|r| percent(r.skipped))));
-            cells.push(joined(views().map(|r| percent(r.unconverged))));
-            cells.push(joined(views().map(|r| texels(r.error_texels))));
-            cells
+            let is = |r: &&&TracerRow| (&*r.tracer, &*r.map) == (tracer, map);
+            let of = |show: fn(&TracerRow) -> String| own.iter().filter(is).map(move |r| show(r));
+            let steps = cells(of(|r| format!("{:.1} / {}", r.steps_mean, r.steps_p99)));
+            let skipped = joined(of(|r| percent(r.skipped)));
+            let unconverged = joined(of(|r| percent(r.unconverged)));
+            let error = joined(of(|r| texels(r.error_texels)));
+            format!("{tracer} | {map} | {steps} | {skipped} | {unconverged} | {error}")
         });
-        text += &format!(
-            "\n### {field}, {SHOWN} x {SHOWN}\n\n{}",
-            table(&head, "llr", body)
-        );
+        let table = table(head, "llr", body);
+        text += &format!("\n### {field}, {SHOWN} x {SHOWN}\n\n{table}");
     }
     text
 }
@@ -186,19 +165,17 @@ pub fn generators(rows: &[ConesRow]) -> String {
     let rows: Vec<&GeneratorRow> = own.collect();
     let fields = once(rows.iter().map(|r| r.field.as_str()));
     let names = once(rows.iter().map(|r| r.generator.as_str()));
-    let head = [&["generator"], &fields[..]].concat();
+    let head = format!("generator | {}", fields.join(" | "));
     let mut text = String::new();
     for size in once(rows.iter().map(|r| r.size)) {
         let body = names.iter().map(|name| {
-            let cell = |field: &&str| {
-                let is = |r: &&&GeneratorRow| {
-                    (r.size, &*r.field, &*r.generator) == (size, *field, *name)
-                };
-                rows.iter().find(is).map_or("n/a".into(), |r| generator(r))
-            };
-            std::iter::once((*name).to_owned())
-                .chain(fields.iter().map(cell))
-                .collect()
+            let figures = fields.iter().map(|field| {
+                let key = (size, *field, *name);
+                let mut all = rows.iter();
+                let own = all.find(|r| (r.size, &*r.field, &*r.generator) == key);
+                own.map_or("n/a".into(), |r| generator(r))
+            });
+            format!("{name} | {}", cells(figures))
         });
         let [w, h] = size;
         text += &format!("### {w} x {h}\n\n{}\n", table(&head, "lr", body));
@@ -222,43 +199,33 @@ fn generator(row: &GeneratorRow) -> String {
     joined(std::iter::once(time).chain(rest.into_iter().flatten()))
 }
 
-fn nodes_of<'a>(
-    rows: &'a [NodesRow],
-    generator: &str,
-    field: &str,
-    size: u32,
-) -> Option<&'a NodesRow> {
-    let is = |r: &&NodesRow| (&*r.generator, &*r.field, r.size) == (generator, field, size);
-    rows.iter().find(is)
+fn nodes_of<'a>(rows: &'a [NodesRow], key: (&str, &str, u32)) -> Option<&'a NodesRow> {
+    rows.iter()
+        .find(|r| (&*r.generator, &*r.field, r.size) == key)
 }
 
 /// Nodes per place: of `exact` by size, of the other searches at one size.
 pub fn nodes(rows: &[NodesRow]) -> String {
-    let mut columns: Vec<(&str, u32)> = Vec::new();
-    let mut head = vec!["field".to_owned()];
+    let mut columns = Vec::new();
+    let mut head = String::from("field");
     for size in once(rows.iter().map(|r| r.size)) {
         let name = if columns.is_empty() { "exact, " } else { "" };
-        head.push(format!("{name}{size} x {size}"));
+        head += &format!(" | {name}{size} x {size}");
         columns.push(("exact", size));
     }
-    for other in once(rows.iter().map(|r| r.generator.as_str())) {
-        if other != "exact" {
-            head.push(format!("{other}, {SHOWN} x {SHOWN}"));
-            columns.push((other, SHOWN));
-        }
+    let searches = once(rows.iter().map(|r| r.generator.as_str()));
+    for other in searches.into_iter().filter(|g| *g != "exact") {
+        head += &format!(" | {other}, {SHOWN} x {SHOWN}");
+        columns.push((other, SHOWN));
     }
-    let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    let body = once(rows.iter().map(|r| r.field.as_str()))
-        .into_iter()
-        .map(|field| {
-            let cell = |&(generator, size): &(&str, u32)| {
-                let own = nodes_of(rows, generator, field, size);
-                own.map_or("n/a".into(), |r| format!("{:.1} ({})", r.mean, r.worst))
-            };
-            std::iter::once(field.to_owned())
-                .chain(columns.iter().map(cell))
-                .collect()
+    let fields = once(rows.iter().map(|r| r.field.as_str()));
+    let body = fields.into_iter().map(|field| {
+        let counts = columns.iter().map(|(generator, size)| {
+            let own = nodes_of(rows, (*generator, field, *size));
+            own.map_or("n/a".into(), |r| format!("{:.1} ({})", r.mean, r.worst))
         });
+        format!("{field} | {}", cells(counts))
+    });
     table(&head, "lr", body)
 }
 
@@ -275,32 +242,26 @@ fn over(rows: &[TimesRow], one: &str, other: &str) -> f64 {
 /// Times of maps of one size.
 pub fn times(rows: &[TimesRow]) -> String {
     let size = rows.first().map_or(0, |r| r.size);
-    let head = [
-        "generator",
-        "device, ms",
-        "of `exact`",
-        "dispatches alone, ms",
-        "settled on the CPU %",
-        "CPU in f64, ms",
-    ];
+    let head = "generator | device, ms | of `exact` | dispatches alone, ms | settled on the CPU % | CPU in f64, ms";
     let body = rows.iter().map(|row| {
-        let own = tilde(row.estimated);
         // How long the dispatches of an abandoned map take is unknown.
         let dispatches = if row.estimated {
             "n/a".into()
         } else {
             ms(row.dispatches_ms)
         };
-        vec![
-            row.generator.clone(),
-            format!("{own}{}", ms(row.ms)),
-            format!("{own}{:.2}", over(rows, &row.generator, "exact")),
-            dispatches,
+        format!(
+            "{} | {own}{} | {own}{:.2} | {dispatches} | {} | {}{}",
+            row.generator,
+            ms(row.ms),
+            over(rows, &row.generator, "exact"),
             percent(row.settled),
-            format!("{}{}", tilde(row.cpu_estimated), ms(row.cpu_ms)),
-        ]
+            tilde(row.cpu_estimated),
+            ms(row.cpu_ms),
+            own = tilde(row.estimated),
+        )
     });
-    format!("`fbm`, {size} x {size}:\n\n{}", table(&head, "lr", body))
+    format!("`fbm`, {size} x {size}:\n\n{}", table(head, "lr", body))
 }
 
 /// The largest map, in a sentence each.
@@ -330,10 +291,11 @@ pub fn aims(cones: &[ConesRow], nodes: &[NodesRow], times: &[TimesRow]) -> Strin
     let mut body = Vec::new();
     let mut aim = |aim: String, measured: String, reached: bool| {
         let word = if reached { "reached" } else { "**missed**" };
-        body.push(vec![aim, measured, word.into()]);
+        body.push(format!("{aim} | {measured} | {word}"));
     };
-    let rough = ["fbm", "ridges", "noise", "spikes"].map(|field| {
-        let own = nodes_of(nodes, "exact", field, SHOWN);
+    let rough = ["fbm", "ridges", "noise", "spikes"];
+    let rough = rough.map(|field| {
+        let own = nodes_of(nodes, ("exact", field, SHOWN));
         (field, own.map_or(f64::NAN, |r| r.mean))
     });
     aim(
@@ -387,29 +349,26 @@ pub fn aims(cones: &[ConesRow], nodes: &[NodesRow], times: &[TimesRow]) -> Strin
             );
         }
     }
-    table(&["aim", "measured", "result"], "l", body)
+    table("aim | measured | result", "l", body)
 }
 
 /// Whole frames by cone map.
 pub fn frames(rows: &[FrameRow]) -> String {
-    let mut head: Vec<String> = ["in the paper", "tracer", "map"].map(Into::into).into();
+    let mut head = String::from("in the paper | tracer | map");
     for n in once(rows.iter().map(|r| r.steps)) {
-        head.push(format!("{n} steps: ms"));
-        head.extend(["of the first", "skipped %", "unconverged %"].map(Into::into));
+        head += &format!(" | {n} steps: ms | of the first | skipped % | unconverged %");
     }
-    let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    let kind = |r: &FrameRow| [r.paper.clone(), r.tracer.clone(), r.map.clone()];
+    let kind = |r: &FrameRow| format!("{} | {} | {}", r.paper, r.tracer, r.map);
     let body = once(rows.iter().map(kind)).into_iter().map(|own| {
-        let cells = rows.iter().filter(|r| kind(r) == own).flat_map(|row| {
-            let first = format!("{:.2}", row.of_first);
-            [
+        let figures = rows.iter().filter(|r| kind(r) == own).map(|row| {
+            let [skipped, unconverged] = [row.skipped, row.unconverged].map(percent);
+            format!(
+                "{} | {:.2} | {skipped} | {unconverged}",
                 ms(row.ms),
-                first,
-                percent(row.skipped),
-                percent(row.unconverged),
-            ]
+                row.of_first
+            )
         });
-        own.clone().into_iter().chain(cells).collect()
+        format!("{own} | {}", cells(figures))
     });
     table(&head, "lllr", body)
 }
@@ -418,48 +377,36 @@ pub fn frames(rows: &[FrameRow]) -> String {
 pub fn sizes(rows: &[SizesRow]) -> String {
     let names = once(rows.iter().map(|r| r.generator.as_str()));
     let body = once(rows.iter().map(|r| r.size)).into_iter().map(|size| {
-        let cell = |name: &&str| {
+        let times = names.iter().map(|name| {
             let own = rows
                 .iter()
                 .find(|r| (r.size, &*r.generator) == (size, *name));
             own.map_or("n/a".into(), |r| {
                 format!("{}{}", tilde(r.estimated), ms(r.ms))
             })
-        };
-        std::iter::once(format!("{size} x {size}"))
-            .chain(names.iter().map(cell))
-            .collect()
+        });
+        format!("{size} x {size} | {}", cells(times))
     });
-    table(&[&["size"], &names[..]].concat(), "lr", body)
+    table(&format!("size | {}", names.join(" | ")), "lr", body)
 }
 
 /// The tracers for distant views beside the walk.
 pub fn distances(rows: &[DistanceRow]) -> String {
-    let head = [
-        "samples",
-        "texels to a pixel",
-        "tracer",
-        "steps, rays alone",
-        "after cones",
-        "time of `walk`'s",
-        "skipped %",
-        "in one only %",
-        "apart, pixels: median",
-        "95 %",
-    ];
+    let head = "samples | texels to a pixel | tracer | steps, rays alone | after cones | time of `walk`'s | skipped % | in one only % | apart, pixels: median | 95 %";
     let body = rows.iter().map(|row| {
-        vec![
-            format!("{n} x {n}", n = row.samples),
-            format!("{:.1}", row.texels),
-            row.tracer.clone(),
-            format!("{:.1}", row.alone),
-            format!("{:.1}", row.after_cones),
-            format!("{:.2}", row.of_walk),
+        format!(
+            "{n} x {n} | {:.1} | {} | {:.1} | {:.1} | {:.2} | {} | {} | {:.2} | {:.2}",
+            row.texels,
+            row.tracer,
+            row.alone,
+            row.after_cones,
+            row.of_walk,
             percent(row.skipped),
             percent(row.in_one),
-            format!("{:.2}", row.apart[0]),
-            format!("{:.2}", row.apart[1]),
-        ]
+            row.apart[0],
+            row.apart[1],
+            n = row.samples,
+        )
     });
-    table(&head, "lrlr", body)
+    table(head, "lrlr", body)
 }
