@@ -21,7 +21,7 @@ use conemarch::heightfield::conemap::generate::pyramid::Tiles;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::pattern::Pattern;
 
-#[path = "common/rows.rs"]
+#[path = "../benches/common/rows.rs"]
 mod rows;
 use rows::{NodesRow, SizesRow, TimesRow};
 

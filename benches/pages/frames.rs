@@ -1,5 +1,5 @@
-//! Times of whole frames by the map that rays step with, at 32 and 200 steps: the tables
-//! of section 4.1 of Valasek and Ban (2022), at its sizes.
+//! Times of whole frames by cone map, at 32 and 200 steps: the tables of section 4.1 of Valasek
+//! and Ban (2022), at the sizes of the paper.
 
 use anyhow::{Context, Result, ensure};
 use conemarch::base::work::State;
@@ -11,38 +11,38 @@ use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 use serde::{Deserialize, Serialize};
 
-/// Warm runs that a median is taken of.
+/// Warm runs, of which the median is taken.
 const RUNS: usize = 5;
-/// Steps of a ray, as in the paper.
+/// Limits of steps of a ray, as in the paper.
 const STEPS: [u32; 2] = [32, 200];
-/// Length of the block's side in the preset, over which texels are spread.
-const WIDTH: f64 = 12.0;
+/// Length of the block's side in the preset `terrain`.
+pub const WIDTH: f64 = 12.0;
+/// Cells along it.
 const TEXELS: f64 = 511.0;
 
-/// One kind of map with one refinement, at one number of steps.
+/// One map with one refinement, at one limit of steps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FrameRow {
-    /// What the paper calls it; empty for what it does not have.
+    /// Name in the paper; empty if it has none.
     pub paper: String,
-    /// Who traces, with which map.
+    /// Name of the tracer.
     pub tracer: String,
     /// Generator of the map; `none` for none.
     pub map: String,
-    /// Steps that a ray has.
+    /// Most steps of a ray.
     pub steps: u32,
     /// Median time of trace and colour, in milliseconds.
     pub ms: f64,
-    /// The median, run by run, of its time over that of the first kind at as many steps.
+    /// Median, run by run, of its time over that of the first map at the same limit.
     pub of_first: f64,
     /// Share of the pixels that ran out of steps.
     pub unconverged: f64,
-    /// Share of the pixels that show a hit over a texel behind that of the walk, or sky
-    /// where the walk has a hit.
+    /// Share of the pixels that are skipped (see [`skipped`]).
     pub skipped: f64,
 }
 
-/// What the paper calls it, the tracer, its map, and rounds of refinement: one of false
-/// positions, five halvings.
+/// Name in the paper, tracer, map, and rounds of refinement: one of false positions, or five
+/// halvings.
 const KINDS: [(&str, &str, &str, &str); 7] = [
     ("BFCM", "secant", "exact", "1"),
     ("RCMs", "secant", "relaxed-search", "1"),
@@ -53,7 +53,15 @@ const KINDS: [(&str, &str, &str, &str); 7] = [
     ("", "walk", "walk", "auto"),
 ];
 
-/// The plan of a kind: rays alone from the eye, unshadowed, as the papers' shaders are.
+/// The preset `terrain` with other settings, rendered without cones.
+pub fn terrain(settings: &[String]) -> Result<Plan> {
+    let always = [format!("scene.width={WIDTH}"), "march.mode=ray".into()];
+    let all = always.iter().chain(settings).map(|s| Override::read(s));
+    let all: Vec<Override> = all.collect::<Result<_, _>>()?;
+    Ok(preset::load("terrain", &all)?.plan)
+}
+
+/// The plan of a kind, without shadows, as the papers' shaders are.
 fn plan(field: &str, relaxed: &str, kind: (&str, &str, &str, &str), steps: u32) -> Result<Plan> {
     let (_, tracer, map, rounds) = kind;
     let map = match map {
@@ -61,33 +69,27 @@ fn plan(field: &str, relaxed: &str, kind: (&str, &str, &str, &str), steps: u32) 
         "relaxed-search" => relaxed,
         own => own,
     };
-    let set = [
+    terrain(&[
         format!("scene.field={field:?}"),
-        format!("scene.width={WIDTH}"),
         format!("scene.tracer={tracer}"),
         format!("scene.map={map:?}"),
         format!("scene.tracer_rounds={rounds}"),
         format!("scene.tracer_steps={steps}"),
-        // Tracers without steps of their own stop there.
+        // Tracers without a limit of their own stop there.
         format!("march.steps={steps}"),
-        "march.mode=ray".into(),
         "look.shadow=false".into(),
         "look.occlusion=0".into(),
         "image.size=[1920, 1080]".into(),
-    ];
-    let set: Vec<Override> = set
-        .iter()
-        .map(|s| Override::read(s))
-        .collect::<Result<_, _>>()?;
-    Ok(preset::load("terrain", &set)?.plan)
+    ])
 }
 
-/// Milliseconds of all passes, on the clock.
+/// Wall time of all passes in milliseconds.
 pub fn frame_ms(frame: &Frame) -> f64 {
     frame.passes.iter().map(|p| p.wall_ms).sum()
 }
 
-/// Share of the pixels that are skipped, the walk's frame being the truth.
+/// Share of the pixels that are skipped: they show a hit over a texel behind that of the truth,
+/// or sky where the truth has a hit. The truth is the frame of the walk.
 pub fn skipped(frame: &Frame, truth: &Frame, texel: f64) -> f64 {
     let state = |f: &Frame, i: usize| State::from_code(f.state[i].into());
     let behind = |i: &usize| {
@@ -100,7 +102,7 @@ pub fn skipped(frame: &Frame, truth: &Frame, texel: f64) -> f64 {
     count as f64 / frame.state.len().max(1) as f64
 }
 
-/// Renders every kind in turn, so that a busy machine slows all alike.
+/// Renders all kinds in turn, so that a busy machine slows all of them alike.
 pub fn measure(field: &str, relaxed: &str) -> Result<Vec<FrameRow>> {
     let (mut executor, _) = Executor::open(&Choice::Auto)?;
     let mut render =
@@ -145,7 +147,7 @@ pub fn measure(field: &str, relaxed: &str) -> Result<Vec<FrameRow>> {
     Ok(rows)
 }
 
-/// The middle one.
+/// The median.
 pub fn median(mut all: Vec<f64>) -> f64 {
     all.sort_by(f64::total_cmp);
     all.get(all.len() / 2).copied().unwrap_or(f64::NAN)

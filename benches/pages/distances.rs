@@ -1,8 +1,8 @@
-//! The walk beside the walks for distant views, of finer and finer maps.
+//! The tracers for distant views beside the cone walk, over finer and finer maps.
 //!
-//! The terrain of a preset, made of more and more samples of rough ground, is seen from one
-//! place: steps of rays alone and after cones, times, and how the pictures differ from that
-//! of the walk.
+//! One camera sees the terrain of a preset, made of more and more samples of rough ground. The
+//! rows tell the steps of rays with and without cones, the times, and how the pictures differ
+//! from that of the walk.
 
 use anyhow::Result;
 use conemarch::base::work::State;
@@ -13,22 +13,18 @@ use conemarch::measure::compare::quantile;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
-use conemarch::preset::{Override, load};
-use conemarch::scene::Assets;
 use serde::{Deserialize, Serialize};
 
-use crate::frames::{frame_ms, median, skipped};
+use crate::frames::{WIDTH, frame_ms, median, skipped, terrain};
 
 /// Samples along either axis.
 const SAMPLES: [u32; 4] = [512, 1024, 2048, 4096];
-/// Length of the block's sides in the preset.
-const WIDTH: f64 = 12.0;
 const SIZE: [u32; 2] = [640, 360];
-/// Times the distance of the preset's eye: the whole block is in the picture.
+/// Factor on the distance of the preset's eye, so that the whole block is in the picture.
 const AWAY: f64 = 1.6;
-/// The first is what the others are compared with.
+/// The others are compared with the first.
 const TRACERS: [&str; 3] = ["walk", "walk-mip", "cone-mip"];
-/// Warm runs that a median is taken of.
+/// Warm runs, of which the median is taken.
 const RUNS: usize = 7;
 const DEPTHS: Extras = Extras {
     count: false,
@@ -47,23 +43,21 @@ const COUNTED: Extras = Extras {
 pub struct DistanceRow {
     /// Samples of the map along either axis.
     pub samples: u32,
-    /// Texels that a pixel in the middle is wide.
+    /// Width of a pixel in the middle, in texels.
     pub texels: f64,
-    /// Who traces.
+    /// Name of the tracer.
     pub tracer: String,
-    /// Mean steps of the rays that take any, from the eye.
+    /// Mean steps of the rays that take any, without cones before them.
     pub alone: f64,
-    /// The same, after cones over pixels.
+    /// The same after cones.
     pub after_cones: f64,
-    /// Median time of the device over that of the walk, rays alone.
+    /// Median time on the device over that of the walk, without cones.
     pub of_walk: f64,
-    /// Share of the pixels that show a hit over a texel behind that of the walk, or sky where
-    /// the walk has a hit.
+    /// Share of the pixels that are skipped (see [`skipped`]).
     pub skipped: f64,
-    /// Share of the pixels with ground that only one of it and the walk shows.
+    /// Share of the pixels with ground in one picture but not in the walk's, or the reverse.
     pub in_one: f64,
-    /// How far apart their depths are elsewhere, in pixel widths: the median, and for 95 of
-    /// 100.
+    /// Differences of the depths elsewhere, in pixel widths: the median and the 95th percentile.
     pub apart: [f64; 2],
 }
 
@@ -117,19 +111,12 @@ pub fn measure() -> Result<Vec<DistanceRow>> {
     Ok(rows)
 }
 
-/// The preset's terrain with so many samples, seen from farther away by rays alone.
+/// The preset's terrain with so many samples, seen from farther away.
 fn plan(samples: u32, tracer: &str) -> Result<Plan> {
-    let set = [
+    let mut plan = terrain(&[
         format!("scene.field=\"fbm:{samples}x{samples},seed=5,power=2.6\""),
-        format!("scene.width={WIDTH}"),
         format!("scene.tracer={tracer}"),
-        "march.mode=ray".into(),
-    ];
-    let set: Vec<Override> = set
-        .iter()
-        .map(|s| Override::read(s))
-        .collect::<Result<_, _>>()?;
-    let mut plan = load("terrain", &set)?.plan;
+    ])?;
     plan.size = SIZE;
     plan.camera.eye = plan.camera.target + AWAY * (plan.camera.eye - plan.camera.target);
     Ok(plan)
@@ -142,8 +129,8 @@ fn steps(frame: &Frame) -> f64 {
     some.iter().sum::<f64>() / some.len().max(1) as f64
 }
 
-/// The share of pixels that are hits of one frame only, and the differences of depth of the
-/// others in pixel widths, sorted.
+/// The share of pixels that are hits in one frame only, and the sorted differences of depth of
+/// the others in pixel widths.
 fn differences(plan: &Plan, a: &Frame, b: &Frame) -> (f64, Vec<f64>) {
     let hit = |f: &Frame, i: usize| f.state[i] == State::Hit as u8;
     let count = a.state.len();
