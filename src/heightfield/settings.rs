@@ -10,18 +10,16 @@ use glam::{DVec2, DVec3};
 use crate::base::key::{Counts, Fault, Key, Number, Text, Triple, Word};
 use crate::heightfield::cache::Cache;
 use crate::heightfield::conemap::generate::generator::Generator;
-use crate::heightfield::height_surface::{
-    HeightSurface, HeightSurfaceError, MOST_CELLS, MOST_LEVELS,
-};
+use crate::heightfield::height_surface::{HeightSurface, HeightSurfaceError, MOST_CELLS};
 use crate::heightfield::heights::{Patches, cells};
 use crate::heightfield::load::PatternSpec;
 use crate::heightfield::paint::{Colors, PAINTS, Paint};
 use crate::heightfield::placement::Placement;
 use crate::heightfield::texture::Texture;
-use crate::heightfield::tracer::AnyTracer;
 use crate::heightfield::tracer::settings::{
     Make, PrepareError, Supply, TracerSettings, on_cpu, without_cones,
 };
+use crate::heightfield::tracer::{Tracer, TracerKind};
 
 pub use crate::heightfield::source::{Source, Wrap};
 
@@ -31,7 +29,7 @@ const NO_TEXTURE: &str = "none";
 /// What a relief is made from.
 type ReliefKey = (Source, Patches, [u32; 2]);
 /// What a cone map is made from, beside: tracer, map and offset.
-type MapKey = (ReliefKey, &'static str, String, f64);
+type MapKey = (ReliefKey, TracerKind, String, f64);
 /// What a paint is made from: a generator's map, with an offset.
 type PaintKey = (ReliefKey, Generator, f64);
 
@@ -98,7 +96,7 @@ pub struct Ready {
     /// Heights and maxima.
     pub relief: Arc<HeightSurface>,
     /// What traces rays, with its cones.
-    pub tracer: AnyTracer,
+    pub tracer: Arc<dyn Tracer>,
     /// What colours it.
     pub colors: Colors,
     /// Where it stands.
@@ -313,7 +311,7 @@ impl HeightfieldSettings {
             colors,
             placed,
             relief,
-            name: self.tracing.tracer,
+            name: self.tracing.tracer.name(),
         })
     }
 
@@ -342,14 +340,7 @@ impl HeightfieldSettings {
     /// counts its own and stops says so itself.
     pub fn crossing(&self) -> Option<u32> {
         let [w, h] = self.relief().ok()?.domain().map(i32::unsigned_abs);
-        // The first cell, and a line of either axis for each other one.
-        let cells = w + h;
-        Some(match self.tracing.tracer {
-            // Up and down the pyramid: a step down for each step up, and those from the top.
-            "max-mip" => 2 * cells + MOST_LEVELS as u32,
-            "linear-binary" => self.tracing.linear_steps(),
-            _ => cells,
-        })
+        Some(self.tracing.most_steps(w + h))
     }
 
     /// The numbers of its files' heights and colours; none of a field, whose word says
@@ -395,7 +386,7 @@ impl HeightfieldSettings {
     pub fn exact(&self) -> Self {
         let mut exact = self.clone();
         exact.tracing = TracerSettings {
-            tracer: "max-mip",
+            tracer: TracerKind::MaxMip,
             offset: self.tracing.offset,
             ..TracerSettings::default()
         };

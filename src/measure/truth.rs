@@ -234,6 +234,7 @@ mod tests {
     use super::*;
     use crate::formula::{Formula, balls::Balls};
     use crate::heightfield::settings::HeightfieldSettings;
+    use crate::heightfield::tracer::TracerKind;
     use crate::plan::Subject;
 
     fn plan() -> Plan {
@@ -269,7 +270,7 @@ mod tests {
         let Subject::Heightfield(shape) = &mut other.subject else {
             unreachable!("made above");
         };
-        shape.tracing.tracer = "csm-fixed";
+        shape.tracing.tracer = TracerKind::CsmFixed;
         assert!(cache.find(&other).is_some());
         // One height of the file does, with the same text of the plan.
         let mut bent = slope;
