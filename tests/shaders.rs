@@ -27,13 +27,8 @@ use conemarch::heightfield::conemap::{ConeMap, MapKind};
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::texture::Texture;
-use conemarch::heightfield::tracer::cones::{Cones, Manner};
-use conemarch::heightfield::tracer::linear::LinearBinary;
-use conemarch::heightfield::tracer::max_mip::MaxMipTracer;
-use conemarch::heightfield::tracer::relaxed::WalkRelaxed;
-use conemarch::heightfield::tracer::walk::Walk;
-use conemarch::heightfield::tracer::walk_mip::WalkMip;
-use conemarch::heightfield::tracer::{AnyTracer, Tracer};
+use conemarch::heightfield::tracer::TracerKind;
+use conemarch::heightfield::tracer::settings::Supply;
 use conemarch::plan::{Extras, Pass, Plan, Subject};
 use glam::DVec3;
 use wgpu::naga::valid::Capabilities;
@@ -214,22 +209,13 @@ fn heightfield_paths() -> BTreeSet<&'static str> {
             ratios: vec![1.0; (size[0] * size[1] * cones) as usize],
         })
     };
-    let walk = Walk::new(relief.clone(), map(MapKind::Walk, [1, 1])).unwrap();
-    let relaxed = WalkRelaxed::new(relief.clone(), map(MapKind::WalkRelaxed, [1, 1])).unwrap();
-    let distant = WalkMip::new(relief.clone(), map(MapKind::Walk, [1, 1]), 1.0).unwrap();
-    let mut tracers = vec![
-        AnyTracer::Walk(walk),
-        AnyTracer::WalkRelaxed(relaxed),
-        AnyTracer::WalkMip(distant),
-        AnyTracer::MaxMip(MaxMipTracer::new(relief.clone())),
-        AnyTracer::LinearBinary(LinearBinary::new(relief.clone(), 1, 1)),
-    ];
-    for manner in Manner::ALL {
-        let cones = Cones::new(relief.clone(), map(manner.kinds()[0], [2, 2]), manner);
-        tracers.push(AnyTracer::Cones(cones.unwrap()));
-    }
-    for tracer in tracers {
-        all.extend(tracer.modules().iter().map(|m| m.path));
+    for kind in TracerKind::ALL {
+        let cones = kind.kinds().first().map(|of| {
+            let over_cells = matches!(of, MapKind::Walk | MapKind::WalkRelaxed);
+            Supply::from(map(*of, if over_cells { [1, 1] } else { [2, 2] }))
+        });
+        let tracer = kind.make(&relief, cones.as_ref(), &(*kind).into(), 1.0);
+        all.extend(tracer.unwrap().modules().iter().map(|m| m.path));
     }
     all
 }
@@ -386,7 +372,7 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
     let Subject::Heightfield(shape) = &mut plan.subject else {
         unreachable!("the terrain");
     };
-    shape.tracing.tracer = "max-mip";
+    shape.tracing.tracer = TracerKind::MaxMip;
     let text = plan.explain(Extras::default());
     assert!(
         !text.contains("prepare") && !text.contains("generate"),
@@ -395,9 +381,9 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
     assert!(text.contains("paint_height.wgsl") && !text.contains("/paint.wgsl"));
     // A paint is a map of its own, but for that of the tracer.
     for (tracer, paint, maps) in [
-        ("max-mip", Generator::Exact, 1),
-        ("walk", Generator::Exact, 2),
-        ("walk", Generator::Walk, 1),
+        (TracerKind::MaxMip, Generator::Exact, 1),
+        (TracerKind::Walk, Generator::Exact, 2),
+        (TracerKind::Walk, Generator::Walk, 1),
     ] {
         let Subject::Heightfield(shape) = &mut plan.subject else {
             unreachable!("the terrain");
@@ -406,7 +392,7 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
         shape.paint = Some(paint);
         let text = plan.explain(Extras::default());
         let lines = text.lines().filter(|l| l.starts_with("  prepare"));
-        assert_eq!(lines.count(), maps, "{tracer}, {paint:?}: {text}");
+        assert_eq!(lines.count(), maps, "{tracer:?}, {paint:?}: {text}");
         assert!(text.contains("/paint.wgsl") && !text.contains("paint_height.wgsl"));
     }
 }
@@ -526,7 +512,7 @@ fn no_program_binds_more_buffers_than_are_asked_for() {
         unreachable!("the terrain");
     };
     shape.source.field = "fbm:16x16".into();
-    shape.tracing.tracer = "quad";
+    shape.tracing.tracer = TracerKind::Quad;
     shape.paint = Some(Generator::Exact);
     let mut programs: Vec<Program> = every_program().into_values().collect();
     programs.extend(programs_of(&plan));

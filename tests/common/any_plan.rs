@@ -6,6 +6,7 @@ use conemarch::formula::balls::Balls;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::settings::{HeightfieldSettings, Wrap};
+use conemarch::heightfield::tracer::TracerKind;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::look::Look;
 use conemarch::plan::march::{MODES, Marching};
@@ -95,7 +96,7 @@ fn heightfield() -> impl Strategy<Value = Subject> {
             shape.source.field = format!("{field}:{w}x{h},seed={seed}");
             shape.source.wrap = wrap;
             shape.tiles = wrap.axes().map(|wraps| if wraps { 2 } else { 1 });
-            shape.tracing.tracer = tracer;
+            shape.tracing.tracer = TracerKind::named(tracer).expect("a tracer");
             if boxes {
                 shape.patches = Patches::Boxes;
             }

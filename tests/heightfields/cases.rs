@@ -1,62 +1,52 @@
-//! Reliefs of every kind, and rays of every kind over them.
+//! Surfaces of every kind, rays of every kind over them, and every tracer of them.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use conemarch::base::work::Work;
-use conemarch::heightfield::conemap::ConeMap;
 use conemarch::heightfield::conemap::generate::cpu;
 use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
+use conemarch::heightfield::conemap::{ConeMap, MapKind};
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::pattern::Pattern;
-use conemarch::heightfield::tracer::max_mip::MaxMipTracer;
-use conemarch::heightfield::tracer::relaxed::WalkRelaxed;
-use conemarch::heightfield::tracer::walk::Walk;
-use conemarch::heightfield::tracer::{AnyTracer, LocalRay, Step, TraceHit, Tracer};
+use conemarch::heightfield::tracer::cones::Lookup;
+use conemarch::heightfield::tracer::settings::{Supply, TracerSettings};
+use conemarch::heightfield::tracer::{
+    Accuracy, LocalRay, Step, Trace, TraceError, TraceHit, Tracer, TracerKind,
+};
 use glam::DVec3;
 
-use super::random::Random;
-use super::reference_maps;
+use crate::common::random::Random;
+use crate::common::reference_maps;
 
-/// A relief and what to call it.
+/// A surface and what to call it.
 pub struct Case {
-    /// Pattern, size and the rest.
     pub name: String,
-    /// The block.
-    pub relief: Arc<HeightSurface>,
+    pub surface: Arc<HeightSurface>,
 }
 
-/// A field as a block.
-pub fn case(
-    field: Pattern,
-    size: [u32; 2],
-    wrap: [bool; 2],
-    tiles: [u32; 2],
-    patches: Patches,
-) -> Case {
-    let heights = Heights::new(size, wrap, field.heights(size, 7, 2.6));
-    let relief = HeightSurface::new(heights.expect("a field"), patches, tiles);
+/// Size, wrapping axes, tiles and patches of a surface.
+pub type Setting = ([u32; 2], [bool; 2], [u32; 2], Patches);
+
+/// A setting without tiles and wrapping.
+pub fn alone(size: [u32; 2], patches: Patches) -> Setting {
+    (size, [false; 2], [1, 1], patches)
+}
+
+/// A field as a surface.
+pub fn case(field: Pattern, setting: Setting) -> Case {
     Case {
-        name: format!("{} {size:?} {wrap:?} {tiles:?} {patches:?}", field.name()),
-        relief: Arc::new(relief.expect("a block")),
+        name: format!("{} {setting:?}", field.name()),
+        surface: surface(setting, field.heights(setting.0, 7, 2.6)),
     }
 }
-
-/// Size, wrapping axes, tiles and surface of a relief.
-type Setting = ([u32; 2], [bool; 2], [u32; 2], Patches);
 
 /// No ray of a test is longer.
 pub const END: f64 = 1e9;
 
-/// A block of given heights.
-pub fn block(
-    size: [u32; 2],
-    wrap: [bool; 2],
-    tiles: [u32; 2],
-    patches: Patches,
-    z: Vec<f32>,
-) -> Arc<HeightSurface> {
+/// A surface of given heights.
+pub fn surface((size, wrap, tiles, patches): Setting, z: Vec<f32>) -> Arc<HeightSurface> {
     let heights = Heights::new(size, wrap, z).unwrap();
     Arc::new(HeightSurface::new(heights, patches, tiles).unwrap())
 }
@@ -64,20 +54,17 @@ pub fn block(
 /// Every field in every setting, and some that are large, tiny or degenerate.
 pub fn cases() -> Vec<Case> {
     const SETTINGS: [Setting; 6] = [
-        ([64, 64], [false, false], [1, 1], Patches::Bilinear),
+        ([64, 64], [false; 2], [1, 1], Patches::Bilinear),
         ([96, 65], [true, false], [1, 1], Patches::Bilinear),
         ([65, 80], [false, true], [1, 2], Patches::Bilinear),
         ([64, 48], [true, true], [3, 2], Patches::Bilinear),
-        ([67, 64], [false, false], [1, 1], Patches::Boxes),
+        ([67, 64], [false; 2], [1, 1], Patches::Boxes),
         ([80, 64], [true, true], [1, 2], Patches::Boxes),
     ];
     let mut all = Vec::new();
     for field in Pattern::ALL {
-        for (size, wrap, tiles, patches) in SETTINGS {
-            all.push(case(field, size, wrap, tiles, patches));
-        }
+        all.extend(SETTINGS.map(|setting| case(field, setting)));
     }
-    let alone = [false, false];
     for (field, size) in [
         (Pattern::Fbm, [256, 256]),
         (Pattern::Ridges, [256, 190]),
@@ -88,7 +75,7 @@ pub fn cases() -> Vec<Case> {
         (Pattern::Fbm, [1, 1]),
     ] {
         for patches in [Patches::Bilinear, Patches::Boxes] {
-            all.push(case(field, size, alone, [1, 1], patches));
+            all.push(case(field, alone(size, patches)));
         }
     }
     all
@@ -97,9 +84,9 @@ pub fn cases() -> Vec<Case> {
 /// Kinds of rays that [`ray`] knows.
 pub const KINDS: u64 = 12;
 
-/// A ray of a kind over a block.
-pub fn ray(relief: &HeightSurface, kind: u64, random: &mut Random) -> LocalRay {
-    let [w, h] = relief.domain().map(f64::from);
+/// A ray of a kind over a surface.
+pub fn ray(surface: &HeightSurface, kind: u64, random: &mut Random) -> LocalRay {
+    let [w, h] = surface.domain().map(f64::from);
     let n = [0; 7].map(|_| random.unit());
     let between = |i: usize, low: f64, high: f64| low + (high - low) * n[i];
     let over = |z: f64| DVec3::new(n[0] * w, n[1] * h, z);
@@ -108,7 +95,7 @@ pub fn ray(relief: &HeightSurface, kind: u64, random: &mut Random) -> LocalRay {
         let (sin, cos) = (TAU * n[2]).sin_cos();
         DVec3::new(pace * cos, pace * sin, z)
     };
-    // Texels per height of a view, the relief a quarter of its width deep.
+    // Texels per height of a view, the surface a quarter of its width deep.
     let pace = |degrees: f64| 0.25 * w * degrees.to_radians().tan();
     let (origin, axis) = match kind {
         // Views from above.
@@ -120,7 +107,7 @@ pub fn ray(relief: &HeightSurface, kind: u64, random: &mut Random) -> LocalRay {
         // Rising from next to the surface.
         4 => {
             let p = over(0.0).truncate();
-            let z = relief.heights().height(relief.patches(), p);
+            let z = surface.heights().height(surface.patches(), p);
             (over(z + 0.1 * n[3].powi(3)), round(90.0 * n[4], n[5]))
         }
         // Level.
@@ -154,7 +141,7 @@ pub fn ray(relief: &HeightSurface, kind: u64, random: &mut Random) -> LocalRay {
         // Level at the height of a sample: along plateaus, and touching tops.
         9 => {
             let p = [n[3] * w, n[4] * h].map(|x| x as i64);
-            let z = relief.heights().at(p[0], p[1]);
+            let z = surface.heights().at(p[0], p[1]);
             let to = DVec3::new(p[0] as f64, p[1] as f64, z);
             (over(z), (to - over(z)) / 64.0)
         }
@@ -170,58 +157,119 @@ pub fn ray(relief: &HeightSurface, kind: u64, random: &mut Random) -> LocalRay {
     LocalRay { origin, axis }
 }
 
-/// Rays of all kinds over a block, the same in every run.
-pub fn rays(relief: &HeightSurface, count: u64, seed: u64) -> Vec<LocalRay> {
+/// Rays of all kinds over a surface, the same in every run.
+pub fn rays(surface: &HeightSurface, count: u64, seed: u64) -> Vec<LocalRay> {
     let mut random = Random::new(seed);
     (0..count)
-        .map(|i| ray(relief, i % KINDS, &mut random))
+        .map(|i| ray(surface, i % KINDS, &mut random))
         .collect()
 }
 
+/// A tracer and what to call it.
+pub struct Named {
+    pub kind: TracerKind,
+    pub name: String,
+    pub tracer: Arc<dyn Tracer>,
+}
+
+/// A reference map of a kind, with an offset for the walks.
+pub fn reference_map(surface: &HeightSurface, kind: MapKind, offset: f64) -> ConeMap {
+    match kind {
+        MapKind::Walk => reference_maps::walk(surface, offset),
+        MapKind::WalkRelaxed => reference_maps::walk_relaxed(surface, offset),
+        kind => reference_maps::samples(surface, kind),
+    }
+}
+
 /// A map by a generator, with an offset for the walks.
-pub fn made(generator: Generator, relief: &HeightSurface, offset: f64) -> Arc<ConeMap> {
+pub fn made(generator: Generator, surface: &HeightSurface, offset: f64) -> Arc<ConeMap> {
     let options = Options {
         offset,
         ..Options::default()
     };
-    let (heights, patches) = (relief.heights(), relief.patches());
+    let (heights, patches) = (surface.heights(), surface.patches());
     let map = cpu::generate(generator, heights, patches, &options, &mut |_| true);
     Arc::new(map.expect("options in range"))
 }
 
-/// The exact tracers of a block, with cones of the plain makers and of the generators.
-pub fn exact(relief: &Arc<HeightSurface>) -> Vec<(&'static str, AnyTracer)> {
-    let walk = |map| AnyTracer::Walk(Walk::new(relief.clone(), map).expect("its map"));
-    let relaxed = |map| {
-        let own = WalkRelaxed::new(relief.clone(), map);
-        AnyTracer::WalkRelaxed(own.expect("its map"))
-    };
-    let plain = reference_maps::walk(relief, 1.5);
-    let plain_relaxed = reference_maps::walk_relaxed(relief, 1.5);
-    vec![
-        ("walk", walk(Arc::new(plain))),
-        ("walk, generated", walk(made(Generator::Walk, relief, 3.0))),
-        ("walk-relaxed", relaxed(Arc::new(plain_relaxed))),
-        (
-            "walk-relaxed, generated",
-            relaxed(made(Generator::WalkRelaxed, relief, 2.0)),
-        ),
-        (
-            "max-mip",
-            AnyTracer::MaxMip(MaxMipTracer::new(relief.clone())),
-        ),
-    ]
+/// A tracer with settings and a map.
+pub fn tracer(
+    surface: &Arc<HeightSurface>,
+    settings: &TracerSettings,
+    map: Option<Arc<ConeMap>>,
+) -> Result<Arc<dyn Tracer>, TraceError> {
+    let cones = map.map(Supply::from);
+    settings.tracer.make(surface, cones.as_ref(), settings, 0.0)
 }
 
-/// What a ray comes to, with its hit and the steps that it took: `None` for a ray that
-/// does not end.
-pub fn run<T: Tracer>(tracer: &T, ray: &LocalRay, to: f64) -> Option<(Step, TraceHit, u32)> {
+/// Every tracer of an accuracy with a reference map, and each in all its variants.
+pub fn tracers(surface: &Arc<HeightSurface>, accuracy: Accuracy) -> Vec<Named> {
+    let kinds = TracerKind::ALL.iter().filter(|k| k.accuracy() == accuracy);
+    kinds.flat_map(|kind| variants(surface, *kind)).collect()
+}
+
+fn variants(surface: &Arc<HeightSurface>, kind: TracerKind) -> Vec<Named> {
+    let settings = TracerSettings::from(kind);
+    let mut all = Vec::new();
+    let mut add = |note: &str, settings: &TracerSettings, map| {
+        let tracer = tracer(surface, settings, map).expect("a map of its kind");
+        let name = format!("{}{note}", kind.name());
+        all.push(Named { kind, name, tracer });
+    };
+    let Some(map) = kind.kinds().first() else {
+        add("", &settings, None);
+        return all;
+    };
+    let plain = Some(Arc::new(reference_map(surface, *map, 1.5)));
+    match kind.accuracy() {
+        Accuracy::Exact => {
+            let generator = settings.generator().expect("of the first kind");
+            add(
+                ", generated",
+                &settings,
+                Some(made(generator, surface, 3.0)),
+            );
+            add("", &settings, plain);
+        }
+        // Cells alone, and nodes that soon or late grow with the distance: rays have a height or
+        // a texel to a unit of their parameter.
+        Accuracy::Pixel => {
+            for lod in [0.0, 0.1, 3.0] {
+                let own = TracerSettings {
+                    lod: Some(lod),
+                    ..settings.clone()
+                };
+                add(&format!(", lod {lod}"), &own, plain.clone());
+            }
+        }
+        Accuracy::Approximate => {
+            for lookup in [Lookup::Nearest, Lookup::Bilinear] {
+                let own = TracerSettings {
+                    lookup,
+                    ..settings.clone()
+                };
+                add(&format!(", {lookup:?}"), &own, plain.clone());
+            }
+        }
+    }
+    all
+}
+
+/// How a ray ends: its state, its hit and its steps; `None` for a ray that does not end.
+pub fn run(tracer: &dyn Tracer, ray: &LocalRay, to: f64) -> Option<(Step, TraceHit, u32)> {
+    let (trace, steps) = traced(tracer, ray, to)?;
+    Some((trace.state, trace.hit(), steps))
+}
+
+/// The trace of a ray at its end, and its steps.
+pub fn traced(tracer: &dyn Tracer, ray: &LocalRay, to: f64) -> Option<(Trace, u32)> {
     let mut work = Work::default();
-    let mut walk = tracer.begin(ray, 0.0, to, &mut work);
+    let mut trace = tracer.begin(ray, 0.0, to);
     for _ in 0..100_000 {
-        let step = tracer.step(ray, &mut walk, &mut work);
+        let step = tracer.step(ray, &mut trace, &mut work);
+        assert_eq!(step, trace.state);
         if step != Step::Moving {
-            return Some((step, walk.hit(), work.evaluations));
+            return Some((trace, work.evaluations));
         }
     }
     None

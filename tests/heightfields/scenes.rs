@@ -1,109 +1,45 @@
-//! Heightfields as scenes, on both executors: cones never start behind a surface at any size
-//! and angle of view, empty balls are empty, and boxes face the way that they are seen from.
-#![allow(
-    clippy::unwrap_used,
-    missing_docs,
-    reason = "a test may panic, and is read by its name"
-)]
+//! Heightfields as scenes, on both executors: cones never start behind a surface at any size and
+//! angle of view, and empty balls are empty.
 
-mod adapter;
-#[allow(dead_code, reason = "other files use the rest")]
-mod common {
-    pub mod overclaims;
-    pub mod random;
-}
-
-use common::overclaims::{brought_near, overclaims};
-use common::random::Random;
 use conemarch::base::view::Beam;
-use conemarch::base::work::State;
-use conemarch::cpu;
-use conemarch::heightfield::conemap::generate::cpu::generate;
-use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::placement::Placement;
-use conemarch::heightfield::settings::{HeightfieldSettings, Ready, Wrap};
-use conemarch::heightfield::tracer::oracle::Oracle;
-use conemarch::heightfield::tracer::{LocalRay, Step, Tracer};
-use conemarch::picture::frame::Frame;
-use conemarch::plan::camera::Camera;
-use conemarch::plan::{Extras, PREPARE, Plan, Subject};
-use conemarch::scene::{self, Scene, Solid};
+use conemarch::heightfield::settings::Ready;
+use conemarch::heightfield::tracer::LocalRay;
+use conemarch::heightfield::tracer::reference::ReferenceTracer;
+use conemarch::measure::tracer_stats::first_hits;
+use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::scene::{Scene, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
 
-const HIT: u8 = State::Hit as u8;
-const NORMALS: Extras = Extras {
-    count: false,
-    normals: true,
-    levels: false,
-    depth_only: false,
-    time: false,
-};
+use crate::common::overclaims::{brought_near, overclaims};
+use crate::common::random::Random;
+use crate::{both, camera, plan};
 
-/// Heightfields of every kind: rough and smooth, ended, wrapped and tiled, as they lie and
-/// turned, patches and boxes.
-fn shapes() -> Vec<(&'static str, HeightfieldSettings)> {
-    let of = |field: &str, wrap, tiles, patches, depth, turn: [f64; 3]| {
-        let mut shape = HeightfieldSettings::default();
-        shape.source.field = field.into();
-        shape.source.wrap = wrap;
-        shape.tiles = tiles;
-        shape.patches = patches;
-        shape.depth = depth;
-        shape.turn = turn.into();
-        shape
+/// Heightfields of every kind: rough and smooth, ended, wrapped and tiled, as they lie and turned,
+/// patches and boxes.
+pub const SCENES: [&str; 7] = [
+    "field = 'fbm:65x48,seed=5,power=3'\ndepth = 2.6",
+    "field = 'ridges:33x40'\ndepth = 3\nturn = [25, -40, 60]",
+    "field = 'spikes:40x40'\ndepth = 4",
+    "field = 'spikes:24x17'\ndepth = 4\nsurface = 'boxes'",
+    "field = 'fbm:31x24'\nwrap = 'y'\nturn = [25, -40, 60]",
+    "field = 'stones:16x11'\nwrap = 'both'\ntiles = [2, 3]\ndepth = 1.5",
+    "field = 'noise:7x5'\nwrap = 'x'\ntiles = [3, 1]\nturn = [25, -40, 60]\nsurface = 'boxes'",
+];
+
+/// What a plan's heightfield consists of. How wide pixels are does not matter to these tests.
+pub fn ready(plan: &Plan) -> Ready {
+    let Subject::Heightfield(settings) = &plan.subject else {
+        panic!("no heightfield");
     };
-    use Patches::{Bilinear, Boxes};
-    let flat = [0.0; 3];
-    let turned = [25.0, -40.0, 60.0];
-    let once = [1, 1];
-    vec![
-        (
-            "terrain",
-            of(
-                "fbm:65x48,seed=5,power=3",
-                Wrap::None,
-                once,
-                Bilinear,
-                2.6,
-                flat,
-            ),
-        ),
-        (
-            "turned",
-            of("ridges:33x40", Wrap::None, once, Bilinear, 3.0, turned),
-        ),
-        (
-            "spikes",
-            of("spikes:40x40", Wrap::None, once, Bilinear, 4.0, flat),
-        ),
-        (
-            "boxes",
-            of("spikes:24x17", Wrap::None, once, Boxes, 4.0, flat),
-        ),
-        (
-            "wrapped",
-            of("fbm:31x24", Wrap::Y, once, Bilinear, 2.0, turned),
-        ),
-        (
-            "tiled",
-            of("stones:16x11", Wrap::Both, [2, 3], Bilinear, 1.5, flat),
-        ),
-        (
-            "tiled boxes",
-            of("noise:7x5", Wrap::X, [3, 1], Boxes, 2.0, turned),
-        ),
-    ]
+    settings.ready(1e-3).unwrap()
 }
 
-/// A shape made ready; how wide pixels are matters to none of these tests.
-fn ready(shape: &HeightfieldSettings) -> Ready {
-    shape.ready(1e-3).unwrap()
-}
-
-fn local(placed: &Placement, eye: DVec3, ray: &Beam) -> LocalRay {
+/// A ray of the view in local units.
+pub fn local(placed: &Placement, eye: DVec3, ray: &Beam) -> LocalRay {
     LocalRay {
         origin: placed.position(eye + ray.origin),
         axis: placed.direction(ray.axis),
@@ -112,66 +48,45 @@ fn local(placed: &Placement, eye: DVec3, ray: &Beam) -> LocalRay {
 
 /// Where every pixel's ray first meets the block, cell by cell; infinity for nowhere.
 fn truths(plan: &Plan, ready: &Ready) -> Vec<f64> {
-    let oracle = Oracle::new(ready.relief.clone());
     let view = plan.view();
     let [w, h] = plan.size;
-    let one = |i: u32| {
-        let ray = local(&ready.placed, view.eye, &view.view_ray([i % w, i / w]));
-        let mut work = Default::default();
-        let mut walk = oracle.begin(&ray, 0.0, 1e9, &mut work);
-        let mut step = Step::Moving;
-        while step == Step::Moving {
-            step = oracle.step(&ray, &mut walk, &mut work);
-        }
-        if step == Step::Hit {
-            walk.s
-        } else {
-            f64::INFINITY
-        }
-    };
-    (0..w * h).into_par_iter().map(one).collect()
+    let pixels = (0..w * h).map(|i| view.view_ray([i % w, i / w]));
+    let rays: Vec<_> = pixels
+        .map(|ray| local(&ready.placed, view.eye, &ray))
+        .collect();
+    let hits = first_hits(&ReferenceTracer::new(ready.relief.clone()), &rays);
+    hits.into_iter()
+        .map(|s| s.unwrap_or(f64::INFINITY))
+        .collect()
 }
-
-/// From above, along the ground beside it, and from next to the surface in the middle.
-fn cameras(fov: f64) -> [Camera; 3] {
-    let from = |eye: [f64; 3], target: [f64; 3]| Camera {
-        eye: eye.into(),
-        target: target.into(),
-        up: DVec3::Z,
-        fov,
-    };
-    [
-        from([5.0, -9.0, 7.0], [0.0, 0.3, 0.5]),
-        from([-13.0, 2.0, 1.1], [0.0, 0.0, 0.8]),
-        from([0.3, 0.2, 3.4], [4.0, 3.0, 1.0]),
-    ]
-}
-
-const LEVELS: Extras = Extras {
-    count: false,
-    normals: false,
-    levels: true,
-    depth_only: true,
-    time: false,
-};
 
 #[test]
-fn no_cell_starts_behind_a_relief_at_any_size_and_angle() {
+fn no_cell_starts_behind_a_surface_at_any_size_and_angle() {
+    let levels = Extras {
+        levels: true,
+        depth_only: true,
+        ..Extras::default()
+    };
+    // From above, along the ground beside it, and from next to the surface in the middle.
+    let views = [
+        ([5.0, -9.0, 7.0], [0.0, 0.3, 0.5]),
+        ([-13.0, 2.0, 1.1], [0.0, 0.0, 0.8]),
+        ([0.3, 0.2, 3.4], [4.0, 3.0, 1.0]),
+    ];
     let mut nearest = 0.0_f64;
-    for (name, shape) in shapes() {
-        let ready = ready(&shape);
-        let mut plan = Plan::new(Subject::Heightfield(shape));
+    for scene in SCENES {
+        let mut plan = plan(scene);
+        let ready = ready(&plan);
         plan.march.coarsest = 32;
         plan.march.steps = Some(2048);
         for fov in [1.0, 48.5, 170.0] {
-            for (n, camera) in cameras(fov).into_iter().enumerate() {
-                plan.camera = camera;
+            for (eye, target) in views {
+                plan.camera = camera(eye, target, fov);
                 for size in [[1, 1], [97, 61], [33, 17], [1, 210], [200, 1]] {
                     plan.size = size;
                     let t = truths(&plan, &ready);
-                    let here = cpu::render(&plan, LEVELS, &mut |_| true).unwrap();
-                    for frame in [here, adapter::render(&plan, LEVELS)] {
-                        let what = format!("{name}, camera {n}, fov {fov}, {size:?}");
+                    for frame in both(&plan, levels) {
+                        let what = format!("{scene}, from {eye:?}, fov {fov}, {size:?}");
                         assert_eq!(frame.levels.len(), 5, "{what}");
                         assert_eq!(overclaims(&frame, &t), 0, "{what}");
                         nearest = nearest.max(brought_near(&frame, &t));
@@ -187,15 +102,15 @@ fn no_cell_starts_behind_a_relief_at_any_size_and_angle() {
 /// Points all over what the block shows: its top, with the sides of boxes, its walls and
 /// its base, so close together that none of the surface is farther off than `1 / fine`
 /// texels or heights.
-fn shell(relief: &HeightSurface, fine: i32) -> Vec<DVec3> {
-    let [w, h] = relief.domain();
+fn shell(surface: &HeightSurface, fine: i32) -> Vec<DVec3> {
+    let [w, h] = surface.domain();
     let part = |i: i32| f64::from(i) / f64::from(fine);
     let mut all = Vec::new();
     for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
         let corner = DVec3::new(f64::from(x), f64::from(y), 0.0);
         for (i, j) in (0..=fine).flat_map(|j| (0..=fine).map(move |i| (i, j))) {
             let (u, v) = (part(i), part(j));
-            let top = relief.height([x, y], u, v);
+            let top = surface.height([x, y], u, v);
             let base = corner + DVec3::new(u, v, 0.0);
             all.push(base + top * DVec3::Z);
             all.push(base);
@@ -211,11 +126,11 @@ fn shell(relief: &HeightSurface, fine: i32) -> Vec<DVec3> {
             let on = [i == 0, i == fine, j == 0, j == fine];
             for side in 0..4 {
                 let beside = [x + edge[side][0], y + edge[side][1]];
-                let boxes = relief.patches() == Patches::Boxes;
+                let boxes = surface.patches() == Patches::Boxes;
                 let from = if rim[side] {
                     0.0
                 } else if boxes && on[side] {
-                    relief.apex(beside)
+                    surface.apex(beside)
                 } else {
                     top
                 };
@@ -228,13 +143,12 @@ fn shell(relief: &HeightSurface, fine: i32) -> Vec<DVec3> {
 }
 
 #[test]
-fn empty_balls_hold_nothing_of_a_relief() {
+fn empty_balls_hold_nothing_of_a_surface() {
     let mut random = Random::new(41);
-    for (name, shape) in shapes() {
-        let Ready { relief, placed, .. } = ready(&shape);
-        let eye = DVec3::new(5.0, -9.0, 7.0);
-        let mut plan = Plan::new(Subject::Heightfield(shape));
-        plan.camera.eye = eye;
+    for name in SCENES {
+        let plan = plan(name);
+        let Ready { relief, placed, .. } = ready(&plan);
+        let eye = plan.camera.eye;
         let Scene::Heightfield(scene) = plan.scene() else {
             unreachable!("a heightfield");
         };
@@ -248,18 +162,12 @@ fn empty_balls_hold_nothing_of_a_relief() {
                 let n = [0; 3].map(|_| random.between(-0.15, 1.15));
                 let p = DVec3::new(n[0] * w, n[1] * h, n[2]);
                 // Every third from next to the surface on.
-                let near = i % 3 == 0 && n[..2].iter().all(|n| (0.0..1.0).contains(n));
-                let cell = [p.x as i32, p.y as i32];
-                let top = if near {
-                    relief.height(cell, p.x.fract(), p.y.fract())
-                } else {
-                    0.0
-                };
-                p.with_z(if near {
-                    top + 0.2 * n[2] * n[2]
-                } else {
-                    2.0 * p.z
-                })
+                if i % 3 == 0 && n[..2].iter().all(|n| (0.0..1.0).contains(n)) {
+                    let cell = [p.x as i32, p.y as i32];
+                    let top = relief.height(cell, p.x.fract(), p.y.fract());
+                    return p.with_z(top + 0.2 * n[2] * n[2]);
+                }
+                p.with_z(2.0 * p.z)
             })
             .collect();
         let found: Vec<(f64, f64)> = points
@@ -282,218 +190,5 @@ fn empty_balls_hold_nothing_of_a_relief() {
             .filter(|(clear, nearest)| *clear > 0.3 * nearest);
         let large = large.count();
         assert!(large > 300, "{name}: only {large} balls of any size");
-    }
-}
-
-/// The first of all boxes of a relief that a ray meets, and the normal of the side, in
-/// local directions; each box is met by its three pairs of planes.
-fn met(relief: &HeightSurface, ray: &LocalRay) -> Option<(f64, DVec3)> {
-    let [w, h] = relief.domain();
-    let mut first: Option<(f64, DVec3)> = None;
-    for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
-        let low = DVec3::new(f64::from(x), f64::from(y), 0.0);
-        let high = low + DVec3::new(1.0, 1.0, relief.apex([x, y]));
-        let [a, b] = [
-            (low - ray.origin) / ray.axis,
-            (high - ray.origin) / ray.axis,
-        ];
-        let (near, far) = (a.min(b), a.max(b).min_element());
-        let enter = near.max_element();
-        if enter > 0.0 && enter < far && first.is_none_or(|(s, _)| enter < s) {
-            let side = DVec3::AXES.into_iter().find(|n| near.dot(*n) == enter)?;
-            first = Some((enter, -side * ray.axis.dot(side).signum()));
-        }
-    }
-    first
-}
-
-#[test]
-fn the_sides_of_boxes_face_sideways() {
-    let shapes = shapes().into_iter();
-    for (name, mut shape) in shapes.filter(|(_, s)| s.patches == Patches::Boxes) {
-        for tracer in ["walk", "walk-relaxed", "max-mip", "walk-mip", "cone-mip"] {
-            shape.tracing.tracer = tracer;
-            let ready = ready(&shape);
-            let mut plan = Plan::new(Subject::Heightfield(shape.clone()));
-            [plan.camera, ..] = cameras(40.0);
-            plan.size = [120, 80];
-            let view = plan.view();
-            let here = cpu::render(&plan, NORMALS, &mut |_| true).unwrap();
-            for frame in [here, adapter::render(&plan, NORMALS)] {
-                check_normals(&format!("{name}, {tracer}"), &frame, |pixel| {
-                    let ray = local(&ready.placed, view.eye, &view.view_ray(pixel));
-                    let (_, normal) = met(&ready.relief, &ray)?;
-                    Some(ready.placed.side(normal))
-                });
-            }
-        }
-    }
-}
-
-/// Compares the normals of a frame with those of its rays, and sees that sides and tops
-/// are among them.
-fn check_normals(what: &str, frame: &Frame, normal: impl Fn([u32; 2]) -> Option<DVec3>) {
-    let width = frame.size[0];
-    let (mut wrong, mut seen) = (0, Vec::<(DVec3, u32)>::new());
-    for i in (0..frame.state.len()).filter(|i| frame.state[*i] == HIT) {
-        let own = DVec3::from_array(frame.normal[i].map(f64::from));
-        let truth = normal([i as u32 % width, i as u32 / width]);
-        wrong += u32::from(truth.is_none_or(|n| n.distance(own) > 1e-5));
-        match seen.iter_mut().find(|(n, _)| n.distance(own) < 1e-5) {
-            Some((_, count)) => *count += 1,
-            None => seen.push((own, 1)),
-        }
-    }
-    // Rays that meet an edge within a rounding: f32 takes either side.
-    assert!(wrong <= 8, "{what}: {wrong} wrong, {seen:?}");
-    let often = seen.iter().filter(|(_, count)| *count > 100).count();
-    assert!(often >= 3, "{what}: {seen:?}");
-}
-
-/// A small map of noise that wraps along x, twice, painted by the cones of a generator.
-fn painted(by: Generator, patches: Patches) -> HeightfieldSettings {
-    let mut shape = HeightfieldSettings::default();
-    shape.source.field = "noise:7x5,seed=3".into();
-    shape.source.wrap = Wrap::X;
-    shape.tiles = [2, 1];
-    shape.patches = patches;
-    shape.paint = Some(by);
-    shape
-}
-
-/// Generators whose places are samples, four cones at each, or cells; and boxes.
-const PAINTED: [(Generator, Patches); 4] = [
-    (Generator::Exact, Patches::Bilinear),
-    (Generator::Quad, Patches::Bilinear),
-    (Generator::Walk, Patches::Bilinear),
-    (Generator::Exact, Patches::Boxes),
-];
-
-#[test]
-fn paint_is_how_wide_the_cones_are() {
-    for (by, patches) in PAINTED {
-        let shape = painted(by, patches);
-        let Ready { relief, placed, .. } = ready(&shape);
-        let heights = relief.heights();
-        let map = generate(by, heights, patches, &Options::default(), &mut |_| true).unwrap();
-        let plan = Plan::new(Subject::Heightfield(shape));
-        let Scene::Heightfield(scene) = plan.scene() else {
-            unreachable!("a heightfield");
-        };
-        let eye = placed.position(plan.camera.eye);
-        let units = DVec3::new(placed.texel, placed.texel, placed.depth);
-        let [w, h] = relief.domain();
-        let mut hues = Vec::new();
-        // A quarter and three quarters into each cell, from above.
-        for (i, j) in (0..2 * h).flat_map(|j| (0..2 * w).map(move |i| (i, j))) {
-            let place = [i, j].map(|n| 0.25 + 0.5 * f64::from(n));
-            let from = DVec3::new(place[0], place[1], 2.0);
-            let ray = Beam {
-                origin: placed.side((from - eye) * units),
-                axis: -placed.side(DVec3::Z),
-                r0: 0.0,
-                k: 0.0,
-                grain0: 0.0,
-                grain: 0.0,
-            };
-            let mut work = Default::default();
-            let mut walk = scene.begin(&ray, 0.0, f64::INFINITY, &mut work);
-            while scene.walk_step(&ray, &mut walk, &mut work) == scene::Step::Moving {}
-            let hue = scene.surface(&ray, &scene.walk_hit(&walk)).pigment.x;
-            let round = by.over_cells() || patches == Patches::Boxes;
-            let near = place.map(|n| if round { n.floor() } else { n.round() } as usize);
-            let number = near[1] * map.size[0] as usize + near[0] % map.size[0] as usize;
-            let cones = &map.ratios[number * by.channels()..][..by.channels()];
-            let mean = cones.iter().sum::<f64>() / cones.len() as f64;
-            let wanted = (mean / 7.0).min(1.0).sqrt();
-            assert!(
-                (hue - wanted).abs() < 1e-6,
-                "{by:?}, {place:?}: {hue} for {wanted}"
-            );
-            hues.push((1e6 * hue) as u32);
-        }
-        hues.sort_unstable();
-        hues.dedup();
-        assert!(hues.len() > 5, "{by:?}: {} hues", hues.len());
-    }
-}
-
-#[test]
-fn both_executors_paint_alike() {
-    for (by, patches) in PAINTED {
-        let mut plan = Plan::new(Subject::Heightfield(painted(by, patches)));
-        [plan.camera, ..] = cameras(40.0);
-        plan.size = [120, 80];
-        plan.look.palette_cycles = 1.0;
-        let here = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
-        let there = adapter::render(&plan, Extras::default());
-        let apart = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.02);
-        let pairs = here.radiance.iter().zip(&there.radiance);
-        let wrong = pairs.filter(|(a, b)| apart((a, b))).count();
-        // Rays that meet the line between two places within a rounding take either.
-        assert!(wrong <= 40, "{by:?}: {wrong} pixels apart");
-    }
-}
-
-#[test]
-fn depths_alone_need_no_map_to_paint_by() {
-    let depths = Extras {
-        depth_only: true,
-        ..Extras::default()
-    };
-    let (by, patches) = PAINTED[0];
-    let fresh = || {
-        let mut plan = Plan::new(Subject::Heightfield(painted(by, patches)));
-        plan.size = [64, 40];
-        plan
-    };
-    let maps = |frame: &Frame| frame.passes.iter().filter(|p| p.name == PREPARE).count();
-    let said = |plan: &Plan, extras| plan.explain(extras).matches(PREPARE).count();
-    for (extras, wanted) in [(Extras::default(), 2), (depths, 1)] {
-        let plan = fresh();
-        assert_eq!(said(&plan, extras), wanted, "{}", plan.explain(extras));
-        let here = cpu::render(&plan, extras, &mut |_| true).unwrap();
-        let there = adapter::render(&fresh(), extras);
-        assert_eq!([maps(&here), maps(&there)], [wanted; 2]);
-    }
-    // A plan that has been rendered without its paint still has it.
-    let plan = fresh();
-    let without = cpu::render(&plan, depths, &mut |_| true).unwrap();
-    let with = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
-    assert_eq!(without.depth, with.depth);
-    let own = cpu::render(&fresh(), Extras::default(), &mut |_| true).unwrap();
-    assert_eq!(with.radiance, own.radiance);
-}
-
-#[test]
-fn halvings_find_the_sides_of_boxes_too() {
-    let shapes = shapes().into_iter();
-    for (name, mut shape) in shapes.filter(|(_, s)| s.patches == Patches::Boxes) {
-        let mut rendered = |tracer| {
-            shape.tracing.tracer = tracer;
-            let mut plan = Plan::new(Subject::Heightfield(shape.clone()));
-            [plan.camera, ..] = cameras(40.0);
-            plan.size = [120, 80];
-            let here = cpu::render(&plan, NORMALS, &mut |_| true).unwrap();
-            [here, adapter::render(&plan, NORMALS)]
-        };
-        let truth = rendered("walk");
-        for tracer in ["linear-binary", "csm-scaled", "rcs-binary", "secant"] {
-            for (own, truth) in rendered(tracer).iter().zip(&truth) {
-                // These tracers lose hits; where they have found the first one, they know
-                // what they met.
-                let both = |i: &usize| own.state[*i] == HIT && truth.state[*i] == HIT;
-                let same = |i: &usize| (own.depth[*i] - truth.depth[*i]).abs() < 1e-4;
-                let found: Vec<usize> = (0..own.state.len()).filter(both).filter(same).collect();
-                let wrong = |i: &&usize| {
-                    let [a, b] = [own, truth].map(|f| DVec3::from(f.normal[**i].map(f64::from)));
-                    a.distance(b) > 1e-4
-                };
-                let wrong = found.iter().filter(wrong).count();
-                assert!(found.len() > 500, "{name}, {tracer}: {} found", found.len());
-                // Rays that meet an edge within a rounding.
-                assert!(wrong <= 8, "{name}, {tracer}: {wrong} of {}", found.len());
-            }
-        }
     }
 }

@@ -1,29 +1,19 @@
-//! Pictures over reliefs: where their texels lie, on both executors, and what is refused.
-#![allow(
-    clippy::unwrap_used,
-    missing_docs,
-    reason = "a test may panic, and is read by its name"
-)]
+//! Pictures over height surfaces: where their texels lie, on both executors, and which files are
+//! refused.
 
-mod adapter;
-#[allow(dead_code, reason = "other files use the rest")]
-mod common {
-    pub mod folder;
-    pub mod pictures;
-}
-
-use common::folder::{Folder, said};
-use common::pictures::png;
 use conemarch::base::srgb::linear;
-use conemarch::cpu;
 use conemarch::heightfield::height_surface::HeightSurface;
-use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::settings::{HeightfieldSettings, Wrap};
+use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::texture::Texture;
-use conemarch::plan::camera::Camera;
-use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::plan::{Extras, Plan};
 use glam::DVec3;
+use image::{ExtendedColorType, ImageFormat};
 use png::{BitDepth, ColorType};
+
+use crate::cases::surface;
+use crate::common::folder::{Folder, said, text};
+use crate::common::pictures::png;
+use crate::{apart, both, camera};
 
 /// Six columns and four rows, no two texels alike.
 const SIZE: [u32; 2] = [6, 4];
@@ -46,24 +36,24 @@ fn written(folder: &Folder) -> Texture {
     Texture::read(&folder.0.join("t.png")).unwrap()
 }
 
-fn relief(size: [u32; 2], wrap: [bool; 2], patches: Patches, tiles: [u32; 2]) -> HeightSurface {
-    let flat = vec![0.5; (size[0] * size[1]) as usize];
-    HeightSurface::new(Heights::new(size, wrap, flat).unwrap(), patches, tiles).unwrap()
+fn flat(size: [u32; 2], wrap: bool, patches: Patches, tiles: [u32; 2]) -> HeightSurface {
+    let heights = vec![0.5; (size[0] * size[1]) as usize];
+    HeightSurface::clone(&surface((size, [wrap; 2], tiles, patches), heights))
 }
 
 #[test]
 fn a_texel_lies_on_each_sample_of_a_map_of_the_same_size() {
     let folder = Folder::new();
     let texture = written(&folder);
-    let same = |relief: &HeightSurface, cell, uv, wanted: DVec3| {
-        let own = texture.at(relief, cell, uv);
+    let same = |surface: &HeightSurface, cell, uv, wanted: DVec3| {
+        let own = texture.at(surface, cell, uv);
         assert!(
             (own - wanted).abs().max_element() < 1e-12,
             "{cell:?} {uv:?}: {own} {wanted}"
         );
     };
     // Patches have samples at their corners; tiles and borders come round.
-    let tiled = relief(SIZE, [true, true], Patches::Bilinear, [2, 3]);
+    let tiled = flat(SIZE, true, Patches::Bilinear, [2, 3]);
     for (x, y) in (0..4 * 3).flat_map(|y| (0..6 * 2).map(move |x| (x, y))) {
         let [i, j] = [x as u32 % 6, y as u32 % 4];
         same(&tiled, [x, y], [0.0, 0.0], texel(i, j));
@@ -73,20 +63,20 @@ fn a_texel_lies_on_each_sample_of_a_map_of_the_same_size() {
         same(&tiled, [x, y], [0.25, 0.0], across);
     }
     // Without wrapping the last cell ends at the last sample.
-    let ended = relief(SIZE, [false, false], Patches::Bilinear, [1, 1]);
+    let ended = flat(SIZE, false, Patches::Bilinear, [1, 1]);
     same(&ended, [4, 2], [1.0, 1.0], texel(5, 3));
     same(&ended, [0, 0], [0.0, 1.0], texel(0, 1));
     // A box is a sample, whose texel lies on its middle; its outer half keeps that colour.
-    let boxes = relief(SIZE, [false, false], Patches::Boxes, [1, 1]);
+    let boxes = flat(SIZE, false, Patches::Boxes, [1, 1]);
     same(&boxes, [2, 3], [0.5, 0.5], texel(2, 3));
     same(&boxes, [5, 3], [0.9, 0.75], texel(5, 3));
     // The one cell of a single sample shows the whole picture, and so does one row of it.
-    let single = relief([1, 1], [false, false], Patches::Bilinear, [1, 1]);
+    let single = flat([1, 1], false, Patches::Bilinear, [1, 1]);
     same(&single, [0, 0], [1.5 / 6.0, 2.5 / 4.0], texel(1, 2));
-    let row = relief([1, 4], [false, false], Patches::Bilinear, [1, 1]);
+    let row = flat([1, 4], false, Patches::Bilinear, [1, 1]);
     same(&row, [0, 2], [5.5 / 6.0, 0.0], texel(5, 2));
     // Of another size it is stretched: each of these boxes is two texels by one.
-    let wide = relief([3, 4], [false, false], Patches::Boxes, [1, 1]);
+    let wide = flat([3, 4], false, Patches::Boxes, [1, 1]);
     same(&wide, [1, 2], [0.25, 0.5], texel(2, 2));
     same(&wide, [1, 2], [0.75, 0.5], texel(3, 2));
 }
@@ -94,48 +84,83 @@ fn a_texel_lies_on_each_sample_of_a_map_of_the_same_size() {
 #[test]
 fn grey_and_sixteen_bits_are_read() {
     let folder = Folder::new();
-    let one = relief([1, 1], [false, false], Patches::Boxes, [1, 1]);
-    let color = |color, depth, bytes: &[u8]| {
+    let one = flat([1, 1], false, Patches::Boxes, [1, 1]);
+    use BitDepth::{Eight, Sixteen};
+    use ColorType::{Grayscale, GrayscaleAlpha, Rgb, Rgba};
+    type Row<'a> = (ColorType, BitDepth, &'a [u8], [f64; 3], bool);
+    let rows: [Row; 7] = [
+        (Grayscale, Eight, &[100], [100.0; 3], false),
+        (GrayscaleAlpha, Eight, &[100, 7], [100.0; 3], true),
+        // 0x6400 of 65535 is 99.6 of 255, and 0x8080 is exactly 128.
+        (
+            Rgb,
+            Sixteen,
+            &[0x64, 0, 0xff, 0xff, 0, 0],
+            [100.0, 255.0, 0.0],
+            false,
+        ),
+        (Grayscale, Sixteen, &[0x80, 0x80], [128.0; 3], false),
+        (
+            Rgba,
+            Sixteen,
+            &[0, 0, 0, 0, 0xff, 0xff, 0xff, 0xfe],
+            [0.0, 0.0, 255.0],
+            true,
+        ),
+        (Rgba, Eight, &[1, 2, 3, 254], [1.0, 2.0, 3.0], true),
+        // Alpha that hides nothing.
+        (Rgba, Eight, &[1, 2, 3, 255], [1.0, 2.0, 3.0], false),
+    ];
+    for (color, depth, bytes, wanted, transparent) in rows {
         folder.write("one.png", png([1, 1], color, depth, bytes));
         let texture = Texture::read(&folder.0.join("one.png")).unwrap();
-        (texture.at(&one, [0, 0], [0.5, 0.5]), texture.note())
-    };
-    let is = |own: DVec3, r: f64, g: f64, b: f64| {
-        own.abs_diff_eq(linear(DVec3::new(r, g, b) / 255.0), 1e-12)
-    };
-    let (grey, note) = color(ColorType::Grayscale, BitDepth::Eight, &[100]);
-    assert!(is(grey, 100.0, 100.0, 100.0) && note.is_none());
-    let (grey, note) = color(ColorType::GrayscaleAlpha, BitDepth::Eight, &[100, 7]);
-    assert!(is(grey, 100.0, 100.0, 100.0) && note.unwrap().contains("alpha"));
-    // 0x6400 of 65535 is 99.6 of 255.
-    let wide = [0x64, 0x00, 0xff, 0xff, 0, 0];
-    let (rgb, note) = color(ColorType::Rgb, BitDepth::Sixteen, &wide);
-    assert!(is(rgb, 100.0, 255.0, 0.0) && note.is_none());
-    let (rgb, note) = color(ColorType::Rgba, BitDepth::Eight, &[1, 2, 3, 255]);
-    assert!(
-        is(rgb, 1.0, 2.0, 3.0) && note.is_none(),
-        "alpha that hides nothing"
-    );
+        let own = texture.at(&one, [0, 0], [0.5, 0.5]);
+        let wanted = linear(DVec3::from(wanted) / 255.0);
+        assert!(own.abs_diff_eq(wanted, 1e-12), "{bytes:?}: {own}");
+        assert_eq!(texture.note().is_some(), transparent, "{bytes:?}");
+    }
 }
 
-/// A plan of a small map of noise under the texture.
-fn plan(folder: &Folder, wrap: Wrap, patches: Patches) -> Plan {
-    let mut shape = HeightfieldSettings::default();
-    shape.source.field = "noise:7x5,seed=3".into();
-    shape.source.wrap = wrap;
-    shape.patches = patches;
-    if wrap == Wrap::Both {
-        shape.tiles = [2, 1];
-    }
-    shape.texture = folder.0.join("t.png").to_string_lossy().into_owned();
-    let mut plan = Plan::new(Subject::Heightfield(shape));
-    plan.size = [120, 80];
-    plan.camera = Camera {
-        eye: DVec3::new(3.0, -9.0, 9.0),
-        target: DVec3::ZERO,
-        up: DVec3::Z,
-        ..plan.camera
+#[test]
+fn jpeg_and_webp_are_read_by_their_content() {
+    let folder = Folder::new();
+    let of_png = written(&folder);
+    let save = |name: &str, format| {
+        let path = folder.0.join(name);
+        let rgb = ExtendedColorType::Rgb8;
+        image::save_buffer_with_format(&path, &texels(), SIZE[0], SIZE[1], rgb, format).unwrap();
+        Texture::read(&path).unwrap()
     };
+    // WebP without loss has the same texels, whatever the file is called.
+    assert_eq!(save("t", ImageFormat::WebP), of_png);
+    // JPEG loses a little: a flat colour stays within 2 of 255.
+    let flat = [200, 120, 40].repeat(64);
+    let path = folder.0.join("flat.png");
+    let rgb = ExtendedColorType::Rgb8;
+    image::save_buffer_with_format(&path, &flat, 8, 8, rgb, ImageFormat::Jpeg).unwrap();
+    let (_, bytes) = Texture::read(&path).unwrap().buffer();
+    for texel in bytes[8..].chunks_exact(4) {
+        let near = |(a, b): (&u8, &u8)| a.abs_diff(*b) <= 2;
+        assert!(
+            texel.iter().zip(&[200, 120, 40, 255]).all(near),
+            "{texel:?}"
+        );
+    }
+    for (name, whole) in [("a.jpg", "flat.png"), ("a.webp", "t")] {
+        folder.write(name, &folder.bytes(whole)[..40]);
+        let why = Texture::read(&folder.0.join(name)).unwrap_err();
+        assert!(why.contains(name) && why.contains("save it again"), "{why}");
+    }
+}
+
+/// A plan of a small map of noise with a texture.
+fn plan(texture: &str, wrap: &str, surface: &str) -> Plan {
+    let tiles = if wrap == "both" { [2, 1] } else { [1, 1] };
+    let mut plan = crate::plan(&format!(
+        "field = 'noise:7x5,seed=3'\nwrap = '{wrap}'\ntiles = {tiles:?}\nsurface = '{surface}'
+        texture = '{texture}'"
+    ));
+    plan.camera = camera([3.0, -9.0, 9.0], [0.0; 3], 40.0);
     plan
 }
 
@@ -143,51 +168,43 @@ fn plan(folder: &Folder, wrap: Wrap, patches: Patches) -> Plan {
 fn both_executors_color_alike_and_by_the_texture() {
     let folder = Folder::new();
     written(&folder);
-    for wrap in [Wrap::None, Wrap::Both] {
-        for patches in [Patches::Bilinear, Patches::Boxes] {
-            let plan = plan(&folder, wrap, patches);
-            let here = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
-            let there = adapter::render(&plan, Extras::default());
-            let apart = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.01);
-            let pairs = here.radiance.iter().zip(&there.radiance);
-            let wrong = pairs.filter(|(a, b)| apart((a, b))).count();
-            assert!(wrong <= 40, "{wrap:?} {patches:?}: {wrong} pixels apart");
-            let mut other = plan.clone();
-            let Subject::Heightfield(shape) = &mut other.subject else {
-                unreachable!("made above");
-            };
-            shape.texture = "none".into();
-            let plain = adapter::render(&other, Extras::default());
-            assert_eq!(plain.depth, there.depth);
-            let pairs = plain.radiance.iter().zip(&there.radiance);
-            let moved = pairs.filter(|(a, b)| apart((a, b))).count();
-            let hits = there.census()[0];
-            // Walls and what lies in shadow differ little.
-            let most = 2 * moved > hits;
-            assert!(most && hits > 1000, "{moved} of {hits} pixels colored");
-        }
+    let file = folder.0.join("t.png").display().to_string();
+    for (wrap, surface) in [
+        ("none", "bilinear"),
+        ("none", "boxes"),
+        ("both", "bilinear"),
+        ("both", "boxes"),
+    ] {
+        let [here, there] = both(&plan(&file, wrap, surface), Extras::default());
+        let wrong = apart(&here, &there, 0.01);
+        assert!(wrong <= 40, "{wrap} {surface}: {wrong} pixels apart");
+        let plain = crate::adapter::render(&plan("none", wrap, surface), Extras::default());
+        assert_eq!(plain.depth, there.depth);
+        let (moved, hits) = (apart(&plain, &there, 0.01), there.census()[0]);
+        // Walls and what lies in shadow differ little.
+        let most = 2 * moved > hits;
+        assert!(most && hits > 1000, "{moved} of {hits} pixels colored");
     }
 }
 
 #[test]
 fn a_truth_depends_on_the_texels_of_a_file() {
     let folder = Folder::new();
-    written(&folder);
-    let before = plan(&folder, Wrap::None, Patches::Bilinear).contents();
-    let mut bytes = texels();
-    bytes[40] ^= 1;
-    folder.write("t.png", png(SIZE, ColorType::Rgb, BitDepth::Eight, &bytes));
-    assert_ne!(
-        plan(&folder, Wrap::None, Patches::Bilinear).contents(),
-        before
-    );
+    let contents = |size, texels: &[u8]| {
+        folder.write("t.png", png(size, ColorType::Rgb, BitDepth::Eight, texels));
+        let file = folder.0.join("t.png").display().to_string();
+        plan(&file, "none", "bilinear").contents()
+    };
+    let before = contents(SIZE, &texels());
+    let mut other = texels();
+    other[40] ^= 1;
+    assert_ne!(contents(SIZE, &other), before);
     // Two rows of twelve are other than four of six.
-    let turned = png([12, 2], ColorType::Rgb, BitDepth::Eight, &texels());
-    folder.write("t.png", turned);
-    assert_ne!(
-        plan(&folder, Wrap::None, Patches::Bilinear).contents(),
-        before
-    );
+    assert_ne!(contents([12, 2], &texels()), before);
+}
+
+fn words_of(command: &str) -> Vec<&str> {
+    command.split(' ').collect()
 }
 
 #[test]
@@ -200,65 +217,68 @@ fn what_colors_nothing_is_refused_or_told() {
         "clear.png",
         png([1, 1], ColorType::Rgba, BitDepth::Eight, &[9, 9, 9, 0]),
     );
-    let render = |set: &'static str| {
-        let small = ["--set", "scene.field=fbm:8x8", "--size", "24x16"];
-        let args = [
-            "render", "terrain", "--device", "cpu", "--set", set, "-o", "a.png",
-        ];
-        [&args[..], &small].concat()
-    };
-    for (set, words) in [
+    let terrain = "render terrain --device cpu --set scene.field=fbm:8x8 --size 24x16 -o a.png";
+    let with = |texture: &str| format!("{terrain} --set scene.texture={texture}");
+    for (command, words) in [
+        (with("there.png"), &["there.png", "cannot be read"][..]),
+        (with("cut.png"), &["cut.png", "ends before its end"]),
+        (with("t.txt"), &["t.txt", "is no PNG", "JPEG", "WebP"]),
+        (with("."), &["is a folder"]),
         (
-            "scene.texture=there.png",
-            &["there.png", "cannot be read"][..],
+            with("t.png") + " --set scene.paint=exact",
+            &["scene.paint", "height"],
         ),
-        ("scene.texture=cut.png", &["cut.png", "ends before its end"]),
-        ("scene.texture=t.txt", &["t.txt", "is no PNG"]),
-        ("scene.texture=.", &["is a folder"]),
     ] {
-        folder.fails(&render(set), 2, words);
+        folder.fails(&words_of(&command), 2, words);
     }
-    let both = [
-        &render("scene.texture=t.png")[..],
-        &["--set", "scene.paint=exact"],
-    ]
-    .concat();
-    folder.fails(&both, 2, &["scene.paint", "height"]);
-    let told = said(&folder.done(&render("scene.texture=clear.png")));
+    let told = said(&folder.done(&words_of(&with("clear.png"))));
     assert!(told.contains("note: clear.png is transparent"), "{told}");
-    // What is read is never written over, by whatever name.
-    let over = |name: &'static str| {
-        let small = ["--set", "scene.field=fbm:8x8", "--size", "24x16"];
-        let set = ["--set", "scene.texture=t.png", "-o", name];
-        [&["render", "terrain", "--device", "cpu"][..], &set, &small].concat()
-    };
-    let before = folder.bytes("t.png");
-    for name in ["t.png", "./t.png"] {
-        folder.fails(&over(name), 2, &["the picture", "scene.texture", "-o"]);
-    }
-    let stats = [&over("b.png")[..], &["--stats", "t.png"]].concat();
-    folder.fails(&stats, 2, &["--stats", "scene.texture"]);
-    let text = "[scene]\nkind = \"heightfield\"\nfield = \"t.png\"\n[image]\nsize = [16, 9]\n";
-    folder.write("p.toml", text);
-    let own = [
-        "render", "p.toml", "--device", "cpu", "-o", "b.png", "--stats", "p.toml",
-    ];
-    folder.fails(&own, 2, &["--stats", "the preset"]);
-    for (file, what) in [("t.png", "scene.field"), ("p.toml", "a preset")] {
-        let bench = [
-            "bench", "steps", "p.toml", "--device", "cpu", "--json", file,
-        ];
-        folder.fails(&bench, 2, &["--json", what]);
-    }
-    assert_eq!(folder.bytes("p.toml"), text.as_bytes());
-    // A built-in preset is no file, whatever an output is called.
-    let own = ["render", "mandelbox", "--device", "cpu", "--size", "8x8"];
-    folder.done(&[&own[..], &["-o", "b.png", "--stats", "mandelbox"]].concat());
-    assert_eq!(folder.bytes("t.png"), before);
     // Depths need no colours.
-    let explain = [&render("scene.texture=t.png")[..], &["--explain"]].concat();
-    let shown = |args: &[&str]| String::from_utf8(folder.done(args).stdout).unwrap();
+    let explain = with("t.png") + " --explain";
+    let shown = |command: &str| text(&folder.done(&words_of(command)));
     assert!(shown(&explain).contains("texture.wgsl"));
-    let depths = [&explain[..], &["--layer", "depth"]].concat();
-    assert!(!shown(&depths).contains("texture.wgsl"));
+    assert!(!shown(&(explain + " --layer depth")).contains("texture.wgsl"));
+}
+
+#[test]
+fn what_is_read_is_never_written_over() {
+    let folder = Folder::new();
+    written(&folder);
+    let toml = "[scene]\nkind = \"heightfield\"\nfield = \"t.png\"\n[image]\nsize = [16, 9]\n";
+    folder.write("p.toml", toml);
+    let before = ["t.png", "p.toml"].map(|name| folder.bytes(name));
+    let terrain = "render terrain --device cpu --size 24x16 --set scene.field=fbm:8x8";
+    let colored = format!("{terrain} --set scene.texture=t.png");
+    for (command, words) in [
+        (
+            format!("{colored} -o t.png"),
+            &["the picture", "scene.texture", "-o"][..],
+        ),
+        (
+            format!("{colored} -o ./t.png"),
+            &["the picture", "scene.texture", "-o"],
+        ),
+        (
+            format!("{colored} -o b.png --stats t.png"),
+            &["--stats", "scene.texture"],
+        ),
+        (
+            "render p.toml --device cpu -o b.png --stats p.toml".into(),
+            &["--stats", "the preset"],
+        ),
+        (
+            "bench steps p.toml --device cpu --json t.png".into(),
+            &["--json", "scene.field"],
+        ),
+        (
+            "bench steps p.toml --device cpu --json p.toml".into(),
+            &["--json", "a preset"],
+        ),
+    ] {
+        folder.fails(&words_of(&command), 2, words);
+    }
+    // A built-in preset is no file, whatever an output is called.
+    let own = "render mandelbox --device cpu --size 8x8 -o b.png --stats mandelbox";
+    folder.done(&words_of(own));
+    assert_eq!(["t.png", "p.toml"].map(|name| folder.bytes(name)), before);
 }
