@@ -60,15 +60,15 @@ fn met(surface: &HeightSurface, ray: &LocalRay) -> Option<(f64, DVec3)> {
 
 #[test]
 fn the_sides_of_boxes_face_sideways() {
-    let kinds = TracerKind::ALL.iter().copied();
-    for tracer in kinds.filter(|kind| kind.accuracy() != Accuracy::Approximate) {
+    let kinds = TracerKind::ALL.into_iter();
+    for tracer in kinds.filter(|kind| kind.facts().accuracy != Accuracy::Approximate) {
         for (name, plan) in boxes(tracer) {
             let (ready, view) = (ready(&plan), plan.view());
             for frame in rendered(&plan) {
                 check_normals(&name, &frame, |pixel| {
-                    let ray = local(&ready.placed, view.eye, &view.view_ray(pixel));
-                    let (_, normal) = met(&ready.relief, &ray)?;
-                    Some(ready.placed.side(normal))
+                    let ray = local(&ready.placement, view.eye, &view.view_ray(pixel));
+                    let (_, normal) = met(&ready.surface, &ray)?;
+                    Some(ready.placement.side(normal))
                 });
             }
         }
@@ -100,8 +100,8 @@ fn bisections_and_secants_find_the_sides_of_boxes_too() {
     let truths: Vec<_> = boxes(TracerKind::Walk)
         .map(|(_, plan)| rendered(&plan))
         .collect();
-    let kinds = TracerKind::ALL.iter().copied();
-    for tracer in kinds.filter(|kind| kind.accuracy() == Accuracy::Approximate) {
+    let kinds = TracerKind::ALL.into_iter();
+    for tracer in kinds.filter(|kind| kind.facts().accuracy == Accuracy::Approximate) {
         for ((name, plan), truths) in boxes(tracer).zip(&truths) {
             for (own, truth) in rendered(&plan).iter().zip(truths) {
                 // Where these tracers find the first hit, they know what they met.

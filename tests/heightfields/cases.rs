@@ -204,7 +204,9 @@ pub fn tracer(
 
 /// Every tracer of an accuracy with a reference map, and each in all its variants.
 pub fn tracers(surface: &Arc<HeightSurface>, accuracy: Accuracy) -> Vec<Named> {
-    let kinds = TracerKind::ALL.iter().filter(|k| k.accuracy() == accuracy);
+    let kinds = TracerKind::ALL
+        .iter()
+        .filter(|k| k.facts().accuracy == accuracy);
     kinds.flat_map(|kind| variants(surface, *kind)).collect()
 }
 
@@ -216,12 +218,12 @@ fn variants(surface: &Arc<HeightSurface>, kind: TracerKind) -> Vec<Named> {
         let name = format!("{}{note}", kind.name());
         all.push(Named { kind, name, tracer });
     };
-    let Some(map) = kind.kinds().first() else {
+    let Some(map) = kind.facts().kinds.first() else {
         add("", &settings, None);
         return all;
     };
     let plain = Some(Arc::new(reference_map(surface, *map, 1.5)));
-    match kind.accuracy() {
+    match kind.facts().accuracy {
         Accuracy::Exact => {
             let generator = settings.generator().expect("of the first kind");
             add(

@@ -24,9 +24,9 @@ const NEVER: f64 = 2.0 * END;
 
 /// The tracers that are off by a pixel, where a texel is as wide as one at a parameter.
 fn distant(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> Vec<Arc<dyn Tracer>> {
-    let kinds = TracerKind::ALL.iter().copied();
+    let kinds = TracerKind::ALL.into_iter();
     let made = kinds
-        .filter(|kind| kind.accuracy() == Accuracy::Pixel)
+        .filter(|kind| kind.facts().accuracy == Accuracy::Pixel)
         .map(|kind| {
             let settings = TracerSettings {
                 lod: Some(lod),

@@ -338,7 +338,7 @@ fn cones_are_not_wider_than_they_may_be() {
     for own in exact(&block) {
         assert_eq!(bad(&*own.tracer), 0, "{}", own.name);
         // With cones that are wider by a hundredth some hits are lost.
-        if let Some(kind) = own.kind.kinds().first() {
+        if let Some(kind) = own.kind.facts().kinds.first() {
             let mut map = reference_map(&block, *kind, 1.5);
             map.ratios.iter_mut().for_each(|r| *r *= 1.01);
             let wider = tracer(&block, &own.kind.into(), Some(Arc::new(map))).unwrap();

@@ -12,7 +12,7 @@ use crate::{both, camera, plan};
 /// A scene with each of the exact tracers.
 fn exact(scene: &str) -> impl Iterator<Item = Plan> {
     let kinds = TracerKind::ALL.iter();
-    let exact = kinds.filter(|kind| kind.accuracy() == Accuracy::Exact);
+    let exact = kinds.filter(|kind| kind.facts().accuracy == Accuracy::Exact);
     exact.map(move |kind| plan(&format!("{scene}\ntracer = '{}'", kind.name())))
 }
 

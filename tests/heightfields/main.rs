@@ -33,6 +33,7 @@ use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset;
+use conemarch::scene::Assets;
 
 /// A plan of a heightfield, seen from above. `scene` has the lines of its `[scene]`.
 fn plan(scene: &str) -> Plan {
@@ -54,7 +55,7 @@ fn camera(eye: [f64; 3], target: [f64; 3], fov: f64) -> Camera {
 
 /// The frames of a plan on the CPU and on the device.
 fn both(plan: &Plan, extras: Extras) -> [Frame; 2] {
-    let here = cpu::render(plan, extras, &mut |_| true).unwrap();
+    let here = cpu::render(plan, &Assets::default(), extras, &mut |_| true).unwrap();
     [here, adapter::render(plan, extras)]
 }
 

@@ -2,16 +2,17 @@
 
 use conemarch::base::view::Beam;
 use conemarch::cpu;
+use conemarch::heightfield::assets::Ready;
 use conemarch::heightfield::conemap::generate::generator::Generator;
 use conemarch::heightfield::heights::Patches;
-use conemarch::heightfield::settings::Ready;
+use conemarch::pass;
 use conemarch::picture::frame::Frame;
-use conemarch::plan::{Extras, PREPARE, Plan};
-use conemarch::scene::{self, Scene, Solid};
+use conemarch::plan::{Extras, Pass, Plan};
+use conemarch::scene::{self, Assets, Solid};
 use glam::DVec3;
 
 use crate::cases::made;
-use crate::scenes::ready;
+use crate::scenes::{ready, solid};
 use crate::{apart, both, plan};
 
 /// Generators whose places are samples, four cones at each, or cells; and boxes.
@@ -35,22 +36,22 @@ fn painted((by, patches): (Generator, Patches)) -> Plan {
 fn paint_is_how_wide_the_cones_are() {
     for (by, patches) in PAINTED {
         let plan = painted((by, patches));
-        let Ready { relief, placed, .. } = ready(&plan);
-        let map = made(by, &relief, 2.0);
-        let Scene::Heightfield(scene) = plan.scene() else {
-            unreachable!("a heightfield");
-        };
-        let eye = placed.position(plan.camera.eye);
-        let units = DVec3::new(placed.texel, placed.texel, placed.depth);
-        let [w, h] = relief.domain();
+        let Ready {
+            surface, placement, ..
+        } = ready(&plan);
+        let map = made(by, &surface, 2.0);
+        let scene = solid(&plan);
+        let eye = placement.position(plan.camera.eye);
+        let units = DVec3::new(placement.texel, placement.texel, placement.depth);
+        let [w, h] = surface.domain();
         let mut hues = Vec::new();
         // A quarter and three quarters into each cell, from above.
         for (i, j) in (0..2 * h).flat_map(|j| (0..2 * w).map(move |i| (i, j))) {
             let place = [i, j].map(|n| 0.25 + 0.5 * f64::from(n));
             let from = DVec3::new(place[0], place[1], 2.0);
             let ray = Beam {
-                origin: placed.side((from - eye) * units),
-                axis: -placed.side(DVec3::Z),
+                origin: placement.side((from - eye) * units),
+                axis: -placement.side(DVec3::Z),
                 r0: 0.0,
                 k: 0.0,
                 grain0: 0.0,
@@ -97,20 +98,23 @@ fn depths_alone_need_no_map_to_paint_by() {
         ..Extras::default()
     };
     let fresh = || painted(PAINTED[0]);
-    let maps = |frame: Frame| frame.passes.iter().filter(|p| p.name == PREPARE).count();
-    let said = |plan: &Plan, extras| plan.explain(extras).matches(PREPARE).count();
+    let maps = |frame: &Frame| {
+        let prepared = frame
+            .passes
+            .iter()
+            .filter(|p| matches!(p.pass, Pass::Prepare(_)));
+        prepared.count()
+    };
     for (extras, wanted) in [(Extras::default(), 2), (depths, 1)] {
-        let plan = fresh();
-        assert_eq!(said(&plan, extras), wanted, "{}", plan.explain(extras));
-        let here = cpu::render(&plan, extras, &mut |_| true).unwrap();
-        let there = crate::adapter::render(&fresh(), extras);
-        assert_eq!([here, there].map(maps), [wanted; 2]);
+        let said = pass::explain(&fresh(), &Assets::default(), extras).unwrap();
+        assert_eq!(said.matches("prepare").count(), wanted, "{said}");
+        assert_eq!(both(&fresh(), extras).each_ref().map(maps), [wanted; 2]);
     }
-    // A plan that has been rendered without its paint still has it.
-    let plan = fresh();
-    let render = |plan: &Plan, extras| cpu::render(plan, extras, &mut |_| true).unwrap();
-    let without = render(&plan, depths);
-    let with = render(&plan, Extras::default());
+    // Assets that have served a render without the paint still have it afterwards.
+    let assets = Assets::default();
+    let render = |extras| cpu::render(&fresh(), &assets, extras, &mut |_| true).unwrap();
+    let (without, with) = (render(depths), render(Extras::default()));
     assert_eq!(without.depth, with.depth);
-    assert_eq!(with.radiance, render(&fresh(), Extras::default()).radiance);
+    let [own, _] = both(&fresh(), Extras::default());
+    assert_eq!(with.radiance, own.radiance);
 }

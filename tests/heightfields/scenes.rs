@@ -2,15 +2,16 @@
 //! angle of view, and empty balls are empty.
 
 use conemarch::base::view::Beam;
+use conemarch::heightfield::assets::Ready;
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::placement::Placement;
-use conemarch::heightfield::settings::Ready;
 use conemarch::heightfield::tracer::LocalRay;
 use conemarch::heightfield::tracer::reference::ReferenceTracer;
 use conemarch::measure::tracer_stats::first_hits;
-use conemarch::plan::{Extras, Plan, Subject};
-use conemarch::scene::{Scene, Solid};
+use conemarch::plan::{Extras, Plan};
+use conemarch::scene::heightfield::Heightfield;
+use conemarch::scene::{AnySolid, Assets, Scene, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -32,17 +33,25 @@ pub const SCENES: [&str; 7] = [
 
 /// What a plan's heightfield consists of. How wide pixels are does not matter to these tests.
 pub fn ready(plan: &Plan) -> Ready {
-    let Subject::Heightfield(settings) = &plan.subject else {
+    let Scene::Heightfield(settings) = &plan.scene else {
         panic!("no heightfield");
     };
-    settings.ready(1e-3).unwrap()
+    Assets::default().ready(settings, 1e-3).unwrap()
+}
+
+/// The scene of a plan in f64.
+pub fn solid(plan: &Plan) -> Heightfield {
+    match plan.solid(&Assets::default()).unwrap() {
+        AnySolid::Heightfield(solid) => solid,
+        _ => panic!("no heightfield"),
+    }
 }
 
 /// A ray of the view in local units.
-pub fn local(placed: &Placement, eye: DVec3, ray: &Beam) -> LocalRay {
+pub fn local(placement: &Placement, eye: DVec3, ray: &Beam) -> LocalRay {
     LocalRay {
-        origin: placed.position(eye + ray.origin),
-        axis: placed.direction(ray.axis),
+        origin: placement.position(eye + ray.origin),
+        axis: placement.direction(ray.axis),
     }
 }
 
@@ -52,9 +61,9 @@ fn truths(plan: &Plan, ready: &Ready) -> Vec<f64> {
     let [w, h] = plan.size;
     let pixels = (0..w * h).map(|i| view.view_ray([i % w, i / w]));
     let rays: Vec<_> = pixels
-        .map(|ray| local(&ready.placed, view.eye, &ray))
+        .map(|ray| local(&ready.placement, view.eye, &ray))
         .collect();
-    let hits = first_hits(&ReferenceTracer::new(ready.relief.clone()), &rays);
+    let hits = first_hits(&ReferenceTracer::new(ready.surface.clone()), &rays);
     hits.into_iter()
         .map(|s| s.unwrap_or(f64::INFINITY))
         .collect()
@@ -147,16 +156,17 @@ fn empty_balls_hold_nothing_of_a_surface() {
     let mut random = Random::new(41);
     for name in SCENES {
         let plan = plan(name);
-        let Ready { relief, placed, .. } = ready(&plan);
+        let Ready {
+            surface, placement, ..
+        } = ready(&plan);
         let eye = plan.camera.eye;
-        let Scene::Heightfield(scene) = plan.scene() else {
-            unreachable!("a heightfield");
+        let scene = solid(&plan);
+        let world = |p: DVec3| {
+            placement.side(p * DVec3::new(placement.texel, placement.texel, placement.depth))
         };
-        let world =
-            |p: DVec3| placed.side(p * DVec3::new(placed.texel, placed.texel, placed.depth));
-        let shell: Vec<DVec3> = shell(&relief, 6).into_iter().map(world).collect();
-        let corner = eye - world(placed.position(eye));
-        let [w, h] = relief.domain().map(f64::from);
+        let shell: Vec<DVec3> = shell(&surface, 6).into_iter().map(world).collect();
+        let corner = eye - world(placement.position(eye));
+        let [w, h] = surface.domain().map(f64::from);
         let points: Vec<DVec3> = (0..1500)
             .map(|i| {
                 let n = [0; 3].map(|_| random.between(-0.15, 1.15));
@@ -164,7 +174,7 @@ fn empty_balls_hold_nothing_of_a_surface() {
                 // Every third from next to the surface on.
                 if i % 3 == 0 && n[..2].iter().all(|n| (0.0..1.0).contains(n)) {
                     let cell = [p.x as i32, p.y as i32];
-                    let top = relief.height(cell, p.x.fract(), p.y.fract());
+                    let top = surface.height(cell, p.x.fract(), p.y.fract());
                     return p.with_z(top + 0.2 * n[2] * n[2]);
                 }
                 p.with_z(2.0 * p.z)

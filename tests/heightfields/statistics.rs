@@ -10,7 +10,7 @@ use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::pattern::Pattern;
 use conemarch::heightfield::tracer::reference::ReferenceTracer;
 use conemarch::heightfield::tracer::settings::TracerSettings;
-use conemarch::heightfield::tracer::{Accuracy, LocalRay, Step, Tracer, TracerKind};
+use conemarch::heightfield::tracer::{Accuracy, LocalRay, Step, Steps, Tracer, TracerKind};
 use conemarch::measure::tracer_stats::{first_hits, measure, view_rays};
 use glam::DVec3;
 
@@ -31,7 +31,8 @@ fn approximate_tracers_end_on_the_surface_or_say_that_they_do_not() {
         for own in tracers(&case.surface, Accuracy::Approximate) {
             for (ray, truth) in &ends {
                 let (step, hit, _) = run(&*own.tracer, ray, END).expect("ends");
-                spent[usize::from(own.kind.gives_up())] += u32::from(step == Step::Spent);
+                spent[usize::from(matches!(own.kind.facts().steps, Steps::Limited(_)))] +=
+                    u32::from(step == Step::Spent);
                 // Never in front of the truth by more than a bracket leaves, and never a hit
                 // where there is none.
                 if step == Step::Hit {

@@ -6,6 +6,7 @@ use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::texture::Texture;
 use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Assets;
 use glam::DVec3;
 use image::{ExtendedColorType, ImageFormat};
 use png::{BitDepth, ColorType};
@@ -193,7 +194,9 @@ fn a_truth_depends_on_the_texels_of_a_file() {
     let contents = |size, texels: &[u8]| {
         folder.write("t.png", png(size, ColorType::Rgb, BitDepth::Eight, texels));
         let file = folder.0.join("t.png").display().to_string();
-        plan(&file, "none", "bilinear").contents()
+        plan(&file, "none", "bilinear")
+            .scene
+            .contents(&Assets::default())
     };
     let before = contents(SIZE, &texels());
     let mut other = texels();

@@ -156,7 +156,7 @@ fn inexact_shaders_agree_with_their_twins() {
     for case in surfaces() {
         let all: Vec<_> = rays(&case.surface, 6000, 22).iter().map(narrow).collect();
         for own in every_tracer(&case.surface) {
-            if own.kind.accuracy() == Accuracy::Exact {
+            if own.kind.facts().accuracy == Accuracy::Exact {
                 continue;
             }
             let told = answers(&probe_of(&*own.tracer), &all);

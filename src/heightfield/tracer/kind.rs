@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::height_surface::{HeightSurface, MOST_LEVELS};
+use crate::base::named::named_enum;
+use crate::heightfield::conemap::ConeMap;
+use crate::heightfield::conemap::MapKind::{self, Relaxed, Samples};
+use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::tracer::cone::check_map;
 use crate::heightfield::tracer::contract::{TraceError, Tracer};
 use crate::heightfield::tracer::settings::{Supply, TracerSettings};
@@ -20,15 +22,46 @@ pub enum Accuracy {
     Approximate,
 }
 
-/// What limits the steps of a ray that nobody limits.
+/// What limits the steps of a ray, if its caller does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bound {
-    /// One step to each cell on its way.
+pub enum Steps {
+    /// One step for each cell on its way.
     Cells,
     /// Steps up and down the pyramid of maxima.
     Pyramid,
-    /// The tracer divides every ray into its own number of steps.
-    Own,
+    /// The tracer divides every ray into this number of steps by default.
+    Divided(u32),
+    /// As `Cells`, but by default the tracer gives a ray up after about this number of steps.
+    Limited(u32),
+}
+
+use Accuracy::{Approximate, Exact, Pixel};
+use Steps::{Cells, Divided, Limited, Pyramid};
+
+/// What is known of a tracer before it is made.
+pub struct TracerFacts {
+    /// How well it finds the first hit.
+    pub accuracy: Accuracy,
+    /// The kinds of cones that it can use, the one to make by default first; none for a tracer
+    /// without cones.
+    pub kinds: &'static [MapKind],
+    /// What limits its steps.
+    pub steps: Steps,
+    make: Make,
+}
+
+/// Makes a tracer.
+type Make = fn(&Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError>;
+
+impl TracerFacts {
+    fn new(accuracy: Accuracy, kinds: &'static [MapKind], steps: Steps, make: Make) -> Self {
+        Self {
+            accuracy,
+            kinds,
+            steps,
+            make,
+        }
+    }
 }
 
 /// What a tracer is made of.
@@ -56,106 +89,68 @@ impl Parts<'_> {
         let Some(cones) = self.cones else {
             return Err(TraceError::Missing(name));
         };
-        check_map(name, self.kind.kinds(), self.surface, &cones.map)?;
+        check_map(name, self.kind.facts().kinds, self.surface, &cones.map)?;
         Ok(cones.map.clone())
     }
 }
 
-/// Makes the enum of all tracers from one list. Each line has the word that chooses the tracer,
-/// its accuracy, the kinds of cones that it can use (the one to make by default comes first),
-/// the bound of its steps, the number of steps that it counts itself (0 for none), and the
-/// function that makes it.
-macro_rules! tracers {
-    ($($(#[$doc:meta])* $kind:ident $word:literal $accuracy:ident [$($map:ident)*] $bound:ident $steps:literal $make:expr;)*) => {
-        /// A way to find where a ray first meets a height surface.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        pub enum TracerKind {
-            $($(#[$doc])* $kind,)*
-        }
-
-        impl TracerKind {
-            /// Every tracer.
-            pub const ALL: &[Self] = &[$(Self::$kind),*];
-
-            /// Every tracer with its word.
-            pub const WORDS: &[(&str, Self)] = &[$(($word, Self::$kind)),*];
-
-            /// The word that chooses it.
-            pub fn name(self) -> &'static str {
-                match self { $(Self::$kind => $word,)* }
-            }
-
-            /// How well it finds the first hit.
-            pub fn accuracy(self) -> Accuracy {
-                match self { $(Self::$kind => Accuracy::$accuracy,)* }
-            }
-
-            /// The kinds of cones that it can use, the one to make by default first; none for a
-            /// tracer without cones.
-            pub fn kinds(self) -> &'static [MapKind] {
-                match self { $(Self::$kind => &[$(MapKind::$map),*],)* }
-            }
-
-            /// What limits the steps of its rays.
-            pub fn bound(self) -> Bound {
-                match self { $(Self::$kind => Bound::$bound,)* }
-            }
-
-            /// The number of steps that it counts itself by default; 0 for no such limit.
-            pub fn own_steps(self) -> u32 {
-                match self { $(Self::$kind => $steps,)* }
-            }
-
-            fn maker(self) -> fn(&Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
-                match self { $(Self::$kind => $make,)* }
-            }
-        }
-    };
-}
-
-tracers! {
-    /// The cone walk.
-    Walk "walk" Exact [Walk] Cells 0 walk::make;
-    /// The cone walk with relaxed cones.
-    WalkRelaxed "walk-relaxed" Exact [WalkRelaxed] Cells 0 relaxed::make;
-    /// The cone walk over nodes as wide as a pixel, with the cones of cells.
-    WalkMip "walk-mip" Pixel [Walk] Cells 0 walk_mip::make;
-    /// The cone walk over nodes as wide as a pixel, with the cones of nodes.
-    ConeMip "cone-mip" Pixel [Walk] Cells 0 walk_mip::make_with_nodes;
-    /// Descent of the pyramid of maxima.
-    MaxMip "max-mip" Exact [] Pyramid 0 max_mip::make;
-    /// Equal steps, then bisection. 32 steps are those of Policarpo, Oliveira, Comba 2005.
-    LinearBinary "linear-binary" Approximate [] Own 32 linear::make;
-    /// Cone steps until the surface, with the exact solve of every patch on the way.
-    CsmExact "csm-exact" Approximate [Samples] Cells 0 |parts| cones::make(parts, cones::CSM_EXACT);
-    /// As many cone steps as the view needs. Dummer's adaptive version is shown with 20.
-    CsmLoop "csm-loop" Approximate [Samples] Cells 20 |parts| cones::make(parts, cones::CSM_LOOP);
-    /// The same number of cone steps for every ray: Dummer's fixed version has 10.
-    CsmFixed "csm-fixed" Approximate [Samples] Cells 10 |parts| cones::make(parts, cones::SECANT);
-    /// Cone steps that are stretched, then bisection.
-    CsmScaled "csm-scaled" Approximate [Samples] Cells 0 |parts| cones::make(parts, cones::CSM_SCALED);
-    /// Cone steps with one cone for each of four sides.
-    Quad "quad" Approximate [Quad] Cells 0 |parts| cones::make(parts, cones::SECANT);
-    /// Relaxed cones, then bisection. Listing 18-3 has 15 cone steps.
-    RcsBinary "rcs-binary" Approximate [Relaxed] Cells 15 |parts| cones::make(parts, cones::RCS_BINARY);
-    /// Any cones over samples, then the secant method.
-    Secant "secant" Approximate [Samples Quad Relaxed] Cells 0 |parts| cones::make(parts, cones::SECANT);
+named_enum! {
+    /// A way to find where a ray first meets a height surface.
+    pub enum TracerKind: TracerFacts {
+        /// The cone walk.
+        Walk = "walk" => TracerFacts::new(Exact, &[MapKind::Walk], Cells, walk::make),
+        /// The cone walk with relaxed cones.
+        WalkRelaxed = "walk-relaxed" =>
+            TracerFacts::new(Exact, &[MapKind::WalkRelaxed], Cells, relaxed::make),
+        /// The cone walk over nodes as wide as a pixel, with the cones of cells.
+        WalkMip = "walk-mip" => TracerFacts::new(Pixel, &[MapKind::Walk], Cells, walk_mip::make),
+        /// The cone walk over nodes as wide as a pixel, with the cones of nodes.
+        ConeMip = "cone-mip" =>
+            TracerFacts::new(Pixel, &[MapKind::Walk], Cells, walk_mip::make_with_nodes),
+        /// Descent of the pyramid of maxima.
+        MaxMip = "max-mip" => TracerFacts::new(Exact, &[], Pyramid, max_mip::make),
+        /// Equal steps, then bisection (Policarpo, Oliveira, Comba 2005).
+        LinearBinary = "linear-binary" =>
+            TracerFacts::new(Approximate, &[], Divided(32), linear::make),
+        /// Cone steps until the surface, with the exact solve of every patch on the way.
+        CsmExact = "csm-exact" =>
+            TracerFacts::new(Approximate, &[Samples], Cells, |p| cones::make(p, cones::CSM_EXACT)),
+        /// As many cone steps as the view needs. The paper shows its adaptive version with 20.
+        CsmLoop = "csm-loop" =>
+            TracerFacts::new(Approximate, &[Samples], Limited(20), |p| cones::make(p, cones::CSM_LOOP)),
+        /// The same number of cone steps for every ray: the paper's fixed version has 10.
+        CsmFixed = "csm-fixed" =>
+            TracerFacts::new(Approximate, &[Samples], Limited(10), |p| cones::make(p, cones::SECANT)),
+        /// Cone steps that are stretched, then bisection.
+        CsmScaled = "csm-scaled" =>
+            TracerFacts::new(Approximate, &[Samples], Cells, |p| cones::make(p, cones::CSM_SCALED)),
+        /// Cone steps with one cone for each of four sides.
+        Quad = "quad" =>
+            TracerFacts::new(Approximate, &[MapKind::Quad], Cells, |p| cones::make(p, cones::SECANT)),
+        /// Relaxed cones, then bisection. Listing 18-3 has 15 cone steps.
+        RcsBinary = "rcs-binary" =>
+            TracerFacts::new(Approximate, &[Relaxed], Limited(15), |p| cones::make(p, cones::RCS_BINARY)),
+        /// Any cones over samples, then the secant method.
+        Secant = "secant" =>
+            TracerFacts::new(Approximate, &[Samples, MapKind::Quad, Relaxed], Cells, |p| cones::make(p, cones::SECANT)),
+    }
 }
 
 impl TracerKind {
-    /// The tracer of a word.
-    pub fn named(word: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|kind| kind.name() == word)
-    }
+    /// Every tracer with its word.
+    pub const WORDS: [(&str, Self); Self::ALL.len()] = {
+        let mut words = [("", Self::Walk); Self::ALL.len()];
+        let mut i = 0;
+        while i < words.len() {
+            words[i] = (Self::ALL[i].name(), Self::ALL[i]);
+            i += 1;
+        }
+        words
+    };
 
     /// Whether it needs a cone map.
     pub fn needs_map(self) -> bool {
-        !self.kinds().is_empty()
-    }
-
-    /// Whether it may give a ray up because the steps that it counts itself are used up.
-    pub fn gives_up(self) -> bool {
-        self.own_steps() > 0 && self.bound() != Bound::Own
+        !self.facts().kinds.is_empty()
     }
 
     /// Makes the tracer of a surface. `settings` gives its numbers; `pixel` is the distance from
@@ -170,24 +165,12 @@ impl TracerKind {
         settings: &TracerSettings,
         pixel: f64,
     ) -> Result<Arc<dyn Tracer>, TraceError> {
-        self.maker()(&Parts {
+        (self.facts().make)(&Parts {
             kind: self,
             surface,
             cones,
             settings,
             pixel,
         })
-    }
-
-    /// The most steps that a ray can take over a surface of so many cells along x and y
-    /// together, if nobody limits them. `own` is the number of steps that the tracer counts.
-    pub fn most_steps(self, cells: u32, own: u32) -> u32 {
-        match self.bound() {
-            // The first cell, and a line of either axis for each other one.
-            Bound::Cells => cells,
-            // A step down for each step up, and those down from the top.
-            Bound::Pyramid => 2 * cells + MOST_LEVELS as u32,
-            Bound::Own => own,
-        }
     }
 }

@@ -12,16 +12,21 @@ use crate::heightfield::conemap::generate::generator::{
     GenerateError, Generator, LEAST_OFFSET, MOST_OFFSET, Options,
 };
 use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::height_surface::HeightSurface;
+use crate::heightfield::height_surface::{HeightSurface, MOST_LEVELS};
 use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::tracer::cones::Lookup;
+use crate::heightfield::tracer::kind::Steps;
 use crate::heightfield::tracer::walk_mip::{NodeCones, node_cones};
 use crate::heightfield::tracer::{Tracer, TracerKind};
+use crate::keys;
 
 /// Most steps that a tracer may count itself: as many as a shadow may have.
 const MOST_STEPS: u32 = 2048;
 /// Most rounds of refinement. After 32 bisections a bracket is below the resolution of f32.
 const MOST_ROUNDS: u32 = 32;
+
+/// The words of `lookup`.
+const LOOKUPS: &[(&str, Lookup)] = &[("bilinear", Lookup::Bilinear), ("nearest", Lookup::Nearest)];
 
 /// Makes cones, on the CPU or on a device.
 pub type Make<'a> =
@@ -149,68 +154,51 @@ impl From<TracerKind> for TracerSettings {
 impl TracerSettings {
     /// The keys of the tracer in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
-        vec![
-            Key::new(
-                "tracer",
-                Word(&mut self.tracer, TracerKind::WORDS),
-                "how rays find the surface; walk, walk-relaxed and max-mip find every first hit, walk-mip and cone-mip are off by at most a pixel",
-            ),
-            Key::new(
-                "map",
-                Text(&mut self.map),
-                "auto, a generator's name, or the file of a cone map",
-            ),
-            Key::new(
-                "lookup",
-                Word(
-                    &mut self.lookup,
-                    &[("bilinear", Lookup::Bilinear), ("nearest", Lookup::Nearest)],
-                ),
-                "how ratios are read between samples",
-            ),
-            Key::new(
-                "tracer_steps",
-                AutoCount(&mut self.steps, 1, MOST_STEPS),
-                "steps of a tracer that counts its own",
-            ),
-            Key::new(
-                "tracer_rounds",
-                AutoCount(&mut self.rounds, 1, MOST_ROUNDS),
-                "rounds of its refinement",
-            ),
-            Key::new(
-                "stretch",
-                AutoNumber(&mut self.stretch, 0.01, 100.0),
-                "factor on the steps that cones give",
-            ),
-            Key::new(
-                "lod",
-                AutoNumber(&mut self.lod, 0.0, 1e6),
-                "distance at which a texel is as wide as a pixel to walk-mip and cone-mip, and csm-loop has half its steps; 0 for never; auto follows the camera for the first two and is never for csm-loop",
-            ),
-            Key::new(
-                "offset",
-                Number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
-                "offset of the walks' cones when they are made, in texels",
-            ),
+        keys![
+            "tracer" = Word(&mut self.tracer, &TracerKind::WORDS),
+                "how rays find the surface; walk, walk-relaxed and max-mip find every first hit, walk-mip and cone-mip are off by at most a pixel";
+            "map" = Text(&mut self.map),
+                "auto, a generator's name, or the file of a cone map";
+            "lookup" = Word(&mut self.lookup, LOOKUPS),
+                "how ratios are read between samples";
+            "tracer_steps" = AutoCount(&mut self.steps, 1, MOST_STEPS),
+                "steps of a tracer that counts its own";
+            "tracer_rounds" = AutoCount(&mut self.rounds, 1, MOST_ROUNDS),
+                "rounds of its refinement";
+            "stretch" = AutoNumber(&mut self.stretch, 0.01, 100.0),
+                "factor on the steps that cones give";
+            "lod" = AutoNumber(&mut self.lod, 0.0, 1e6),
+                "distance at which a texel is as wide as a pixel to walk-mip and cone-mip, and csm-loop has half its steps; 0 for never; auto follows the camera for the first two and is never for csm-loop";
+            "offset" = Number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
+                "offset of the walks' cones when they are made, in texels";
         ]
     }
 
     /// The steps that the tracer counts itself; 0 for no such limit.
     pub fn own_steps(&self) -> u32 {
-        self.steps.unwrap_or(self.tracer.own_steps())
+        self.steps.unwrap_or(match self.tracer.facts().steps {
+            Steps::Divided(steps) | Steps::Limited(steps) => steps,
+            Steps::Cells | Steps::Pyramid => 0,
+        })
     }
 
-    /// The most steps that a ray can take over a surface of so many cells along x and y
-    /// together, if nobody limits them.
-    pub fn most_steps(&self, cells: u32) -> u32 {
-        self.tracer.most_steps(cells, self.own_steps())
+    /// The most steps that a ray can take over so many cells along each axis, if nobody limits
+    /// them.
+    pub fn most_steps(&self, domain: [u32; 2]) -> u32 {
+        // The first cell, and a line of either axis for each other one.
+        let cells = domain[0] + domain[1];
+        match self.tracer.facts().steps {
+            Steps::Cells | Steps::Limited(_) => cells,
+            // A step down for each step up, and those down from the top.
+            Steps::Pyramid => 2 * cells + MOST_LEVELS as u32,
+            Steps::Divided(_) => self.own_steps(),
+        }
     }
 
     /// Kinds of cones that the tracer can use, the one to make by default first; none for a
     /// tracer without cones.
     pub fn kinds(&self) -> &'static [MapKind] {
-        self.tracer.kinds()
+        self.tracer.facts().kinds
     }
 
     /// The generator of the cones; `None` if they come from a file, or the tracer needs none.

@@ -41,7 +41,7 @@ pub type NodeCones = Arc<Vec<ConeLevel>>;
 /// The map is of another kind, or was made for another surface.
 pub fn node_cones(surface: &HeightSurface, map: &ConeMap) -> Result<NodeCones, TraceError> {
     let kind = TracerKind::ConeMip;
-    check_map(kind.name(), kind.kinds(), surface, map)?;
+    check_map(kind.name(), kind.facts().kinds, surface, map)?;
     let levels = mips(&surface.maxima().levels[0].max, map);
     // A map that fits has a ratio for each cell.
     Ok(Arc::new(levels.unwrap_or_default()))
