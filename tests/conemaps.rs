@@ -27,7 +27,7 @@ use conemarch::heightfield::conemap::generate::planes::Planes;
 use conemarch::heightfield::conemap::generate::slopes::slopes;
 use conemarch::heightfield::conemap::generate::task::MapTask;
 use conemarch::heightfield::conemap::{ConeMap, MapKind, WIDEST};
-use conemarch::heightfield::height_surface::{HeightSurface, Numbers};
+use conemarch::heightfield::height_surface::{HeightSurface, TracerParameters};
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::max_mip::MaxMip;
 use conemarch::heightfield::pattern::Pattern;
@@ -349,7 +349,7 @@ fn ratios_are_stored_rounded_down() {
     // So they reach a device, too.
     let map = plain(Generator::Walk, &heights);
     let relief = HeightSurface::new(heights, Patches::Bilinear, [1, 1]).unwrap();
-    let buffers = relief.buffers(Some(&map), Numbers::default());
+    let buffers = relief.buffers(Some(&map), TracerParameters::default());
     let (_, bytes) = buffers.iter().find(|(name, _)| *name == "ratios").unwrap();
     let there: &[f32] = bytemuck::cast_slice(bytes);
     assert_eq!(there.len(), map.ratios.len());

@@ -2,6 +2,7 @@
 
 pub mod cone;
 pub mod key;
+pub mod named;
 pub mod shader;
 pub mod srgb;
 pub mod view;

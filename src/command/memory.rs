@@ -78,6 +78,7 @@ pub fn lacking_for(plan: &Plan, assets: &Assets, available: u64) -> Option<Strin
 mod tests {
     use super::*;
     use crate::heightfield::settings::{HeightfieldSettings, Wrap};
+    use crate::heightfield::tracer::TracerKind;
 
     #[test]
     fn a_size_that_is_offered_fits() {
@@ -102,7 +103,7 @@ mod tests {
         let mut shape = HeightfieldSettings::default();
         shape.source.field = "fbm:8192x8192".into();
         shape.source.wrap = Wrap::Both;
-        shape.tracing.tracer = "quad";
+        shape.tracing.tracer = TracerKind::Quad;
         let lacking = |shape: &HeightfieldSettings, available| {
             let plan = Plan::new(shape.clone());
             lacking_for(&plan, &Assets::default(), available)
@@ -111,7 +112,7 @@ mod tests {
         assert_eq!(lacking(&shape, needed), None);
         let why = lacking(&shape, needed - 1).unwrap_or_default();
         assert!(why.contains(&format!("{needed} bytes of memory")), "{why}");
-        shape.tracing.tracer = "max-mip";
+        shape.tracing.tracer = TracerKind::MaxMip;
         assert_eq!(lacking(&shape, 0), None);
     }
 }

@@ -18,14 +18,14 @@ use super::placement::Placement;
 use super::settings::HeightfieldSettings;
 use super::source::Source;
 use super::texture::Texture;
-use super::tracer::AnyTracer;
 use super::tracer::settings::{Make, PrepareError, Supply, on_cpu, without_cones};
+use super::tracer::{Tracer, TracerKind};
 use crate::base::key::Fault;
 
 /// What a surface is made from.
 type SurfaceKey = (Source, Patches, [u32; 2]);
 /// What a tracer's cones are made from: surface, tracer, map and offset.
-type ConesKey = (SurfaceKey, &'static str, String, f64);
+type ConesKey = (SurfaceKey, TracerKind, String, f64);
 /// What a paint is made from: a generator's map over a surface, with an offset.
 type PaintKey = (SurfaceKey, Generator, f64);
 
@@ -60,7 +60,7 @@ pub struct Ready {
     /// Heights and maxima.
     pub surface: Arc<HeightSurface>,
     /// What traces rays, with its cones.
-    pub tracer: AnyTracer,
+    pub tracer: Arc<dyn Tracer>,
     /// What colours it.
     pub colors: Colors,
     /// Where it stands.
@@ -215,7 +215,7 @@ impl Assets {
             colors,
             placement,
             surface,
-            name: settings.tracing.tracer,
+            name: settings.tracing.tracer.name(),
         })
     }
 

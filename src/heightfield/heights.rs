@@ -158,11 +158,20 @@ impl Heights {
     pub fn height(&self, patches: Patches, p: DVec2) -> f64 {
         let cell = p.floor();
         let f = p - cell;
-        let c = self.corners(patches, cell.x as i64, cell.y as i64);
-        let low = c[0] + f.x * (c[1] - c[0]);
-        let high = c[2] + f.x * (c[3] - c[2]);
-        low + f.y * (high - low)
+        bilinear(
+            self.corners(patches, cell.x as i64, cell.y as i64),
+            f.x,
+            f.y,
+        )
     }
+}
+
+/// Bilinear interpolation at (u, v) between values at (0, 0), (1, 0), (0, 1), (1, 1).
+pub fn bilinear(corners: [f64; 4], u: f64, v: f64) -> f64 {
+    let [a, b, c, d] = corners;
+    let low = a + u * (b - a);
+    let high = c + u * (d - c);
+    low + v * (high - low)
 }
 
 /// The place of an index on an axis with so many: beyond the ends the last one, or where it

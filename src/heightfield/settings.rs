@@ -6,11 +6,12 @@ use glam::{DVec2, DVec3};
 
 use super::assets::tiles_fault;
 use super::conemap::generate::generator::Generator;
-use super::height_surface::{HeightSurfaceError, MOST_CELLS, MOST_LEVELS};
+use super::height_surface::{HeightSurfaceError, MOST_CELLS};
 use super::heights::{Patches, cells};
 use super::load::PatternSpec;
 use super::paint::PAINTS;
 use super::placement::Placement;
+use super::tracer::TracerKind;
 use super::tracer::settings::TracerSettings;
 use crate::base::key::{Counts, Fault, Key, Number, Text, Triple, Word};
 use crate::keys;
@@ -84,7 +85,7 @@ impl HeightfieldSettings {
             "paint" = Word(&mut self.paint, PAINTS),
                 "what picks the hue: the height, or the width of the cones of a generator's map";
             "texture" = Text(&mut self.texture),
-                "a PNG that colours each tile in place of the palette; \"none\" for none";
+                "a PNG, JPEG or WebP that colours each tile in place of the palette; \"none\" for none";
         ]);
         keys.extend(self.tracing.keys());
         keys
@@ -172,14 +173,7 @@ impl HeightfieldSettings {
     /// The most steps that a ray can take over so many cells along each axis. A tracer that
     /// counts its own steps and stops says so itself.
     pub fn most_steps(&self, domain: [u32; 2]) -> u32 {
-        // The first cell, and a line of either axis for each other one.
-        let cells = domain[0] + domain[1];
-        match self.tracing.tracer {
-            // Up and down the pyramid: a step down for each step up, and those from the top.
-            "max-mip" => 2 * cells + MOST_LEVELS as u32,
-            "linear-binary" => self.tracing.linear_steps(),
-            _ => cells,
-        }
+        self.tracing.most_steps(domain)
     }
 
     /// Where a block of so many texels stands.
@@ -200,7 +194,7 @@ impl HeightfieldSettings {
     pub fn exact(&self) -> Self {
         Self {
             tracing: TracerSettings {
-                tracer: "max-mip",
+                tracer: TracerKind::MaxMip,
                 offset: self.tracing.offset,
                 ..TracerSettings::default()
             },

@@ -237,6 +237,7 @@ mod tests {
     use super::*;
     use crate::formula::{Formula, balls::Balls};
     use crate::heightfield::settings::HeightfieldSettings;
+    use crate::heightfield::tracer::TracerKind;
     use crate::scene::Scene;
 
     fn plan() -> Plan {
@@ -270,7 +271,7 @@ mod tests {
         let Scene::Heightfield(shape) = &mut other.scene else {
             unreachable!("made above");
         };
-        shape.tracing.tracer = "csm-fixed";
+        shape.tracing.tracer = TracerKind::CsmFixed;
         assert!(cache.find(&other, &Assets::default()).is_some());
         // One height of the file does, with the same text of the plan.
         let mut bent = slope;

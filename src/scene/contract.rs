@@ -4,20 +4,8 @@ use glam::DVec3;
 
 use crate::base::shader::Module;
 use crate::base::view::Beam;
+pub use crate::base::work::Step;
 use crate::base::work::Work;
-
-/// What one step of a walk came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// Go on.
-    Moving,
-    /// The surface is met.
-    Hit,
-    /// Past the end: nothing there.
-    Out,
-    /// The scene's own limit is reached: not converged.
-    Spent,
-}
 
 /// What one step of a cone came to.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -22,9 +22,9 @@ use crate::heightfield::paint::Colors;
 use crate::heightfield::placement::Placement;
 use crate::heightfield::region_max::{self, region_max};
 use crate::heightfield::settings::HeightfieldSettings;
-use crate::heightfield::tracer::course::{FAR, FLAT};
+use crate::heightfield::tracer::grid::{FAR, FLAT};
 use crate::heightfield::tracer::settings::{Make, PrepareError};
-use crate::heightfield::tracer::{self, AnyTracer, LocalRay, Trace, TraceHit, Tracer};
+use crate::heightfield::tracer::{self, LocalRay, Trace, TraceHit, Tracer};
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::scene::{AnySolid, MOST_SHADOW_STEPS, Scene, SceneSettings, Viewpoint};
 use crate::wgsl;
@@ -147,7 +147,7 @@ impl SceneSettings for HeightfieldSettings {
 #[derive(Clone, Debug)]
 pub struct Heightfield {
     relief: Arc<HeightSurface>,
-    tracer: AnyTracer,
+    tracer: Arc<dyn Tracer>,
     colors: Colors,
     name: &'static str,
     placed: Placement,
@@ -342,18 +342,13 @@ impl Solid for Heightfield {
         }
     }
 
-    fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Trace {
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Work) -> Trace {
         // The tracer ends it with the block.
-        self.tracer.begin(&self.local(ray), front, t_max, work)
+        self.tracer.begin(&self.local(ray), front, t_max)
     }
 
     fn walk_step(&self, ray: &Beam, walk: &mut Trace, work: &mut Work) -> Step {
-        match self.tracer.step(&self.local(ray), walk, work) {
-            tracer::Step::Moving => Step::Moving,
-            tracer::Step::Hit => Step::Hit,
-            tracer::Step::Out => Step::Out,
-            tracer::Step::Spent => Step::Spent,
-        }
+        self.tracer.step(&self.local(ray), walk, work)
     }
 
     fn walk_hit(&self, walk: &Trace) -> Hit {

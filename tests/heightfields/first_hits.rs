@@ -1,41 +1,48 @@
-//! Tracers of heightfields find the first hit: the oracle against closed forms, all exact
-//! tracers against the oracle.
-#![allow(
-    clippy::unwrap_used,
-    missing_docs,
-    reason = "a test may panic, and is read by its name"
-)]
-
-#[allow(dead_code, reason = "other files use the rest")]
-mod common {
-    pub mod random;
-    pub mod reference_maps;
-    pub mod relief_rays;
-}
+//! Tracers find the first hit: the reference tracer that of closed forms, exact tracers that of
+//! the reference tracer.
 
 use std::sync::Arc;
 
-use common::random::Random;
-use common::reference_maps;
-use common::relief_rays::{Case, END, block, cases, exact, rays, run};
+use conemarch::base::work::Work;
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
 use conemarch::heightfield::height_surface::{HeightSurface, HeightSurfaceError};
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::pattern::Pattern;
-use conemarch::heightfield::tracer::oracle::Oracle;
-use conemarch::heightfield::tracer::relaxed::WalkRelaxed;
-use conemarch::heightfield::tracer::walk::Walk;
+use conemarch::heightfield::tracer::reference::ReferenceTracer;
 use conemarch::heightfield::tracer::{
-    AnyTracer, BASE, LocalRay, SURFACE, Step, TraceError, TraceHit, Tracer, WALL_X_HIGH,
-    WALL_X_LOW, WALL_Y_LOW,
+    Accuracy, BASE, LocalRay, SURFACE, Step, TraceError, TraceHit, Tracer, TracerKind, WALL_X_HIGH,
+    WALL_X_LOW, WALL_Y_HIGH, WALL_Y_LOW,
 };
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-fn hit_of(tracer: &impl Tracer, ray: &LocalRay) -> Option<TraceHit> {
+use crate::cases::{
+    Case, END, Named, alone, case, cases, rays, reference_map, run, surface, tracer, tracers,
+};
+use crate::common::random::Random;
+
+fn exact(surface: &Arc<HeightSurface>) -> Vec<Named> {
+    tracers(surface, Accuracy::Exact)
+}
+
+fn hit_of(tracer: &dyn Tracer, ray: &LocalRay) -> Option<TraceHit> {
     let (step, hit, _) = run(tracer, ray, END).expect("the ray ends");
     assert_ne!(step, Step::Spent);
     (step == Step::Hit).then_some(hit)
+}
+
+/// Straight down from a point.
+fn down(origin: DVec3) -> LocalRay {
+    LocalRay {
+        origin,
+        axis: -DVec3::Z,
+    }
+}
+
+/// Column and row of a hit's cell.
+fn cell_of(surface: &HeightSurface, hit: &TraceHit) -> [u32; 2] {
+    let width = surface.cells()[0];
+    [hit.cell() % width, hit.cell() / width]
 }
 
 #[test]
@@ -47,15 +54,13 @@ fn planes_are_hit_where_their_equation_says() {
         let plane = |p: DVec2| 0.35 + p.dot(slope);
         let samples = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
         let z = samples.map(|(x, y)| plane(DVec2::new(f64::from(x), f64::from(y))) as f32);
-        let relief = block(size, [false; 2], [1, 1], Patches::Bilinear, z.collect());
-        let oracle = Oracle::new(relief.clone());
-        for ray in rays(&relief, 6000, 2) {
-            let Some(hit) = hit_of(&oracle, &ray) else {
+        let block = surface(alone(size, Patches::Bilinear), z.collect());
+        let reference = ReferenceTracer::new(block.clone());
+        for ray in rays(&block, 6000, 2) {
+            let hit = hit_of(&reference, &ray);
+            let Some(hit) = hit.filter(|hit| hit.face() == SURFACE && hit.s > 0.0) else {
                 continue;
             };
-            if hit.face() != SURFACE || hit.s == 0.0 {
-                continue;
-            }
             met += 1;
             // Where z - plane is 0, or in the floor's last rounding.
             let pace = ray.axis.z - slope.dot(ray.axis.truncate());
@@ -66,26 +71,13 @@ fn planes_are_hit_where_their_equation_says() {
         }
         // Every point of it is hit from straight above: no row, no column is lost.
         for _ in 0..2000 {
-            let [w, h] = relief.domain().map(f64::from);
+            let [w, h] = block.domain().map(f64::from);
             let p = DVec3::new(random.unit() * w, random.unit() * h, 2.0);
-            let hit = hit_of(
-                &oracle,
-                &LocalRay {
-                    origin: p,
-                    axis: -DVec3::Z,
-                },
-            )
-            .unwrap();
+            let hit = hit_of(&reference, &down(p)).unwrap();
             assert!((2.0 - hit.s - plane(p.truncate())).abs() < 1e-7);
-            let cell = [
-                hit.cell() % relief.cells()[0],
-                hit.cell() / relief.cells()[0],
-            ];
-            let at = [0, 1].map(|a| f64::from(cell[a]) + hit.uv[a]);
-            assert!(
-                (DVec2::from_array(at) - p.truncate()).length() < 1e-9,
-                "{p} {hit:?}"
-            );
+            let cell = cell_of(&block, &hit).map(f64::from);
+            let off = DVec2::from_array(cell) + DVec2::from_array(hit.uv) - p.truncate();
+            assert!(off.length() < 1e-9, "{p} {hit:?}");
         }
     }
     assert!(met > 4000, "only {met} rays");
@@ -96,11 +88,10 @@ fn boxes_are_hit_where_each_alone_would_be() {
     let mut random = Random::new(3);
     let mut met = 0;
     for _ in 0..200 {
-        let size = [4, 3];
         let z: Vec<f32> = (0..12).map(|_| random.unit() as f32).collect();
-        let relief = block(size, [false; 2], [1, 1], Patches::Boxes, z.clone());
-        let oracle = Oracle::new(relief.clone());
-        for ray in rays(&relief, 120, (random.unit() * 1e6) as u64) {
+        let block = surface(alone([4, 3], Patches::Boxes), z.clone());
+        let reference = ReferenceTracer::new(block.clone());
+        for ray in rays(&block, 120, (random.unit() * 1e6) as u64) {
             // The first of all boxes, each by its three pairs of planes.
             let mut first = f64::INFINITY;
             for (i, top) in z.iter().enumerate() {
@@ -125,11 +116,11 @@ fn boxes_are_hit_where_each_alone_would_be() {
                     first = first.min(near);
                 }
             }
-            match hit_of(&oracle, &ray) {
+            match hit_of(&reference, &ray) {
                 Some(hit) => {
                     met += 1;
                     let touch = ray.at(hit.s);
-                    let z = relief.heights().height(Patches::Boxes, touch.truncate());
+                    let z = block.heights().height(Patches::Boxes, touch.truncate());
                     let early = hit.s < first - 1e-9 && touch.z > z + 1e-9;
                     let edge = touch.x.fract() * touch.y.fract() == 0.0;
                     assert!(hit.s < first + 1e-9, "{ray:?}: {} for {first}", hit.s);
@@ -143,7 +134,7 @@ fn boxes_are_hit_where_each_alone_would_be() {
 }
 
 #[test]
-fn the_oracle_never_passes_a_point_under_the_surface() {
+fn the_reference_never_passes_a_point_under_the_surface() {
     let settings = [
         ([17, 12], [false, false], [1, 1]),
         ([11, 16], [true, false], [2, 1]),
@@ -156,11 +147,11 @@ fn the_oracle_never_passes_a_point_under_the_surface() {
             let z = (0..size[0] * size[1])
                 .map(|_| random.unit() as f32)
                 .collect();
-            let relief = block(size, wrap, tiles, patches, z);
-            let oracle = Oracle::new(relief.clone());
-            let [w, h] = relief.domain().map(f64::from);
-            for ray in rays(&relief, 600, 5) {
-                let hit = hit_of(&oracle, &ray);
+            let block = surface((size, wrap, tiles, patches), z);
+            let reference = ReferenceTracer::new(block.clone());
+            let [w, h] = block.domain().map(f64::from);
+            for ray in rays(&block, 600, 5) {
+                let hit = hit_of(&reference, &ray);
                 met += u32::from(hit.is_some());
                 // A start in the solid is a hit at once.
                 if hit.is_some_and(|hit| hit.s == 0.0) {
@@ -172,14 +163,14 @@ fn the_oracle_never_passes_a_point_under_the_surface() {
                     let s = until * (f64::from(i) + 0.5) / 2000.0;
                     let p = ray.at(s);
                     let inside = p.x > 0.0 && p.x < w && p.y > 0.0 && p.y < h && p.z > 0.0;
-                    let z = relief.heights().height(patches, p.truncate());
+                    let z = block.heights().height(patches, p.truncate());
                     assert!(!inside || p.z > z - 1e-9, "{ray:?} at {s}: {} in {z}", p.z);
                 }
                 let Some(hit) = hit.filter(|h| h.face() == SURFACE && h.s > 0.0) else {
                     continue;
                 };
                 let p = ray.at(hit.s);
-                let z = relief.heights().height(patches, p.truncate());
+                let z = block.heights().height(patches, p.truncate());
                 let side = hit.uv.iter().any(|u| *u == 0.0 || *u == 1.0);
                 let on = if patches == Patches::Boxes && side {
                     p.z < 1.0
@@ -214,50 +205,52 @@ fn wrong(ray: &LocalRay, truth: &End, own: Option<End>) -> Option<String> {
 }
 
 /// Whether a hit earlier than the truth's is one all the same: a point of the surface, or of
-/// the side of a box, that the ray touches, and rounding hid from the oracle.
-fn touches(relief: &HeightSurface, ray: &LocalRay, truth: &End, own: Option<End>) -> bool {
+/// the side of a box, that the ray touches, and rounding hid from the reference.
+fn touches(surface: &HeightSurface, ray: &LocalRay, truth: &End, own: Option<End>) -> bool {
     let Some((Step::Hit, hit, _)) = own else {
         return false;
     };
     if truth.0 == Step::Hit && (hit.s - truth.1.s) * ray.axis.length() > 1e-7 {
         return false;
     }
-    let cells = relief.cells()[0];
-    let cell = [hit.cell() % cells, hit.cell() / cells].map(|i| i as i32);
-    let under = relief.height(cell, hit.uv[0], hit.uv[1]) - ray.height(hit.s);
+    let cell = cell_of(surface, &hit).map(|i| i as i32);
+    let under = surface.height(cell, hit.uv[0], hit.uv[1]) - ray.height(hit.s);
     let side = hit.uv.iter().any(|u| *u == 0.0 || *u == 1.0);
-    under.abs() < 1e-12 || (relief.patches() == Patches::Boxes && side && under > 0.0)
+    under.abs() < 1e-12 || (surface.patches() == Patches::Boxes && side && under > 0.0)
 }
 
 #[test]
 fn exact_tracers_find_the_first_hit() {
     const RAYS: u64 = 4200;
     let check = |case: &Case| {
-        let oracle = Oracle::new(case.relief.clone());
-        let rays = rays(&case.relief, RAYS, 11);
-        let truths: Vec<_> = rays.iter().map(|r| run(&oracle, r, END).unwrap()).collect();
+        let reference = ReferenceTracer::new(case.surface.clone());
+        let rays = rays(&case.surface, RAYS, 11);
+        let ends = rays.iter().map(|ray| run(&reference, ray, END).unwrap());
+        let truths: Vec<_> = ends.collect();
         let mut told = Vec::new();
         let (mut traced, mut touched) = (0, 0);
-        for (name, tracer) in exact(&case.relief) {
-            let mut bad = 0;
-            let mut first = String::new();
+        for own in exact(&case.surface) {
+            let mut faults = Vec::new();
             for (ray, truth) in rays.iter().zip(&truths) {
                 traced += 1;
-                let own = run(&tracer, ray, END);
-                if let Some(fault) = wrong(ray, truth, own) {
-                    // Only who samples heights between the cells can see such a point.
-                    if name.starts_with("walk-relaxed") && touches(&case.relief, ray, truth, own) {
-                        touched += 1;
-                        continue;
-                    }
-                    bad += 1;
-                    if first.is_empty() {
-                        first = format!("{ray:?}: {fault}");
-                    }
+                let end = run(&*own.tracer, ray, END);
+                let Some(fault) = wrong(ray, truth, end) else {
+                    continue;
+                };
+                // Only a tracer that samples heights between the cells can see such a point.
+                let samples = own.kind == TracerKind::WalkRelaxed;
+                if samples && touches(&case.surface, ray, truth, end) {
+                    touched += 1;
+                } else {
+                    faults.push(format!("{ray:?}: {fault}"));
                 }
             }
-            if bad > 0 {
-                told.push(format!("{}, {name}: {bad} wrong, {first}", case.name));
+            if let Some(first) = faults.first() {
+                let count = faults.len();
+                told.push(format!(
+                    "{}, {}: {count} wrong, {first}",
+                    case.name, own.name
+                ));
             }
         }
         let hits = truths.iter().filter(|t| t.0 == Step::Hit).count();
@@ -278,13 +271,12 @@ fn exact_tracers_find_the_first_hit() {
 
 #[test]
 fn rising_rays_pass_over_what_lies_under_them() {
-    let field = Pattern::Fbm.heights([128, 128], 7, 2.6);
-    let relief = block([128, 128], [false; 2], [1, 1], Patches::Bilinear, field);
+    let Case { surface, .. } = case(Pattern::Fbm, alone([128, 128], Patches::Bilinear));
     let mut random = Random::new(12);
     let rays: Vec<_> = (0..500)
         .map(|_| {
             let [x, y] = [0; 2].map(|_| random.between(40.0, 87.0));
-            let z = relief.height([x as i32, y as i32], x.fract(), y.fract());
+            let z = surface.height([x as i32, y as i32], x.fract(), y.fract());
             let way = DVec2::from_angle(random.between(0.0, 6.2));
             LocalRay {
                 origin: DVec3::new(x, y, z + 1e-3),
@@ -292,15 +284,17 @@ fn rising_rays_pass_over_what_lies_under_them() {
             }
         })
         .collect();
-    let steps = |tracer: &dyn Fn(&LocalRay) -> u32| rays.iter().map(tracer).sum::<u32>();
-    let oracle = Oracle::new(relief.clone());
-    let cells = steps(&|ray| run(&oracle, ray, END).unwrap().2);
-    let all = exact(&relief).into_iter();
-    for (name, tracer) in all.filter(|(name, _)| name.starts_with("walk")) {
-        let own = steps(&|ray| run(&tracer, ray, END).unwrap().2);
+    let steps = |tracer: &dyn Tracer| -> u32 {
+        let all = rays.iter().map(|ray| run(tracer, ray, END).unwrap().2);
+        all.sum()
+    };
+    let cells = steps(&ReferenceTracer::new(surface.clone()));
+    for own in exact(&surface).iter().filter(|own| own.kind.needs_map()) {
+        let steps = steps(&*own.tracer);
+        let name = &own.name;
         assert!(
-            5 * own < 3 * cells,
-            "{name}: {own} steps over {cells} cells"
+            5 * steps < 3 * cells,
+            "{name}: {steps} steps over {cells} cells"
         );
     }
 }
@@ -328,42 +322,28 @@ fn clipping(random: &mut Random, middle: DVec2) -> LocalRay {
 fn cones_are_not_wider_than_they_may_be() {
     let mut z = vec![0.0; 97 * 97];
     z[48 * 97 + 48] = 1.0;
-    let relief = block([97, 97], [false; 2], [1, 1], Patches::Boxes, z);
-    let oracle = Oracle::new(relief.clone());
+    let block = surface(alone([97, 97], Patches::Boxes), z);
+    let reference = ReferenceTracer::new(block.clone());
     let mut random = Random::new(8);
     let rays: Vec<_> = (0..4000)
         .map(|_| clipping(&mut random, DVec2::splat(48.5)))
         .collect();
-    let bad = |tracer: &AnyTracer| {
+    let bad = |tracer: &dyn Tracer| {
         let faults = rays.iter().filter_map(|ray| {
-            let truth = run(&oracle, ray, END).unwrap();
+            let truth = run(&reference, ray, END).unwrap();
             wrong(ray, &truth, run(tracer, ray, END))
         });
         faults.count()
     };
-    for (name, tracer) in exact(&relief) {
-        assert_eq!(bad(&tracer), 0, "{name}");
-    }
-    // A hundredth more and some are lost.
-    let wider = |map: ConeMap| {
-        Arc::new(ConeMap {
-            ratios: map.ratios.iter().map(|r| 1.01 * r).collect(),
-            ..map
-        })
-    };
-    let map = wider(reference_maps::walk(&relief, 1.5));
-    let walk = Walk::new(relief.clone(), map).unwrap();
-    assert!(bad(&AnyTracer::Walk(walk)) > 0);
-    let map = wider(reference_maps::walk_relaxed(&relief, 1.5));
-    let relaxed = WalkRelaxed::new(relief.clone(), map).unwrap();
-    assert!(bad(&AnyTracer::WalkRelaxed(relaxed)) > 0);
-}
-
-/// Straight down at a position of the domain.
-fn down(at: DVec2) -> LocalRay {
-    LocalRay {
-        origin: at.extend(1.0),
-        axis: -DVec3::Z,
+    for own in exact(&block) {
+        assert_eq!(bad(&*own.tracer), 0, "{}", own.name);
+        // With cones that are wider by a hundredth some hits are lost.
+        if let Some(kind) = own.kind.facts().kinds.first() {
+            let mut map = reference_map(&block, *kind, 1.5);
+            map.ratios.iter_mut().for_each(|r| *r *= 1.01);
+            let wider = tracer(&block, &own.kind.into(), Some(Arc::new(map))).unwrap();
+            assert!(bad(&*wider) > 0, "{}", own.name);
+        }
     }
 }
 
@@ -372,102 +352,112 @@ fn a_cell_beyond_both_borders_joins_all_four_corners_of_the_map() {
     // The corners of the map are 1/2, 1/8, 1/4 and 0; nothing between them is as high.
     let mut z = vec![0.0; 12];
     (z[0], z[3], z[8]) = (0.5, 0.125, 0.25);
-    let relief = block([4, 3], [true; 2], [2, 2], Patches::Bilinear, z.clone());
+    let wrapped = surface(([4, 3], [true; 2], [2, 2], Patches::Bilinear), z.clone());
+    // On an axis that ends there is no such cell: the last one ends at the last sample.
+    let ended = surface(([4, 3], [true, false], [2, 1], Patches::Bilinear), z);
+    let check = |block, cell: DVec2, at: [f64; 2], height: Option<f64>| {
+        let ray = down((cell + DVec2::from_array(at)).extend(1.0));
+        for own in exact(block) {
+            let found = hit_of(&*own.tracer, &ray).map(|hit| ray.height(hit.s));
+            let same = match (found, height) {
+                (Some(found), Some(height)) => (found - height).abs() < 1e-12,
+                (found, height) => found == height,
+            };
+            assert!(same, "{} {ray:?}: {found:?} for {height:?}", own.name);
+        }
+    };
     // From the last sample on to the first ones, in the middle of the block and at its end.
     for cell in [DVec2::new(3.0, 2.0), DVec2::new(7.0, 5.0)] {
-        for (at, height) in [
-            ([0.5, 0.5], 0.21875),
-            ([0.25, 0.75], 0.1796875),
-            ([0.75, 0.75], 0.3515625),
-        ] {
-            let ray = down(cell + DVec2::from_array(at));
-            for (name, tracer) in exact(&relief) {
-                let hit = hit_of(&tracer, &ray).unwrap();
-                let own = ray.height(hit.s);
-                assert!((own - height).abs() < 1e-12, "{name} {ray:?}: {own}");
-            }
-        }
+        check(&wrapped, cell, [0.5, 0.5], Some(0.21875));
+        check(&wrapped, cell, [0.25, 0.75], Some(0.1796875));
+        check(&wrapped, cell, [0.75, 0.75], Some(0.3515625));
     }
-    // On an axis that ends there is no such cell: the last one ends at the last sample.
-    let relief = block([4, 3], [true, false], [2, 1], Patches::Bilinear, z);
-    for (name, tracer) in exact(&relief) {
-        let inside = hit_of(&tracer, &down(DVec2::new(3.5, 1.5))).unwrap();
-        assert!((inside.s - 0.9375).abs() < 1e-12, "{name}: {inside:?}");
-        let ray = down(DVec2::new(3.5, 2.5));
-        assert_eq!(hit_of(&tracer, &ray), None, "{name}");
-    }
+    check(&ended, DVec2::new(3.0, 1.0), [0.5, 0.5], Some(0.0625));
+    check(&ended, DVec2::new(3.0, 2.0), [0.5, 0.5], None);
 }
 
 #[test]
 fn the_block_has_walls_and_a_floor() {
-    let relief = block([3, 3], [false; 2], [1, 1], Patches::Bilinear, vec![0.5; 9]);
-    for (origin, axis, face, s, uv) in [
+    let flat = surface(alone([3, 3], Patches::Bilinear), vec![0.5; 9]);
+    // Origin, axis, end; the parameter of the hit, its face and its place.
+    type Row = ([f64; 3], [f64; 3], f64, Option<(f64, u32, [f64; 2])>);
+    let rows: [Row; 11] = [
         (
             [-1.0, 0.75, 0.25],
             [1.0, 0.0, 0.0],
-            WALL_X_LOW,
-            1.0,
-            [0.75, 0.25],
+            END,
+            Some((1.0, WALL_X_LOW, [0.75, 0.25])),
         ),
         (
             [4.0, 1.25, 0.375],
             [-2.0, 0.0, 0.0],
-            WALL_X_HIGH,
-            1.0,
-            [0.25, 0.375],
+            END,
+            Some((1.0, WALL_X_HIGH, [0.25, 0.375])),
         ),
         (
             [0.25, -3.0, 0.5],
             [0.0, 1.0, 0.0],
-            WALL_Y_LOW,
-            3.0,
-            [0.25, 0.5],
+            END,
+            Some((3.0, WALL_Y_LOW, [0.25, 0.5])),
         ),
-        ([1.5, 0.5, -2.0], [0.0, 0.0, 4.0], BASE, 0.5, [0.5, 0.5]),
+        (
+            [0.25, 5.0, 0.5],
+            [0.0, -1.0, 0.0],
+            END,
+            Some((3.0, WALL_Y_HIGH, [0.25, 0.5])),
+        ),
+        (
+            [1.5, 0.5, -2.0],
+            [0.0, 0.0, 4.0],
+            END,
+            Some((0.5, BASE, [0.5, 0.5])),
+        ),
+        // A start on a wall, one in the solid, and a grazed edge.
         (
             [0.0, 0.5, 0.25],
             [1.0, 0.0, 0.0],
-            WALL_X_LOW,
-            0.0,
-            [0.5, 0.25],
+            END,
+            Some((0.0, WALL_X_LOW, [0.5, 0.25])),
         ),
-        ([0.5, 0.5, 0.25], [1.0, 0.0, 0.0], SURFACE, 0.0, [0.5, 0.5]),
+        (
+            [0.5, 0.5, 0.25],
+            [1.0, 0.0, 0.0],
+            END,
+            Some((0.0, SURFACE, [0.5, 0.5])),
+        ),
         (
             [-1.0, 0.5, 1.0],
             [1.0, 0.0, -0.25],
-            SURFACE,
-            2.0,
-            [1.0, 0.5],
+            END,
+            Some((2.0, SURFACE, [1.0, 0.5])),
         ),
-    ] {
+        // Above the surface between the sides, and to an end before and behind the surface.
+        ([-1.0, 0.5, 0.75], [1.0, 0.0, 0.0], END, None),
+        ([0.5, 0.5, 2.0], [0.0, 0.0, -1.0], 1.25, None),
+        (
+            [0.5, 0.5, 2.0],
+            [0.0, 0.0, -1.0],
+            1.75,
+            Some((1.5, SURFACE, [0.5, 0.5])),
+        ),
+    ];
+    for (origin, axis, end, wanted) in rows {
         let ray = LocalRay {
-            origin: DVec3::from_array(origin),
-            axis: DVec3::from_array(axis),
+            origin: origin.into(),
+            axis: axis.into(),
         };
-        for (name, tracer) in exact(&relief) {
-            let hit = hit_of(&tracer, &ray).unwrap();
-            assert_eq!((hit.face(), hit.s, hit.uv), (face, s, uv), "{name} {ray:?}");
+        for own in exact(&flat) {
+            let (step, hit, _) = run(&*own.tracer, &ray, end).unwrap();
+            let found = (step == Step::Hit).then_some((hit.s, hit.face(), hit.uv));
+            assert_eq!(found, wanted, "{} {ray:?}", own.name);
+            assert!(step == Step::Hit || step == Step::Out);
         }
-    }
-    // Above the surface but within the sides, and past the end.
-    let over = LocalRay {
-        origin: DVec3::new(-1.0, 0.5, 0.75),
-        axis: DVec3::X,
-    };
-    let down = LocalRay {
-        origin: DVec3::new(0.5, 0.5, 2.0),
-        axis: -DVec3::Z,
-    };
-    for (name, tracer) in exact(&relief) {
-        assert_eq!(hit_of(&tracer, &over), None, "{name}");
-        assert_eq!(run(&tracer, &down, 1.25).unwrap().0, Step::Out, "{name}");
-        assert_eq!(run(&tracer, &down, 1.75).unwrap().0, Step::Hit, "{name}");
     }
 }
 
 #[test]
 fn rays_of_no_numbers_end() {
-    let tracers = exact(&cases()[3].relief);
+    let all = exact(&cases()[3].surface);
     let odd = [
         f64::NAN,
         f64::INFINITY,
@@ -485,12 +475,12 @@ fn rays_of_no_numbers_end() {
             origin: DVec3::new(any(), any(), any()),
             axis: DVec3::new(any(), any(), any()),
         };
-        for (_, tracer) in &tracers {
-            // A caller counts: a number of steps is enough, and none panics.
-            let mut work = conemarch::base::work::Work::default();
-            let mut walk = tracer.begin(&ray, any(), any(), &mut work);
+        for own in &all {
+            // The caller limits the steps; none of them panics.
+            let mut work = Work::default();
+            let mut trace = own.tracer.begin(&ray, any(), any());
             for _ in 0..200 {
-                tracer.step(&ray, &mut walk, &mut work);
+                own.tracer.step(&ray, &mut trace, &mut work);
             }
         }
     }
@@ -510,36 +500,27 @@ fn what_does_not_fit_is_refused() {
         tiled([1 << 20, 1]),
         Err(HeightSurfaceError::Tiles { .. })
     ));
-    let relief = Arc::new(tiled([2, 1]).unwrap());
-    let good = reference_maps::walk(&relief, 1.5);
-    let refused = |change: &dyn Fn(&mut ConeMap)| {
-        let mut map = good.clone();
+    let block = Arc::new(tiled([2, 1]).unwrap());
+    let settings = TracerKind::Walk.into();
+    let made = |change: &dyn Fn(&mut ConeMap)| {
+        let mut map = reference_map(&block, MapKind::Walk, 1.5);
         change(&mut map);
-        Walk::new(relief.clone(), Arc::new(map)).unwrap_err()
+        tracer(&block, &settings, Some(Arc::new(map))).err()
     };
+    assert_eq!(made(&|_| {}), None);
+    assert_eq!(
+        tracer(&block, &settings, None).unwrap_err(),
+        TraceError::Missing("walk")
+    );
+    let refused = |change: &dyn Fn(&mut ConeMap)| made(change).unwrap();
+    use TraceError::{Count, Kind, Number, Size, Wrap};
     assert!(matches!(
         refused(&|m| m.kind = MapKind::Samples),
-        TraceError::Kind { .. }
+        Kind { .. }
     ));
-    assert!(matches!(
-        refused(&|m| m.size = [4, 3]),
-        TraceError::Size { .. }
-    ));
-    assert!(matches!(
-        refused(&|m| m.wrap = [true, true]),
-        TraceError::Wrap { .. }
-    ));
-    assert!(matches!(
-        refused(&|m| m.ratios.truncate(3)),
-        TraceError::Count { .. }
-    ));
-    assert!(matches!(
-        refused(&|m| m.ratios[2] = f64::NAN),
-        TraceError::Number(_)
-    ));
-    assert!(matches!(
-        refused(&|m| m.offset = -1.0),
-        TraceError::Number(_)
-    ));
-    assert!(Walk::new(relief.clone(), Arc::new(good.clone())).is_ok());
+    assert!(matches!(refused(&|m| m.size = [4, 3]), Size { .. }));
+    assert!(matches!(refused(&|m| m.wrap = [true; 2]), Wrap { .. }));
+    assert!(matches!(refused(&|m| m.ratios.truncate(3)), Count { .. }));
+    assert!(matches!(refused(&|m| m.ratios[2] = f64::NAN), Number(_)));
+    assert!(matches!(refused(&|m| m.offset = -1.0), Number(_)));
 }
