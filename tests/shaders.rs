@@ -22,7 +22,7 @@ use conemarch::formula::Formula;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::gpu::device::{PROMISED_BUFFERS, STORAGE_BUFFERS};
 use conemarch::heightfield::conemap::generate::generator::Generator;
-use conemarch::heightfield::conemap::generate::program as generate;
+use conemarch::heightfield::conemap::generate::task as generate;
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::{Heights, Patches};

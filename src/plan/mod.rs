@@ -15,7 +15,7 @@ use crate::base::shader::{Module, Program};
 use crate::base::view::{self, View};
 use crate::formula::Formula;
 use crate::heightfield::conemap::generate::generator::Generator;
-use crate::heightfield::conemap::generate::program::program_of;
+use crate::heightfield::conemap::generate::task::program_of;
 use crate::heightfield::settings::HeightfieldSettings;
 use crate::heightfield::tracer::settings::{Make, PrepareError};
 use crate::pass::{self, look::Light};

@@ -159,7 +159,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
                 }
                 let quarters = quick_quarters(place, x, y, vec2<i32>(i - 1, j - 1), seen);
                 if quarters != 0xffffffffu {
-                    offer(quarters, top, s);
+                    consider(quarters, top, s);
                 }
             }
         }

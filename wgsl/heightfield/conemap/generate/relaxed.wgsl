@@ -44,8 +44,8 @@ fn surface_height(p: vec2<f32>) -> f32 {
 
 /// Follows the ray through a sample to where it comes out. Each step counts as four
 /// rounds, one per sample read.
-fn scan_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, Search>) -> u32 {
-    let entry = scan_height(place, step);
+fn ring_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, Search>) -> u32 {
+    let entry = ring_height(place, step);
     let rise = entry - apex;
     let squared = u32(step.x * step.x + step.y * step.y);
     // The exit lies farther and lower than the entry.

@@ -7,7 +7,7 @@ fn cost_kept(s: Search) -> f32 {
 }
 
 /// Takes a place, or a node as high as its maximum, into account.
-fn offer(squared: u32, top: f32, s: ptr<function, Search>) {
+fn consider(squared: u32, top: f32, s: ptr<function, Search>) {
     let rise = top - apex;
     if rise < COST_LEAST_RISE {
         return;

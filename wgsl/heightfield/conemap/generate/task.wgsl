@@ -24,8 +24,8 @@ struct GenerateUniform {
     /// Whether this dispatch begins: anew, or with what another search has found.
     begins: u32,
     keeps: u32,
-    /// Which quadrant or side is searched.
-    aim: u32,
+    /// The number of the quadrant or side that is searched.
+    sector: u32,
     /// Steps along a ray.
     steps: u32,
     /// Room that a walk's cones leave, in texels.
