@@ -66,7 +66,10 @@ impl Kernels {
 
     /// The program of a kernel.
     pub fn program_of(&self, kernel: &Kernel) -> Option<&Program> {
-        let found = self.0.iter().find(|(_, k)| std::ptr::eq(&raw const **k, kernel));
+        let found = self
+            .0
+            .iter()
+            .find(|(_, k)| std::ptr::eq(&raw const **k, kernel));
         found.map(|(program, _)| program)
     }
 }

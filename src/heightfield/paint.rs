@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::generate::generator::Generator;
 use crate::heightfield::conemap::ConeMap;
+use crate::heightfield::conemap::generate::generator::Generator;
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::texture::Texture;

@@ -172,9 +172,8 @@ impl<'a> Maker<'a> {
         let mut ratios = Vec::with_capacity(task.values.len() * task.generator.channels());
         for first in (0..size[1]).step_by(rows as usize) {
             let rows = rows.min(size[1] - first);
-            let mut done = |part: f64| {
-                watch((f64::from(first) + part * f64::from(rows)) / f64::from(size[1]))
-            };
+            let mut done =
+                |part: f64| watch((f64::from(first) + part * f64::from(rows)) / f64::from(size[1]));
             self.band(&bands, first, rows, &mut ratios, &mut done)?;
             if !done(1.0) {
                 return Err(RenderError::Cancelled);

@@ -49,9 +49,9 @@ pub fn read(path: &Path, size: Option<[u32; 2]>) -> Result<Grid, String> {
         Format::Png => read_png(opened),
         Format::Exr => read_exr(&mut opened),
         Format::Tiff => read_tiff(opened),
-        Format::Jpeg => {
-            Err("is a JPEG, whose compression makes steps in heights; save it as PNG or TIFF".into())
-        }
+        Format::Jpeg => Err(
+            "is a JPEG, whose compression makes steps in heights; save it as PNG or TIFF".into(),
+        ),
         Format::Other => read_raw(path, opened, size),
     }
 }

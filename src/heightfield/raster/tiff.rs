@@ -75,7 +75,9 @@ fn numbers(read: DecodingResult) -> Vec<f32> {
         DecodingResult::U8(v) => shares(v, 255.0),
         DecodingResult::U16(v) => shares(v, 65_535.0),
         DecodingResult::U32(v) => shares(v, f64::from(u32::MAX)),
-        DecodingResult::U64(v) => shares(v.into_iter().map(|v| v as f64).collect(), u64::MAX as f64),
+        DecodingResult::U64(v) => {
+            shares(v.into_iter().map(|v| v as f64).collect(), u64::MAX as f64)
+        }
         DecodingResult::F16(v) => v.into_iter().map(f32::from).collect(),
         DecodingResult::F32(v) => v,
         DecodingResult::F64(v) => shares(v, 1.0),

@@ -330,7 +330,8 @@ impl TracerSettings {
             heights,
             patches,
         };
-        file.check_use(&path, &wanted).map_err(|e| fault(e.to_string()))?;
+        file.check_use(&path, &wanted)
+            .map_err(|e| fault(e.to_string()))?;
         let note = file.unknown();
         Ok(Supply {
             note: note.map(|note| format!("{} {note}", path.display())),

@@ -91,15 +91,10 @@ fn unlabelled(is_png: bool) -> String {
         true => "; if another program wrote the map, give its layout with --from",
         false => "",
     };
-    format!(
-        "has no label of a cone map; `conemarch conemap make` makes a map from heights{more}"
-    )
+    format!("has no label of a cone map; `conemarch conemap make` makes a map from heights{more}")
 }
 
-fn from_png(
-    file: impl BufRead + Seek,
-    foreign: Option<&ForeignFormat>,
-) -> Result<MapFile, String> {
+fn from_png(file: impl BufRead + Seek, foreign: Option<&ForeignFormat>) -> Result<MapFile, String> {
     let pixels = png::read(file, 4, KEYWORD)?;
     let read = match (&pixels.text, foreign) {
         (Some(text), _) => label::read(text)?,

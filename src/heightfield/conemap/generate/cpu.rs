@@ -57,9 +57,7 @@ pub fn generate_counted(
     while start < places {
         let since = Instant::now();
         let indices = (start..places.min(start + length)).into_par_iter();
-        let found = indices
-            .with_min_len(TAKEN)
-            .map(|index| task.find(index));
+        let found = indices.with_min_len(TAKEN).map(|index| task.find(index));
         found.collect_into_vec(&mut band);
         for found in &band {
             ratios.extend_from_slice(&found.ratios[..channels]);

@@ -48,8 +48,7 @@ pub trait Method: Sync {
 
     /// The cost in f64 of the place that a device has found.
     fn found_cost(&self, task: &MapTask<'_>, found: &SearchState, height: f64) -> f64 {
-        task.cost()
-            .of(found.squared, f64::from(found.top) - height)
+        task.cost().of(found.squared, f64::from(found.top) - height)
     }
 
     /// Rounds of a dispatch that one round of the search may take.

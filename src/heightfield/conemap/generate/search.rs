@@ -179,7 +179,13 @@ impl Search<'_> {
         if level > 0
             && best.nodes > PATIENCE
             && let Some(planes) = self.planes
-            && planes.rule_out((&self.distance, self.cost), self.from, (level, at), to, best.cost)
+            && planes.rule_out(
+                (&self.distance, self.cost),
+                self.from,
+                (level, at),
+                to,
+                best.cost,
+            )
         {
             return None;
         }
@@ -187,13 +193,7 @@ impl Search<'_> {
     }
 
     /// Visits the children of a node, which lie on `level`, but for one; cheapest first.
-    fn children(
-        &self,
-        level: usize,
-        parent: [u32; 2],
-        without: Option<[u32; 2]>,
-        best: &mut Best,
-    ) {
+    fn children(&self, level: usize, parent: [u32; 2], without: Option<[u32; 2]>, best: &mut Best) {
         let size = self.mip.levels[level].size;
         let mut list: [Child; 4] = [(f64::INFINITY, [0; 2]); 4];
         let mut count = 0;
