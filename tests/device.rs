@@ -8,11 +8,13 @@
 
 mod adapter;
 
+use conemarch::scene::Assets;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use conemarch::gpu::RenderError;
 use conemarch::gpu::device::{Adapters, Choice, DeviceError, kind};
-use conemarch::gpu::render::{RenderError, Renderer};
+use conemarch::gpu::render::Renderer;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::load;
 
@@ -39,7 +41,9 @@ fn name(renderer: &Renderer) -> String {
 }
 
 fn all(renderer: &mut Renderer) -> Result<usize, RenderError> {
-    let frame = renderer.render(&small(), Extras::default(), &mut |_| true)?;
+    let frame = renderer.render(&small(), &Assets::default(), Extras::default(), &mut |_| {
+        true
+    })?;
     Ok(frame.census()[1])
 }
 
@@ -62,12 +66,12 @@ fn a_device_lost_before_a_render_is_an_error_and_a_fresh_one_works() {
 
 #[test]
 fn a_device_lost_between_any_two_passes_is_an_error() {
-    let passes = small().passes().len();
+    let passes = small().passes(Extras::default()).len();
     for lose_at in 1..=passes {
         let mut renderer = adapter::open();
         let device = renderer.device.device.clone();
         let mut done = 0;
-        let result = renderer.render(&small(), Extras::default(), &mut |_| {
+        let result = renderer.render(&small(), &Assets::default(), Extras::default(), &mut |_| {
             done += 1;
             if done == lose_at {
                 device.destroy();
@@ -83,23 +87,33 @@ fn a_device_lost_between_any_two_passes_is_an_error() {
 #[test]
 fn a_render_stops_on_request_after_any_pass() {
     let mut renderer = adapter::open();
-    let passes = small().passes().len();
+    let passes = small().passes(Extras::default()).len();
     for stop_at in 1..=passes {
         let mut done = Vec::new();
-        let result = renderer.render(&small(), Extras::default(), &mut |progress| {
-            done.push(progress.done);
-            done.len() < stop_at
-        });
+        let result = renderer.render(
+            &small(),
+            &Assets::default(),
+            Extras::default(),
+            &mut |progress| {
+                done.push(progress.done);
+                done.len() < stop_at
+            },
+        );
         assert!(matches!(result, Err(RenderError::Cancelled)), "{stop_at}");
         assert_eq!(done.len(), stop_at);
         assert!(done.is_sorted() && done.iter().all(|d| (0.0..=1.0).contains(d)));
     }
     // It has lost nothing by that.
     let mut last = 0.0;
-    let frame = renderer.render(&small(), Extras::default(), &mut |progress| {
-        last = progress.done;
-        true
-    });
+    let frame = renderer.render(
+        &small(),
+        &Assets::default(),
+        Extras::default(),
+        &mut |progress| {
+            last = progress.done;
+            true
+        },
+    );
     assert!(frame.unwrap().census()[1] > 500);
     assert!((last - 1.0).abs() < 1e-12);
 }
@@ -110,7 +124,7 @@ fn a_choice_that_matches_nothing_lists_what_there_is() {
     let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
     let hardware = adapters.iter().any(|a| kind(&a.get_info()) != "software");
     let mut wrong = vec![
-        (Choice::PatternSpec("no-such".into()), "no-such"),
+        (Choice::Name("no-such".into()), "no-such"),
         (Choice::Index(99), "99"),
     ];
     if !hardware {
@@ -140,7 +154,7 @@ fn every_adapter_can_be_chosen_by_index_and_by_part_of_its_name() {
         };
         assert_eq!(chosen(Choice::Index(i)), Some(info.name.clone()));
         let part = info.name.to_uppercase().chars().take(6).collect();
-        let found = chosen(Choice::PatternSpec(part)).unwrap();
+        let found = chosen(Choice::Name(part)).unwrap();
         assert_eq!(found[..6], info.name[..6]);
     }
     assert!(adapters.choose(&Choice::Cpu).unwrap().is_none());
@@ -158,9 +172,9 @@ fn choices_are_read_from_words() {
         ("cpu", Choice::Cpu),
         ("0", Choice::Index(0)),
         ("17", Choice::Index(17)),
-        ("-1", Choice::PatternSpec("-1".into())),
-        ("RTX 40", Choice::PatternSpec("RTX 40".into())),
-        ("gpus", Choice::PatternSpec("gpus".into())),
+        ("-1", Choice::Name("-1".into())),
+        ("RTX 40", Choice::Name("RTX 40".into())),
+        ("gpus", Choice::Name("gpus".into())),
     ];
     for (text, choice) in cases {
         assert_eq!(Choice::read(text), Some(choice), "`{text}`");

@@ -26,8 +26,10 @@ use conemarch::measure::compare::compare;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::march::Mode;
-use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::plan::{Extras, Plan};
 use conemarch::preset::load;
+use conemarch::scene::Assets;
+use conemarch::scene::Scene;
 
 const SKY: u8 = State::Sky as u8;
 const HIT: u8 = State::Hit as u8;
@@ -53,7 +55,12 @@ fn assert_sound(plan: &Plan, what: &str) -> f64 {
     let divisors: Vec<u32> = frame.levels.iter().map(|l| l.divisor).collect();
     assert_eq!(divisors, [32, 16, 8, 4, 2]);
     assert_eq!(overclaims(&frame, &t), 0, "{what}");
-    let report = compare(&frame, &reference, plan);
+    let report = compare(
+        &frame,
+        &reference,
+        plan,
+        &plan.solid(&Assets::default()).unwrap(),
+    );
     for (divisor, pixels) in report.start_violations {
         assert_eq!(pixels, 0, "{what}: level 1/{divisor}");
     }
@@ -118,7 +125,12 @@ fn the_rule_of_the_slides_is_caught() {
         let (reference, t) = solved(&plan);
         let frame = render(&plan, LEVELS);
         assert!(overclaims(&frame, &t) > 100);
-        let report = compare(&frame, &reference, &plan);
+        let report = compare(
+            &frame,
+            &reference,
+            &plan,
+            &plan.solid(&Assets::default()).unwrap(),
+        );
         let found: u64 = report.start_violations.iter().map(|v| v.1).sum();
         assert!(found > 100, "{:?}", report.start_violations);
         assert!(report.behind > 0.001, "{}", report.behind);
@@ -177,7 +189,7 @@ fn blocks_and_chunks_never_change_a_bit() {
             plan.march.coarsest = coarsest;
             plan.march.steps = Some(steps);
             let frame = render(&plan, extras);
-            let limited = steps == 7 && !matches!(plan.subject, Subject::Slab(_));
+            let limited = steps == 7 && !matches!(plan.scene, Scene::Slab(_));
             assert_eq!(frame.census()[2] > 0, limited);
             let whole = bits(&frame);
             let cuts = [(64, 4), (96, 4), (1024, 1), (1024, 3), (1024, 256), (96, 3)];
@@ -242,7 +254,7 @@ fn cells_cut_by_the_image_are_complete() {
     for size in [[1366, 768], [1600, 1050], [33, 17], [200, 1], [1, 1]] {
         for plan in [slab(&down, size), balls(0.05, &cameras()[2], size)] {
             let frame = render(&plan, LEVELS);
-            let other = cpu::render(&plan, LEVELS, &mut |_| true).unwrap();
+            let other = cpu::render(&plan, &Assets::default(), LEVELS, &mut |_| true).unwrap();
             let view = plan.view();
             let [w, h] = size;
             let last_row = (0..w).map(|x| [x, h - 1]);
@@ -251,8 +263,8 @@ fn cells_cut_by_the_image_are_complete() {
             for p in last_row.chain(last_column) {
                 let i = (p[1] * w + p[0]) as usize;
                 let ray = view.view_ray(p);
-                if let Subject::Slab(_) = plan.subject {
-                    let t = meet(&plan.subject, view.eye, ray.axis);
+                if let Scene::Slab(_) = plan.scene {
+                    let t = meet(&plan.scene, view.eye, ray.axis);
                     assert_eq!(frame.state[i], HIT);
                     assert!((f64::from(frame.depth[i]) / t - 1.0).abs() < 1e-5);
                 }
@@ -290,9 +302,15 @@ fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
     for steps in [1, 2, 3] {
         plan.march.steps = Some(steps);
         let frame = render(&plan, Extras::default());
-        let other = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
+        let other =
+            cpu::render(&plan, &Assets::default(), Extras::default(), &mut |_| true).unwrap();
         assert!(frame.census()[1] > 100 && frame.census()[2] > 20);
-        let report = compare(&frame, &other, &plan);
+        let report = compare(
+            &frame,
+            &other,
+            &plan,
+            &plan.solid(&Assets::default()).unwrap(),
+        );
         // Of 5184 rays, those that end within a rounding of the threshold.
         assert!(report.mask < 1e-3, "{}", report.mask);
         for f in [&frame, &other] {
@@ -309,7 +327,7 @@ fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
 #[test]
 fn passes_figures_and_fudge_are_what_the_plan_says() {
     let mut plan = preset("bench-outside", [160, 90]);
-    let names = |f: &Frame| f.passes.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
+    let names = |f: &Frame| f.passes.iter().map(|p| p.pass.name()).collect::<Vec<_>>();
     let marched = render(&plan, COUNTED);
     assert_eq!(
         names(&marched),
@@ -361,9 +379,12 @@ fn passes_do_not_know_what_they_march() {
     let size = [333, 217];
     for camera in &cameras()[..4] {
         let plan = slab(camera, size);
-        assert_eq!(plan.passes(), balls(0.05, camera, size).passes());
+        assert_eq!(
+            plan.passes(Extras::default()),
+            balls(0.05, camera, size).passes(Extras::default())
+        );
         let (reference, t) = solved(&plan);
-        let cpu = cpu::render(&plan, LEVELS, &mut |_| true).unwrap();
+        let cpu = cpu::render(&plan, &Assets::default(), LEVELS, &mut |_| true).unwrap();
         // An f32 solution is off by some roundings of the eye's coordinates, up to 20,
         // times the slope at which a ray meets the planes.
         for (frame, allowed) in [(render(&plan, LEVELS), 1e-4), (cpu, 1e-6)] {

@@ -12,7 +12,9 @@ use conemarch::cpu;
 use conemarch::heightfield::settings::{HeightfieldSettings, Wrap};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
-use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Assets;
+use conemarch::scene::Scene;
 use glam::DVec3;
 
 const DEPTHS: Extras = Extras {
@@ -25,7 +27,7 @@ const DEPTHS: Extras = Extras {
 
 /// A plan as both executors render it: the CPU first.
 fn both(plan: &Plan, extras: Extras) -> [Frame; 2] {
-    let here = cpu::render(plan, extras, &mut |_| true).unwrap();
+    let here = cpu::render(plan, &Assets::default(), extras, &mut |_| true).unwrap();
     [here, adapter::render(plan, extras)]
 }
 
@@ -47,7 +49,7 @@ fn shadows_that_reach_their_limit_are_counted_and_flagged() {
         shape.source.field = "fbm:128x128,seed=5,power=3".into();
         shape.depth = 2.6;
         shape.tracing.tracer = tracer;
-        let mut plan = Plan::new(Subject::Heightfield(shape));
+        let mut plan = Plan::new(Scene::Heightfield(shape));
         plan.camera = camera();
         plan.size = [120, 80];
         plan.look.light = DVec3::new(-0.8, -0.25, 0.15);
@@ -91,7 +93,7 @@ fn shadows_reach_across_the_block_from_wherever_they_are_seen() {
     let mut shape = HeightfieldSettings::default();
     shape.source.field = file.to_string_lossy().into_owned();
     shape.depth = 4.0;
-    let mut plan = Plan::new(Subject::Heightfield(shape));
+    let mut plan = Plan::new(Scene::Heightfield(shape));
     plan.size = [60, 60];
     plan.look.light = DVec3::new(-1.0, 0.0, 0.2);
     plan.look.occlusion = 0.0;
@@ -138,7 +140,7 @@ fn no_ray_of_an_exact_tracer_lacks_steps() {
         shape.tiles = [16, 16];
         shape.depth = 0.02;
         shape.tracing.tracer = tracer;
-        let mut plan = Plan::new(Subject::Heightfield(shape));
+        let mut plan = Plan::new(Scene::Heightfield(shape));
         plan.size = [100, 50];
         plan.camera = Camera {
             eye: DVec3::new(0.0, 0.0, 0.0195),
@@ -160,7 +162,7 @@ fn equal_steps_never_leave_shadows_undecided() {
         shape.source.field = "fbm:64x64".into();
         shape.tracing.tracer = "linear-binary";
         shape.tracing.steps = Some(steps);
-        let mut plan = Plan::new(Subject::Heightfield(shape));
+        let mut plan = Plan::new(Scene::Heightfield(shape));
         plan.camera = camera();
         plan.size = [60, 40];
         for frame in both(&plan, Extras::default()) {

@@ -18,17 +18,22 @@ use common::random::Random;
 use conemarch::base::view::Beam;
 use conemarch::base::work::State;
 use conemarch::cpu;
+use conemarch::heightfield::assets::Ready;
 use conemarch::heightfield::conemap::generate::cpu::generate;
 use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::placement::Placement;
-use conemarch::heightfield::settings::{HeightfieldSettings, Ready, Wrap};
+use conemarch::heightfield::settings::{HeightfieldSettings, Wrap};
 use conemarch::heightfield::tracer::oracle::Oracle;
 use conemarch::heightfield::tracer::{LocalRay, Step, Tracer};
+use conemarch::pass;
 use conemarch::picture::frame::Frame;
+use conemarch::plan::Pass;
 use conemarch::plan::camera::Camera;
-use conemarch::plan::{Extras, PREPARE, Plan, Subject};
+use conemarch::plan::{Extras, Plan};
+use conemarch::scene::AnySolid;
+use conemarch::scene::Assets;
 use conemarch::scene::{self, Scene, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -100,7 +105,7 @@ fn shapes() -> Vec<(&'static str, HeightfieldSettings)> {
 
 /// A shape made ready; how wide pixels are matters to none of these tests.
 fn ready(shape: &HeightfieldSettings) -> Ready {
-    shape.ready(1e-3).unwrap()
+    Assets::default().ready(shape, 1e-3).unwrap()
 }
 
 fn local(placed: &Placement, eye: DVec3, ray: &Beam) -> LocalRay {
@@ -112,11 +117,11 @@ fn local(placed: &Placement, eye: DVec3, ray: &Beam) -> LocalRay {
 
 /// Where every pixel's ray first meets the block, cell by cell; infinity for nowhere.
 fn truths(plan: &Plan, ready: &Ready) -> Vec<f64> {
-    let oracle = Oracle::new(ready.relief.clone());
+    let oracle = Oracle::new(ready.surface.clone());
     let view = plan.view();
     let [w, h] = plan.size;
     let one = |i: u32| {
-        let ray = local(&ready.placed, view.eye, &view.view_ray([i % w, i / w]));
+        let ray = local(&ready.placement, view.eye, &view.view_ray([i % w, i / w]));
         let mut work = Default::default();
         let mut walk = oracle.begin(&ray, 0.0, 1e9, &mut work);
         let mut step = Step::Moving;
@@ -160,7 +165,7 @@ fn no_cell_starts_behind_a_relief_at_any_size_and_angle() {
     let mut nearest = 0.0_f64;
     for (name, shape) in shapes() {
         let ready = ready(&shape);
-        let mut plan = Plan::new(Subject::Heightfield(shape));
+        let mut plan = Plan::new(Scene::Heightfield(shape));
         plan.march.coarsest = 32;
         plan.march.steps = Some(2048);
         for fov in [1.0, 48.5, 170.0] {
@@ -169,7 +174,8 @@ fn no_cell_starts_behind_a_relief_at_any_size_and_angle() {
                 for size in [[1, 1], [97, 61], [33, 17], [1, 210], [200, 1]] {
                     plan.size = size;
                     let t = truths(&plan, &ready);
-                    let here = cpu::render(&plan, LEVELS, &mut |_| true).unwrap();
+                    let here =
+                        cpu::render(&plan, &Assets::default(), LEVELS, &mut |_| true).unwrap();
                     for frame in [here, adapter::render(&plan, LEVELS)] {
                         let what = format!("{name}, camera {n}, fov {fov}, {size:?}");
                         assert_eq!(frame.levels.len(), 5, "{what}");
@@ -231,11 +237,15 @@ fn shell(relief: &HeightSurface, fine: i32) -> Vec<DVec3> {
 fn empty_balls_hold_nothing_of_a_relief() {
     let mut random = Random::new(41);
     for (name, shape) in shapes() {
-        let Ready { relief, placed, .. } = ready(&shape);
+        let Ready {
+            surface: relief,
+            placement: placed,
+            ..
+        } = ready(&shape);
         let eye = DVec3::new(5.0, -9.0, 7.0);
-        let mut plan = Plan::new(Subject::Heightfield(shape));
+        let mut plan = Plan::new(Scene::Heightfield(shape));
         plan.camera.eye = eye;
-        let Scene::Heightfield(scene) = plan.scene() else {
+        let AnySolid::Heightfield(scene) = plan.solid(&Assets::default()).unwrap() else {
             unreachable!("a heightfield");
         };
         let world =
@@ -314,16 +324,16 @@ fn the_sides_of_boxes_face_sideways() {
         for tracer in ["walk", "walk-relaxed", "max-mip", "walk-mip", "cone-mip"] {
             shape.tracing.tracer = tracer;
             let ready = ready(&shape);
-            let mut plan = Plan::new(Subject::Heightfield(shape.clone()));
+            let mut plan = Plan::new(Scene::Heightfield(shape.clone()));
             [plan.camera, ..] = cameras(40.0);
             plan.size = [120, 80];
             let view = plan.view();
-            let here = cpu::render(&plan, NORMALS, &mut |_| true).unwrap();
+            let here = cpu::render(&plan, &Assets::default(), NORMALS, &mut |_| true).unwrap();
             for frame in [here, adapter::render(&plan, NORMALS)] {
                 check_normals(&format!("{name}, {tracer}"), &frame, |pixel| {
-                    let ray = local(&ready.placed, view.eye, &view.view_ray(pixel));
-                    let (_, normal) = met(&ready.relief, &ray)?;
-                    Some(ready.placed.side(normal))
+                    let ray = local(&ready.placement, view.eye, &view.view_ray(pixel));
+                    let (_, normal) = met(&ready.surface, &ray)?;
+                    Some(ready.placement.side(normal))
                 });
             }
         }
@@ -373,11 +383,15 @@ const PAINTED: [(Generator, Patches); 4] = [
 fn paint_is_how_wide_the_cones_are() {
     for (by, patches) in PAINTED {
         let shape = painted(by, patches);
-        let Ready { relief, placed, .. } = ready(&shape);
+        let Ready {
+            surface: relief,
+            placement: placed,
+            ..
+        } = ready(&shape);
         let heights = relief.heights();
         let map = generate(by, heights, patches, &Options::default(), &mut |_| true).unwrap();
-        let plan = Plan::new(Subject::Heightfield(shape));
-        let Scene::Heightfield(scene) = plan.scene() else {
+        let plan = Plan::new(Scene::Heightfield(shape));
+        let AnySolid::Heightfield(scene) = plan.solid(&Assets::default()).unwrap() else {
             unreachable!("a heightfield");
         };
         let eye = placed.position(plan.camera.eye);
@@ -421,11 +435,12 @@ fn paint_is_how_wide_the_cones_are() {
 #[test]
 fn both_executors_paint_alike() {
     for (by, patches) in PAINTED {
-        let mut plan = Plan::new(Subject::Heightfield(painted(by, patches)));
+        let mut plan = Plan::new(Scene::Heightfield(painted(by, patches)));
         [plan.camera, ..] = cameras(40.0);
         plan.size = [120, 80];
         plan.look.palette_cycles = 1.0;
-        let here = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
+        let here =
+            cpu::render(&plan, &Assets::default(), Extras::default(), &mut |_| true).unwrap();
         let there = adapter::render(&plan, Extras::default());
         let apart = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.02);
         let pairs = here.radiance.iter().zip(&there.radiance);
@@ -443,25 +458,44 @@ fn depths_alone_need_no_map_to_paint_by() {
     };
     let (by, patches) = PAINTED[0];
     let fresh = || {
-        let mut plan = Plan::new(Subject::Heightfield(painted(by, patches)));
+        let mut plan = Plan::new(Scene::Heightfield(painted(by, patches)));
         plan.size = [64, 40];
         plan
     };
-    let maps = |frame: &Frame| frame.passes.iter().filter(|p| p.name == PREPARE).count();
-    let said = |plan: &Plan, extras| plan.explain(extras).matches(PREPARE).count();
+    let maps = |frame: &Frame| {
+        frame
+            .passes
+            .iter()
+            .filter(|p| matches!(p.pass, Pass::Prepare(_)))
+            .count()
+    };
+    let said = |plan: &Plan, extras| {
+        pass::explain(&plan, &Assets::default(), extras)
+            .unwrap()
+            .matches("prepare")
+            .count()
+    };
     for (extras, wanted) in [(Extras::default(), 2), (depths, 1)] {
         let plan = fresh();
-        assert_eq!(said(&plan, extras), wanted, "{}", plan.explain(extras));
-        let here = cpu::render(&plan, extras, &mut |_| true).unwrap();
+        assert_eq!(
+            said(&plan, extras),
+            wanted,
+            "{}",
+            pass::explain(&plan, &Assets::default(), extras).unwrap()
+        );
+        let here = cpu::render(&plan, &Assets::default(), extras, &mut |_| true).unwrap();
         let there = adapter::render(&fresh(), extras);
         assert_eq!([maps(&here), maps(&there)], [wanted; 2]);
     }
     // A plan that has been rendered without its paint still has it.
     let plan = fresh();
-    let without = cpu::render(&plan, depths, &mut |_| true).unwrap();
-    let with = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
+    let without = cpu::render(&plan, &Assets::default(), depths, &mut |_| true).unwrap();
+    let with = cpu::render(&plan, &Assets::default(), Extras::default(), &mut |_| true).unwrap();
     assert_eq!(without.depth, with.depth);
-    let own = cpu::render(&fresh(), Extras::default(), &mut |_| true).unwrap();
+    let own = cpu::render(&fresh(), &Assets::default(), Extras::default(), &mut |_| {
+        true
+    })
+    .unwrap();
     assert_eq!(with.radiance, own.radiance);
 }
 
@@ -471,10 +505,10 @@ fn halvings_find_the_sides_of_boxes_too() {
     for (name, mut shape) in shapes.filter(|(_, s)| s.patches == Patches::Boxes) {
         let mut rendered = |tracer| {
             shape.tracing.tracer = tracer;
-            let mut plan = Plan::new(Subject::Heightfield(shape.clone()));
+            let mut plan = Plan::new(Scene::Heightfield(shape.clone()));
             [plan.camera, ..] = cameras(40.0);
             plan.size = [120, 80];
-            let here = cpu::render(&plan, NORMALS, &mut |_| true).unwrap();
+            let here = cpu::render(&plan, &Assets::default(), NORMALS, &mut |_| true).unwrap();
             [here, adapter::render(&plan, NORMALS)]
         };
         let truth = rendered("walk");

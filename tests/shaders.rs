@@ -11,6 +11,9 @@ mod common {
     pub mod plans;
 }
 
+use conemarch::pass;
+use conemarch::scene::Assets;
+use conemarch::scene::Scene;
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -34,14 +37,19 @@ use conemarch::heightfield::tracer::relaxed::WalkRelaxed;
 use conemarch::heightfield::tracer::walk::Walk;
 use conemarch::heightfield::tracer::walk_mip::WalkMip;
 use conemarch::heightfield::tracer::{AnyTracer, Tracer};
-use conemarch::plan::{Extras, Pass, Plan, Subject};
+use conemarch::plan::{Extras, Pass, Plan};
 use glam::DVec3;
 use wgpu::naga::valid::Capabilities;
 
 /// A program known to be good, for tests that break a copy of it.
 fn good() -> Program {
     let plan = preset("mandelbox");
-    plan.program(&plan.scene(), Pass::Trace, Extras::default())
+    pass::program(
+        &plan,
+        &plan.solid(&Assets::default()).unwrap(),
+        Pass::Trace,
+        Extras::default(),
+    )
 }
 
 fn paths(program: &Program) -> BTreeSet<&'static str> {
@@ -263,26 +271,40 @@ fn changed(change: impl FnOnce(&mut Mandelbox)) -> Plan {
     let mut formula = Mandelbox::default();
     change(&mut formula);
     let mut plan = preset("mandelbox");
-    plan.subject = distance(Formula::Mandelbox(formula));
+    plan.scene = distance(Formula::Mandelbox(formula));
     plan
 }
 
 #[test]
 fn a_rotation_by_nothing_is_no_rotation() {
-    let none = changed(|_| {}).explain(Extras::default());
-    let whole_turns =
-        changed(|m| m.rotation = DVec3::new(360.0, 0.0, -360.0)).explain(Extras::default());
+    let none = pass::explain(&changed(|_| {}), &Assets::default(), Extras::default()).unwrap();
+    let whole_turns = pass::explain(
+        &changed(|m| m.rotation = DVec3::new(360.0, 0.0, -360.0)),
+        &Assets::default(),
+        Extras::default(),
+    )
+    .unwrap();
     assert_eq!(none, whole_turns);
     // Three half turns about three axes bring everything back.
     for turns in [DVec3::splat(180.0), DVec3::new(-180.0, 540.0, 180.0)] {
         assert_eq!(
             none,
-            changed(|m| m.rotation = turns).explain(Extras::default())
+            pass::explain(
+                &changed(|m| m.rotation = turns),
+                &Assets::default(),
+                Extras::default()
+            )
+            .unwrap()
         );
     }
     assert!(none.contains("wgsl/formula/rotation_none.wgsl"));
     assert!(!none.contains("wgsl/formula/rotation.wgsl"));
-    let turned = changed(|m| m.rotation = DVec3::new(0.0, 0.0, 1.0)).explain(Extras::default());
+    let turned = pass::explain(
+        &changed(|m| m.rotation = DVec3::new(0.0, 0.0, 1.0)),
+        &Assets::default(),
+        Extras::default(),
+    )
+    .unwrap();
     assert_ne!(none, turned);
     assert!(turned.contains("wgsl/formula/rotation.wgsl"));
     assert!(!turned.contains("wgsl/formula/rotation_none.wgsl"));
@@ -314,7 +336,7 @@ fn features_that_are_off_are_not_joined() {
         for on in [true, false] {
             let mut plan = preset("mandelbox");
             set(&mut plan, on);
-            let text = plan.explain(Extras::default());
+            let text = pass::explain(&plan, &Assets::default(), Extras::default()).unwrap();
             assert_eq!(text.contains(real), on, "{real}\n{text}");
             assert_eq!(text.contains(stand_in), !on, "{stand_in}\n{text}");
         }
@@ -335,7 +357,7 @@ fn explained<'a>(text: &'a str, entry: &str) -> &'a str {
 #[test]
 fn what_is_asked_for_beside_the_picture_is_explained() {
     let plan = preset("mandelbox");
-    let explain = |extras| plan.explain(extras);
+    let explain = |extras| pass::explain(&plan, &Assets::default(), extras).unwrap();
     let plain = explain(Extras::default());
     let counted = explain(Extras {
         count: true,
@@ -370,7 +392,7 @@ fn what_is_asked_for_beside_the_picture_is_explained() {
 #[test]
 fn what_is_prepared_for_a_heightfield_is_explained() {
     let mut plan = preset("terrain");
-    let text = plan.explain(Extras::default());
+    let text = pass::explain(&plan, &Assets::default(), Extras::default()).unwrap();
     let first = text.lines().skip(2).take(2).collect::<Vec<_>>().join("\n");
     assert_eq!(first, "passes\n  prepare         511 x 511    steps -");
     assert!(explained(&text, "generate").contains("wgsl/heightfield/conemap/generate/search.wgsl"));
@@ -383,11 +405,11 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
         assert_eq!(text.contains(&plain), !extras, "{plain}\n{text}");
     }
     // Nothing is prepared where nothing is needed.
-    let Subject::Heightfield(shape) = &mut plan.subject else {
+    let Scene::Heightfield(shape) = &mut plan.scene else {
         unreachable!("the terrain");
     };
     shape.tracing.tracer = "max-mip";
-    let text = plan.explain(Extras::default());
+    let text = pass::explain(&plan, &Assets::default(), Extras::default()).unwrap();
     assert!(
         !text.contains("prepare") && !text.contains("generate"),
         "{text}"
@@ -399,12 +421,12 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
         ("walk", Generator::Exact, 2),
         ("walk", Generator::Walk, 1),
     ] {
-        let Subject::Heightfield(shape) = &mut plan.subject else {
+        let Scene::Heightfield(shape) = &mut plan.scene else {
             unreachable!("the terrain");
         };
         shape.tracing.tracer = tracer;
         shape.paint = Some(paint);
-        let text = plan.explain(Extras::default());
+        let text = pass::explain(&plan, &Assets::default(), Extras::default()).unwrap();
         let lines = text.lines().filter(|l| l.starts_with("  prepare"));
         assert_eq!(lines.count(), maps, "{tracer}, {paint:?}: {text}");
         assert!(text.contains("/paint.wgsl") && !text.contains("paint_height.wgsl"));
@@ -414,14 +436,14 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
 #[test]
 fn work_is_counted_only_where_it_is_asked_for() {
     let plan = preset("mandelbox");
-    let scene = plan.scene();
-    for pass in plan.passes() {
+    let scene = plan.solid(&Assets::default()).unwrap();
+    for pass in plan.passes(Extras::default()) {
         for count in [false, true] {
             let extras = Extras {
                 count,
                 ..Extras::default()
             };
-            let program = plan.program(&scene, pass, extras);
+            let program = pass::program(&plan, &scene, pass, extras);
             let counted = count && pass != Pass::Color;
             assert_eq!(has(&program, "wgsl/base/counters.wgsl"), counted);
             assert_eq!(has(&program, "wgsl/base/counters_off.wgsl"), !counted);
@@ -443,7 +465,7 @@ fn what_a_slider_moves_compiles_nothing_new() {
     moved.look.occlusion *= 0.5;
     moved.look.palette = vec![DVec3::ONE; 3];
     moved.size = [33, 17];
-    moved.subject = distance(Formula::Mandelbox(Mandelbox {
+    moved.scene = distance(Formula::Mandelbox(Mandelbox {
         scale: -1.7,
         min_radius: 0.3,
         julia_constant: DVec3::X,
@@ -461,7 +483,7 @@ fn the_rule_of_the_slides_takes_the_place_of_the_exact_one() {
     let mut plan = preset("mandelbox");
     for (mode, exact) in [(Mode::Safe, true), (Mode::SlidesDeep, false)] {
         plan.march.mode = mode;
-        let text = plan.explain(Extras::default());
+        let text = pass::explain(&plan, &Assets::default(), Extras::default()).unwrap();
         assert_eq!(text.contains("wgsl/base/cone.wgsl"), exact);
         assert_eq!(text.contains("wgsl/base/cone_slides.wgsl"), !exact);
     }
@@ -469,7 +491,7 @@ fn the_rule_of_the_slides_takes_the_place_of_the_exact_one() {
 
 #[test]
 fn the_mandelbox_is_explained() {
-    insta::assert_snapshot!(preset("mandelbox").explain(Extras::default()), @r"
+    insta::assert_snapshot!(pass::explain(&preset("mandelbox"), &Assets::default(), Extras::default()).unwrap(), @r"
     1280 x 720, mode safe
     mandelbox: 14 iterations, lipschitz 1
     passes
@@ -522,7 +544,7 @@ fn the_mandelbox_is_explained() {
 #[test]
 fn no_program_binds_more_buffers_than_are_asked_for() {
     let mut plan = preset("terrain");
-    let Subject::Heightfield(shape) = &mut plan.subject else {
+    let Scene::Heightfield(shape) = &mut plan.scene else {
         unreachable!("the terrain");
     };
     shape.source.field = "fbm:16x16".into();

@@ -95,13 +95,13 @@ proptest! {
         let eye = DVec3::new(0.5, -4.0, 1.0);
         let (scene, exact) = balls_scene(size, eye, stepping(ConeRule::Exact));
         let want = distance(&exact, p);
-        let (got, spent) = scene.shape.estimate(p, 7);
+        let (got, spent) = scene.formula.estimate(p, 7);
         prop_assert!((got - want).abs() < 1e-12, "{got} {want}");
         prop_assert_eq!(spent, 1);
         let clear = scene.clearance(p - eye);
         prop_assert!((clear - want.max(0.0)).abs() < 1e-12, "{clear} {want}");
         // The bounds hold everything, however large it is made.
-        let bounds = scene.shape.bounds();
+        let bounds = scene.formula.bounds();
         prop_assert!(want > 0.0 || bounds.distance(p) == 0.0);
         prop_assert!(want.max(0.0) >= bounds.distance(p) - 1e-12);
     }
@@ -191,7 +191,7 @@ proptest! {
         let (scene, _) = balls_scene(DVec3::splat(0.1), eye, how);
         let ray = pixel_ray(axis.normalize());
         let (near, far) = scene.bounds_interval(&ray);
-        let bounds = scene.shape.bounds();
+        let bounds = scene.formula.bounds();
         for part in 0..200 {
             let t = scene.bounds_far() * (f64::from(part) + along) / 200.0;
             let off = bounds.distance(eye + ray.at(t));

@@ -15,10 +15,12 @@ use conemarch::base::srgb::srgb;
 use conemarch::base::work::State;
 use conemarch::cpu;
 use conemarch::measure::compare::{Report, compare, quantile};
+use conemarch::pass::look::tone;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::march::{MODES, Mode};
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{BUILTIN, Override, load};
+use conemarch::scene::Assets;
 use glam::DVec3;
 
 fn preset(name: &str, size: [u32; 2]) -> Plan {
@@ -28,7 +30,7 @@ fn preset(name: &str, size: [u32; 2]) -> Plan {
 }
 
 fn on_cpu(plan: &Plan, extras: Extras) -> Frame {
-    cpu::render(plan, extras, &mut |_| true).unwrap()
+    cpu::render(plan, &Assets::default(), extras, &mut |_| true).unwrap()
 }
 
 /// Two frames of a plan side by side: depth, and the shown picture in steps of 1/255,
@@ -40,15 +42,24 @@ struct Apart {
 }
 
 fn apart(plan: &Plan, frame: &Frame, reference: &Frame) -> Apart {
-    let light = plan.light();
-    let shown = |c: [f32; 3]| srgb(light.tone(DVec3::from_array(c.map(f64::from))));
+    let shown = |c: [f32; 3]| {
+        srgb(tone(
+            plan.look.exposure.exp2(),
+            DVec3::from_array(c.map(f64::from)),
+        ))
+    };
     let pairs = frame.radiance.iter().zip(&reference.radiance);
     let mut shades: Vec<f64> = pairs
         .map(|(a, b)| 255.0 * (shown(*a) - shown(*b)).abs().max_element())
         .collect();
     shades.sort_by(f64::total_cmp);
     Apart {
-        report: compare(frame, reference, plan),
+        report: compare(
+            frame,
+            reference,
+            plan,
+            &plan.solid(&Assets::default()).unwrap(),
+        ),
         shade: [0.5, 0.95].map(|q| quantile(&shades, q)),
     }
 }
@@ -141,11 +152,17 @@ fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
     let allowed = 1e-4;
     for name in ["far", "graze", "inside", "outside", "thin"] {
         let mut plan = preset(&format!("bench-{name}"), [160, 90]);
-        let truth = conemarch::measure::truth::truth(&plan, &mut |_| true).unwrap();
+        let truth =
+            conemarch::measure::truth::truth(&plan, &Assets::default(), &mut |_| true).unwrap();
         let mut wrong = |mode| {
             plan.march.mode = mode;
             let frame = render(&plan, DEPTH_ONLY);
-            let report = compare(&frame, &truth.frame, &plan);
+            let report = compare(
+                &frame,
+                &truth.frame,
+                &plan,
+                &plan.solid(&Assets::default()).unwrap(),
+            );
             let starts: u64 = report.start_violations.iter().map(|v| v.1).sum();
             (report.behind + report.holes, starts)
         };
@@ -195,7 +212,12 @@ fn every_mode_renders_on_both_executors() {
 fn a_comparison_with_itself_is_nothing_and_with_a_shift_is_not() {
     let plan = preset("bench-outside", [160, 90]);
     let frame = render(&plan, DEPTH_ONLY);
-    let same = compare(&frame, &frame, &plan);
+    let same = compare(
+        &frame,
+        &frame,
+        &plan,
+        &plan.solid(&Assets::default()).unwrap(),
+    );
     assert_eq!(same.depth_error, [0.0; 4]);
     let shares = |r: &Report| {
         [
@@ -215,7 +237,12 @@ fn a_comparison_with_itself_is_nothing_and_with_a_shift_is_not() {
     let mut shifted = frame.clone();
     shifted.depth.rotate_left(4);
     shifted.state.rotate_left(4);
-    let other = compare(&shifted, &frame, &plan);
+    let other = compare(
+        &shifted,
+        &frame,
+        &plan,
+        &plan.solid(&Assets::default()).unwrap(),
+    );
     assert!(other.depth_error[0] > 0.1, "{other:?}");
     assert!(shares(&other).iter().all(|x| *x > 0.0), "{other:?}");
     // The shares of holes and false hits add up to that of the mask.

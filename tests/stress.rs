@@ -32,9 +32,13 @@ use conemarch::base::work::State;
 use conemarch::formula::DistanceEstimate;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::picture::frame::Frame;
+use conemarch::plan::Plan;
 use conemarch::plan::march::Mode;
-use conemarch::plan::{Plan, Subject};
 use conemarch::preset::{load, read, write};
+use conemarch::scene::AnySolid;
+use conemarch::scene::Assets;
+use conemarch::scene::Scene;
+use conemarch::scene::distance::DistanceSettings;
 use conemarch::scene::distance::Relaxation;
 use glam::DVec3;
 use proptest::test_runner::{Config, TestRunner};
@@ -256,7 +260,7 @@ fn hits_are_where_the_estimate_is_within_the_threshold() {
         plan.march.shell = 0.9;
         plan.march.steps = Some(2000);
         plan.march.relaxation = Relaxation::Off;
-        let Subject::Distance { shape, .. } = &mut plan.subject else {
+        let Scene::Distance(DistanceSettings { formula: shape, .. }) = &mut plan.scene else {
             unreachable!("bench presets are Mandelboxes");
         };
         let m = Mandelbox {
@@ -265,7 +269,7 @@ fn hits_are_where_the_estimate_is_within_the_threshold() {
             ..Mandelbox::default()
         };
         *shape = conemarch::formula::Formula::Mandelbox(m.clone());
-        let conemarch::scene::Scene::Distance(scene) = plan.scene() else {
+        let AnySolid::Distance(scene) = plan.solid(&Assets::default()).unwrap() else {
             unreachable!("made above");
         };
         let view = plan.view();

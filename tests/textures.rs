@@ -21,7 +21,9 @@ use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::settings::{HeightfieldSettings, Wrap};
 use conemarch::heightfield::texture::Texture;
 use conemarch::plan::camera::Camera;
-use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Assets;
+use conemarch::scene::Scene;
 use glam::DVec3;
 use png::{BitDepth, ColorType};
 
@@ -128,7 +130,7 @@ fn plan(folder: &Folder, wrap: Wrap, patches: Patches) -> Plan {
         shape.tiles = [2, 1];
     }
     shape.texture = folder.0.join("t.png").to_string_lossy().into_owned();
-    let mut plan = Plan::new(Subject::Heightfield(shape));
+    let mut plan = Plan::new(Scene::Heightfield(shape));
     plan.size = [120, 80];
     plan.camera = Camera {
         eye: DVec3::new(3.0, -9.0, 9.0),
@@ -146,14 +148,15 @@ fn both_executors_color_alike_and_by_the_texture() {
     for wrap in [Wrap::None, Wrap::Both] {
         for patches in [Patches::Bilinear, Patches::Boxes] {
             let plan = plan(&folder, wrap, patches);
-            let here = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
+            let here =
+                cpu::render(&plan, &Assets::default(), Extras::default(), &mut |_| true).unwrap();
             let there = adapter::render(&plan, Extras::default());
             let apart = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.01);
             let pairs = here.radiance.iter().zip(&there.radiance);
             let wrong = pairs.filter(|(a, b)| apart((a, b))).count();
             assert!(wrong <= 40, "{wrap:?} {patches:?}: {wrong} pixels apart");
             let mut other = plan.clone();
-            let Subject::Heightfield(shape) = &mut other.subject else {
+            let Scene::Heightfield(shape) = &mut other.scene else {
                 unreachable!("made above");
             };
             shape.texture = "none".into();
@@ -173,19 +176,25 @@ fn both_executors_color_alike_and_by_the_texture() {
 fn a_truth_depends_on_the_texels_of_a_file() {
     let folder = Folder::new();
     written(&folder);
-    let before = plan(&folder, Wrap::None, Patches::Bilinear).contents();
+    let before = plan(&folder, Wrap::None, Patches::Bilinear)
+        .scene
+        .contents(&Assets::default());
     let mut bytes = texels();
     bytes[40] ^= 1;
     folder.write("t.png", png(SIZE, ColorType::Rgb, BitDepth::Eight, &bytes));
     assert_ne!(
-        plan(&folder, Wrap::None, Patches::Bilinear).contents(),
+        plan(&folder, Wrap::None, Patches::Bilinear)
+            .scene
+            .contents(&Assets::default()),
         before
     );
     // Two rows of twelve are other than four of six.
     let turned = png([12, 2], ColorType::Rgb, BitDepth::Eight, &texels());
     folder.write("t.png", turned);
     assert_ne!(
-        plan(&folder, Wrap::None, Patches::Bilinear).contents(),
+        plan(&folder, Wrap::None, Patches::Bilinear)
+            .scene
+            .contents(&Assets::default()),
         before
     );
 }

@@ -102,4 +102,8 @@ pub trait Twin {
     fn describe(&self) -> String;
     /// Rounds of inner loops that one step may take: what a step costs at most.
     fn rounds(&self) -> u32;
+    /// Whether its hits carry an id and a place beside their distance.
+    fn marks_hits(&self) -> bool {
+        true
+    }
 }

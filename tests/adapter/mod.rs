@@ -7,6 +7,7 @@
     reason = "each test file takes what it needs of this, and none takes all"
 )]
 
+use conemarch::scene::Assets;
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{LazyLock, Mutex};
 
@@ -76,7 +77,7 @@ pub fn render_cut(plan: &Plan, extras: Extras, cutting: Cutting) -> Frame {
     plan.check().expect("a plan that can be rendered");
     let frame = with(move |renderer| {
         renderer.cutting = cutting;
-        renderer.render(&plan, extras, &mut |_| true)
+        renderer.render(&plan, &Assets::default(), extras, &mut |_| true)
     });
     frame.unwrap_or_else(|e| panic!("the render fails: {e}"))
 }

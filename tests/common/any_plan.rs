@@ -6,10 +6,12 @@ use conemarch::formula::balls::Balls;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::settings::{HeightfieldSettings, Wrap};
+use conemarch::plan::Plan;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::look::Look;
 use conemarch::plan::march::{MODES, Marching};
-use conemarch::plan::{Plan, Subject};
+use conemarch::scene::Scene;
+use conemarch::scene::distance::DistanceSettings;
 use conemarch::scene::distance::Relaxation;
 use conemarch::scene::slab::SlabSettings;
 use glam::DVec3;
@@ -48,23 +50,23 @@ fn mandelbox() -> impl Strategy<Value = Mandelbox> {
     )
 }
 
-fn subject() -> impl Strategy<Value = Subject> {
+fn subject() -> impl Strategy<Value = Scene> {
     let iterations = prop_oneof![Just(None), (1_u32..=500).prop_map(Some)];
-    let boxes = (mandelbox(), iterations).prop_map(|(m, iterations)| Subject::Distance {
-        shape: Formula::Mandelbox(m),
-        iterations,
+    let boxes = (mandelbox(), iterations).prop_map(|(m, iterations)| {
+        Scene::Distance(DistanceSettings {
+            formula: Formula::Mandelbox(m),
+            iterations,
+        })
     });
-    let balls =
-        (size(1e-6, 0.5), 1e-3..1.2, 1e-3..2.5).prop_map(|(rod, edge, ball)| Subject::Distance {
-            shape: Formula::Balls(Balls {
-                rod_radius: rod,
-                box_size: edge,
-                ball_radius: ball,
-            }),
-            iterations: None,
-        });
+    let balls = (size(1e-6, 0.5), 1e-3..1.2, 1e-3..2.5).prop_map(|(rod, edge, ball)| {
+        Scene::from(Formula::Balls(Balls {
+            rod_radius: rod,
+            box_size: edge,
+            ball_radius: ball,
+        }))
+    });
     let slab = (size(1e-3, 1.0), size(0.1, 10.0)).prop_map(|(half, radius)| {
-        Subject::Slab(SlabSettings {
+        Scene::Slab(SlabSettings {
             half,
             radius,
             ..SlabSettings::default()
@@ -74,7 +76,7 @@ fn subject() -> impl Strategy<Value = Subject> {
 }
 
 /// Small heightfields of every field, surface and exact tracer.
-fn heightfield() -> impl Strategy<Value = Subject> {
+fn heightfield() -> impl Strategy<Value = Scene> {
     let field = prop::sample::select(&["fbm", "spikes", "checker", "noise"][..]);
     let tracer = prop::sample::select(&["walk", "walk-relaxed", "max-mip"][..]);
     let wrap = prop::sample::select(&[Wrap::None, Wrap::X, Wrap::Y, Wrap::Both][..]);
@@ -99,7 +101,7 @@ fn heightfield() -> impl Strategy<Value = Subject> {
             if boxes {
                 shape.patches = Patches::Boxes;
             }
-            Subject::Heightfield(shape)
+            Scene::Heightfield(shape)
         },
     )
 }
@@ -170,14 +172,14 @@ fn look() -> impl Strategy<Value = Look> {
 }
 
 /// Half the size of what a subject fills.
-fn extent(subject: &Subject) -> f64 {
+fn extent(subject: &Scene) -> f64 {
     match subject {
-        Subject::Distance { shape, .. } => {
+        Scene::Distance(DistanceSettings { formula: shape, .. }) => {
             let bounds = shape.bounds();
             bounds.half.max_element().min(bounds.radius)
         }
-        Subject::Heightfield(shape) => 0.5 * shape.width,
-        Subject::Slab(slab) => slab.radius,
+        Scene::Heightfield(shape) => 0.5 * shape.width,
+        Scene::Slab(slab) => slab.radius,
     }
 }
 
@@ -187,7 +189,7 @@ pub fn any_plan() -> impl Strategy<Value = Plan> {
         (1_u32..=40, 1_u32..=30).boxed(),
         (Just(40), Just(30)).boxed(),
     ]);
-    let rest = move |subject: Subject| {
+    let rest = move |subject: Scene| {
         let camera = camera(extent(&subject));
         (Just(subject), camera, marching(), look(), sizes.clone())
     };

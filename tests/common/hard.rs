@@ -3,10 +3,12 @@
 
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::formula::{DistanceEstimate, Formula};
+use conemarch::plan::Plan;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::march::Mode;
-use conemarch::plan::{Plan, Subject};
 use conemarch::preset::load;
+use conemarch::scene::Scene;
+use conemarch::scene::distance::DistanceSettings;
 use conemarch::scene::slab::SlabSettings;
 use glam::{DVec3, Vec3Swizzles};
 
@@ -43,10 +45,7 @@ pub fn twice(name: &str, change: impl FnOnce(&mut Mandelbox)) -> [Case; 2] {
 
 /// A Mandelbox seen from one point towards another.
 pub fn from(m: Mandelbox, eye: DVec3, target: DVec3) -> Plan {
-    let mut plan = Plan::new(Subject::Distance {
-        shape: Formula::Mandelbox(m),
-        iterations: None,
-    });
+    let mut plan = Plan::new(Scene::from(Formula::Mandelbox(m)));
     plan.camera = Camera {
         fov: 48.5,
         ..camera(eye.to_array(), target.to_array())
@@ -199,7 +198,7 @@ pub fn grazing() -> Vec<Case> {
         let mut plan = balls(0.05, &camera_on, SIZE);
         plan.camera.eye = up - 2.0 * slab.radius * u;
         plan.camera.target = up;
-        plan.subject = Subject::Slab(slab);
+        plan.scene = Scene::Slab(slab);
         all.push((format!("a slab, {height} above"), plan));
     }
     all
@@ -254,7 +253,7 @@ pub fn iterations() -> Vec<Case> {
             for (name, mut plan) in twice(&format!("scale {scale}, {most} iterations"), |m| {
                 m.scale = scale
             }) {
-                if let Subject::Distance { iterations, .. } = &mut plan.subject {
+                if let Scene::Distance(DistanceSettings { iterations, .. }) = &mut plan.scene {
                     *iterations = Some(most);
                 }
                 all.push((name, plan));
@@ -273,7 +272,7 @@ pub fn iterations() -> Vec<Case> {
         DVec3::new(-0.2, -0.15, 0.1) * r,
     );
     (long.size, long.march.mode) = ([16, 12], Mode::Truth);
-    if let Subject::Distance { iterations, .. } = &mut long.subject {
+    if let Scene::Distance(DistanceSettings { iterations, .. }) = &mut long.scene {
         *iterations = Some(1000);
     }
     all.push(("rotated, scale -1.01, 1000 iterations, truth".into(), long));
@@ -342,10 +341,10 @@ fn sloped(factor: f64) -> Vec<Case> {
     let one = |name: &str| {
         let mut plan = load(&format!("bench-{name}"), &[]).expect("built in").plan;
         plan.size = SIZE;
-        if let Subject::Distance {
-            shape: Formula::Mandelbox(m),
+        if let Scene::Distance(DistanceSettings {
+            formula: Formula::Mandelbox(m),
             ..
-        } = &mut plan.subject
+        }) = &mut plan.scene
         {
             m.lipschitz = Some(factor * m.lipschitz());
         }

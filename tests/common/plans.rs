@@ -1,6 +1,10 @@
 //! Every plan whose shaders can differ: presets, subjects with each key moved, all modes,
 //! and looks with and without their features.
 
+use conemarch::pass;
+use conemarch::scene::Assets;
+use conemarch::scene::Scene;
+use conemarch::scene::distance::DistanceSettings;
 use std::collections::BTreeMap;
 
 use conemarch::base::shader::Program;
@@ -8,7 +12,7 @@ use conemarch::formula::Formula;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
 use conemarch::heightfield::conemap::generate;
 use conemarch::plan::march::MODES;
-use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{BUILTIN, builtin, read};
 use glam::DVec3;
 use toml::Value;
@@ -20,9 +24,12 @@ pub fn preset(name: &str) -> Plan {
 }
 
 /// A subject for a shape.
-pub fn distance(shape: Formula) -> Subject {
+pub fn distance(shape: Formula) -> Scene {
     let iterations = None;
-    Subject::Distance { shape, iterations }
+    Scene::Distance(DistanceSettings {
+        formula: shape,
+        iterations,
+    })
 }
 
 /// All values worth trying for a key: the other states of a switch, every word of a
@@ -43,7 +50,7 @@ fn values(now: &Value, expects: &str) -> Vec<Value> {
 
 /// The subject itself, and once more for each value of each of its keys that could
 /// choose a feature.
-fn with_each_key_moved(subject: &Subject) -> Vec<Subject> {
+fn with_each_key_moved(subject: &Scene) -> Vec<Scene> {
     let mut all = vec![subject.clone()];
     let count = subject.clone().keys().len();
     for index in 0..count {
@@ -82,15 +89,15 @@ fn mandelboxes() -> Vec<Mandelbox> {
 }
 
 /// Everything that can be in a picture, with its features.
-fn subjects() -> Vec<Subject> {
-    let mut all = Subject::all();
+fn subjects() -> Vec<Scene> {
+    let mut all = Scene::all();
     for subject in &mut all {
         // Small: what is joined does not depend on how many samples there are.
-        if let Subject::Heightfield(shape) = subject {
+        if let Scene::Heightfield(shape) = subject {
             shape.source.field = "fbm:16x16".into();
         }
     }
-    let mut moved: Vec<Subject> = all.iter().flat_map(with_each_key_moved).collect();
+    let mut moved: Vec<Scene> = all.iter().flat_map(with_each_key_moved).collect();
     let boxes = mandelboxes().into_iter();
     moved.extend(boxes.map(|m| distance(Formula::Mandelbox(m))));
     // Few iterations and many: what could overflow is guarded.
@@ -98,7 +105,10 @@ fn subjects() -> Vec<Subject> {
         for count in [2, 1000] {
             let iterations = Some(count);
             let shape = shape.clone();
-            moved.push(Subject::Distance { shape, iterations });
+            moved.push(Scene::Distance(DistanceSettings {
+                formula: shape,
+                iterations,
+            }));
         }
     }
     moved
@@ -115,7 +125,7 @@ fn plans() -> Vec<Plan> {
     for plan in &first {
         for (_, mode) in MODES {
             for look in 0..8 {
-                let apart = matches!(plan.subject, Subject::Heightfield(_));
+                let apart = matches!(plan.scene, Scene::Heightfield(_));
                 if apart && look > 0 && *mode != plan.march.mode {
                     continue;
                 }
@@ -134,16 +144,16 @@ fn plans() -> Vec<Plan> {
 /// All different programs of a plan's passes, with work counted or not and normals
 /// kept or not.
 pub fn programs_of(plan: &Plan) -> Vec<Program> {
-    let scene = plan.scene();
+    let scene = plan.solid(&Assets::default()).unwrap();
     let mut all: Vec<Program> = Vec::new();
-    for pass in plan.passes() {
+    for pass in plan.passes(Extras::default()) {
         for bits in 0..4 {
             let extras = Extras {
                 count: bits & 1 > 0,
                 normals: bits & 2 > 0,
                 ..Extras::default()
             };
-            let program = plan.program(&scene, pass, extras);
+            let program = pass::program(&plan, &scene, pass, extras);
             if !all.contains(&program) {
                 all.push(program);
             }
@@ -156,7 +166,7 @@ pub fn programs_of(plan: &Plan) -> Vec<Program> {
 /// generators of cone maps.
 pub fn every_program() -> BTreeMap<String, Program> {
     let mut all = BTreeMap::new();
-    for program in generate::program::every_program() {
+    for program in generate::task::every_program() {
         let listing = format!("{}\n{}", program.entry, program.describe());
         all.entry(listing).or_insert(program);
     }

@@ -2,16 +2,20 @@
 
 use bytemuck::bytes_of;
 use conemarch::base::shader::Module;
+use conemarch::base::view;
 use conemarch::base::view::Beam;
 use conemarch::formula::balls::Balls;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
 use conemarch::formula::{DistanceEstimate, Formula};
 use conemarch::heightfield::settings::HeightfieldSettings;
-use conemarch::plan::{Plan, Subject};
+use conemarch::pass::look::Light;
+use conemarch::pass::{self, LookFeature};
+use conemarch::plan::Plan;
+use conemarch::scene::Assets;
+use conemarch::scene::distance::DistanceSettings;
 use conemarch::scene::slab::SlabSettings;
-use conemarch::scene::{Scene, Solid};
+use conemarch::scene::{AnySolid, Scene, Solid};
 use conemarch::wgsl;
-use conemarch::{base::view, pass};
 use glam::DVec3;
 
 use super::probe::{Numbers, Probe};
@@ -38,7 +42,7 @@ pub fn three(v: [f32; 4]) -> DVec3 {
 }
 
 /// A plan that looks at a subject from an eye.
-pub fn plan(subject: Subject, eye: DVec3) -> Plan {
+pub fn plan(subject: Scene, eye: DVec3) -> Plan {
     let mut plan = Plan::new(subject);
     plan.camera.eye = eye;
     plan.size = [320, 200];
@@ -48,12 +52,18 @@ pub fn plan(subject: Subject, eye: DVec3) -> Plan {
 /// A plan of a shape.
 pub fn shape_plan(shape: Formula, iterations: u32, eye: DVec3) -> Plan {
     let iterations = Some(iterations);
-    plan(Subject::Distance { shape, iterations }, eye)
+    plan(
+        Scene::Distance(DistanceSettings {
+            formula: shape,
+            iterations,
+        }),
+        eye,
+    )
 }
 
 /// A plan of the slab.
 pub fn slab_plan(shape: SlabSettings) -> Plan {
-    plan(Subject::Slab(shape), DVec3::new(4.0, -9.0, 6.0))
+    plan(Scene::Slab(shape), DVec3::new(4.0, -9.0, 6.0))
 }
 
 /// A small heightfield, seen from the same place.
@@ -62,7 +72,7 @@ pub fn heightfield_plan(depth: f64) -> Plan {
     shape.depth = depth;
     shape.turn = DVec3::new(5.0, -8.0, 30.0);
     shape.source.field = "fbm:33x25,seed=3,power=3".into();
-    plan(Subject::Heightfield(shape), DVec3::new(4.0, -9.0, 6.0))
+    plan(Scene::Heightfield(shape), DVec3::new(4.0, -9.0, 6.0))
 }
 
 /// The Mandelboxes that are asked about, by name.
@@ -105,7 +115,7 @@ pub fn balls(factor: f64) -> Formula {
 
 /// The scene of a plan with all that passes join to it, and a probe into it.
 pub fn probe_of(plan: &Plan, probe: Module) -> Probe {
-    let scene = plan.scene();
+    let scene = plan.solid(&Assets::default()).unwrap();
     let mut modules = scene.twin().modules();
     modules.extend([
         view::module(),
@@ -124,12 +134,9 @@ pub fn probe_of(plan: &Plan, probe: Module) -> Probe {
 /// The same with the look and its features.
 pub fn lit_probe_of(plan: &Plan, probe: Module) -> Probe {
     let mut all = probe_of(plan, probe);
-    all.modules.extend([
-        pass::look::module(),
-        pass::shadow::module(true),
-        pass::occlusion::module(true),
-        pass::fog::module(true),
-    ]);
+    all.modules.push(pass::look::module());
+    all.modules
+        .extend(LookFeature::ALL.iter().map(|f| f.module(true)));
     all.parameters.push(look_parameter(plan));
     all
 }
@@ -144,7 +151,7 @@ pub fn view_parameter(plan: &Plan) -> (&'static str, Vec<u8>) {
 pub fn look_parameter(plan: &Plan) -> (&'static str, Vec<u8>) {
     (
         "look_parameters",
-        bytes_of(&plan.light().uniform()).to_vec(),
+        bytes_of(&Light::of(&plan, &Assets::default()).uniform()).to_vec(),
     )
 }
 
@@ -162,10 +169,10 @@ pub fn points(formula: &dyn DistanceEstimate, iterations: u32, seed: u64) -> Vec
 /// chord, r0, grain, `t_max` and steps.
 pub fn beams(plan: &Plan, spread: f64, steps: f64, seed: u64) -> Vec<Numbers> {
     let mut random = Random::new(seed);
-    let far = match plan.scene() {
-        Scene::Distance(s) => s.bounds_far(),
-        Scene::Heightfield(s) => s.bounds_far(),
-        Scene::Slab(s) => s.bounds_far(),
+    let far = match plan.solid(&Assets::default()).unwrap() {
+        AnySolid::Distance(s) => s.bounds_far(),
+        AnySolid::Heightfield(s) => s.bounds_far(),
+        AnySolid::Slab(s) => s.bounds_far(),
     };
     let of = |_| {
         let origin = random.cube(0.01);

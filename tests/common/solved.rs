@@ -2,8 +2,10 @@
 
 use conemarch::formula::{Formula, balls::Balls};
 use conemarch::picture::frame::Frame;
+use conemarch::plan::Plan;
 use conemarch::plan::camera::Camera;
-use conemarch::plan::{Plan, Subject};
+use conemarch::scene::Scene;
+use conemarch::scene::distance::DistanceSettings;
 use conemarch::scene::slab::SlabSettings;
 use glam::DVec3;
 
@@ -33,13 +35,10 @@ pub fn cameras() -> [Camera; 5] {
 
 /// The default solids but for the rod, with an exact distance field and five levels.
 pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
-    let mut plan = Plan::new(Subject::Distance {
-        shape: Formula::Balls(Balls {
-            rod_radius,
-            ..Balls::default()
-        }),
-        iterations: None,
-    });
+    let mut plan = Plan::new(Scene::from(Formula::Balls(Balls {
+        rod_radius,
+        ..Balls::default()
+    })));
     plan.camera = camera.clone();
     plan.march.coarsest = 32;
     // Rays that graze a ball creep for hundreds of steps; none is to end half-way.
@@ -51,19 +50,19 @@ pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
 /// A disc, solved in closed form by the scene itself.
 pub fn slab(camera: &Camera, size: [u32; 2]) -> Plan {
     let mut plan = balls(0.05, camera, size);
-    plan.subject = Subject::Slab(SlabSettings::default());
+    plan.scene = Scene::Slab(SlabSettings::default());
     plan
 }
 
 /// Where a ray first meets the subject: solved, not marched.
-pub fn meet(subject: &Subject, eye: DVec3, axis: DVec3) -> f64 {
+pub fn meet(subject: &Scene, eye: DVec3, axis: DVec3) -> f64 {
     let solids = match subject {
-        Subject::Slab(s) => vec![exact::Exact::Disc(s.normal, s.half, s.radius)],
-        Subject::Distance { shape, .. } => match shape {
+        Scene::Slab(s) => vec![exact::Exact::Disc(s.normal, s.half, s.radius)],
+        Scene::Distance(DistanceSettings { formula: shape, .. }) => match shape {
             Formula::Balls(b) => exact::balls(b.rod_radius, b.box_size, b.ball_radius),
             _ => panic!("only balls and slabs are solved here"),
         },
-        Subject::Heightfield(_) => panic!("only balls and slabs are solved here"),
+        Scene::Heightfield(_) => panic!("only balls and slabs are solved here"),
     };
     exact::first_hit(&solids, eye, axis)
 }
@@ -74,7 +73,7 @@ pub fn solved(plan: &Plan) -> (Frame, Vec<f64>) {
     let [w, h] = plan.size;
     let pixels = (0..h).flat_map(|y| (0..w).map(move |x| [x, y]));
     let t: Vec<f64> = pixels
-        .map(|p| meet(&plan.subject, view.eye, view.view_ray(p).axis))
+        .map(|p| meet(&plan.scene, view.eye, view.view_ray(p).axis))
         .collect();
     let frame = Frame {
         size: plan.size,

@@ -1,11 +1,14 @@
 //! What is asked of a picture however hard its plan is: measured on both executors and
 //! against what is true.
 
+use conemarch::scene::Assets;
+use conemarch::scene::distance::DistanceSettings;
 use std::time::{Duration, Instant};
 
 use conemarch::base::work::State;
 use conemarch::cpu;
-use conemarch::gpu::render::{Progress, RenderError};
+use conemarch::gpu::RenderError;
+use conemarch::pass::progress::Progress;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
@@ -42,9 +45,13 @@ pub fn both(plan: &Plan) -> [Frame; 2] {
     let asked = plan.clone();
     let frame = crate::adapter::with(move |renderer| {
         renderer.cutting = Default::default();
-        renderer.render(&asked, ALL, &mut patient())
+        renderer.render(&asked, &Assets::default(), ALL, &mut patient())
     });
-    [frame, cpu::render(plan, ALL, &mut patient())].map(|made| match made {
+    [
+        frame,
+        cpu::render(plan, &Assets::default(), ALL, &mut patient()),
+    ]
+    .map(|made| match made {
         Ok(frame) => frame,
         Err(RenderError::Cancelled) => panic!("a render hangs: {plan:?}"),
         Err(e) => panic!("a render fails: {e}"),
@@ -93,7 +100,7 @@ pub fn faults(plan: &Plan, frame: &Frame) -> Vec<String> {
         "position",
         count(&|i| position[i].iter().any(|x| !x.is_finite())),
     );
-    let limit = plan.ray_steps();
+    let limit = plan.ray_steps(&Assets::default());
     bad("evaluations", count(&|i| frame.work[i].evaluations > limit));
     for level in &frame.levels {
         let fronts = level.front.iter().filter(|f| !f.is_finite() || **f < 0.0);
@@ -135,18 +142,20 @@ pub fn reference(plan: &Plan) -> Frame {
         depth_only: true,
         ..Extras::default()
     };
-    cpu::render(&plan, extras, &mut patient()).expect("the truth in time")
+    cpu::render(&plan, &Assets::default(), extras, &mut patient()).expect("the truth in time")
 }
 
 /// Whether a plan's picture is known in closed form.
 pub fn solids(plan: &Plan) -> bool {
     use conemarch::formula::Formula;
-    use conemarch::plan::Subject;
-    match &plan.subject {
-        Subject::Distance { shape, .. } => matches!(shape, Formula::Balls(_)),
-        Subject::Slab(_) => true,
+    use conemarch::scene::Scene;
+    match &plan.scene {
+        Scene::Distance(DistanceSettings { formula: shape, .. }) => {
+            matches!(shape, Formula::Balls(_))
+        }
+        Scene::Slab(_) => true,
         // Traced exactly: there are no tiny steps to compare with.
-        Subject::Heightfield(_) => false,
+        Scene::Heightfield(_) => false,
     }
 }
 

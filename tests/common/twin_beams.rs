@@ -9,9 +9,11 @@ use conemarch::base::work::Work;
 use conemarch::formula::Formula;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::plan::Plan;
+use conemarch::scene::AnySolid;
+use conemarch::scene::Assets;
 use conemarch::scene::distance::Relaxation;
 use conemarch::scene::slab::SlabSettings;
-use conemarch::scene::{Scene, Solid, Step};
+use conemarch::scene::{Solid, Step};
 use glam::DVec3;
 
 /// Errors of fronts, decisions, clearances, walks and hits of beams.
@@ -27,10 +29,10 @@ struct BeamErrors {
 fn beam_errors(gpu: &Plan, cpu: &Plan, steps: f64) -> BeamErrors {
     let asked = beams(cpu, 3.0, steps, 5);
     let told = probe_of(gpu, probe!("beam")).ask(&asked);
-    match cpu.scene() {
-        Scene::Distance(s) => beam_errors_of(&s, &asked, &told),
-        Scene::Heightfield(s) => beam_errors_of(&s, &asked, &told),
-        Scene::Slab(s) => beam_errors_of(&s, &asked, &told),
+    match cpu.solid(&Assets::default()).unwrap() {
+        AnySolid::Distance(s) => beam_errors_of(&s, &asked, &told),
+        AnySolid::Heightfield(s) => beam_errors_of(&s, &asked, &told),
+        AnySolid::Slab(s) => beam_errors_of(&s, &asked, &told),
     }
 }
 
@@ -155,7 +157,7 @@ fn the_part_of_a_ray_near_the_bounds_agrees() {
         shape_plan(Formula::Mandelbox(m), 6, DVec3::new(9.0, -17.0, 8.0))
     };
     let plan = of(2.0);
-    let Scene::Distance(scene) = plan.scene() else {
+    let AnySolid::Distance(scene) = plan.solid(&Assets::default()).unwrap() else {
         unreachable!("a distance scene");
     };
     let mut random = Random::new(6);
@@ -190,7 +192,7 @@ fn the_part_of_a_ray_near_the_bounds_agrees() {
     // Nothing within the bounds is cut off: where f32 starts later than f64 it is still
     // outside them, but for the rounding of a position 30 away.
     let told = probe_of(&plan, probe!("interval")).ask(&asked);
-    let bounds = scene.shape.bounds();
+    let bounds = scene.formula.bounds();
     for (q, a) in asked.iter().zip(&told) {
         let ray = beam(q);
         let (near, far) = scene.bounds_interval(&ray);

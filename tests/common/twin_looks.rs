@@ -6,10 +6,13 @@ use super::setups::{
     MOVED, balls, beam, four, lit_probe_of, look_parameter, shape_plan, slab_plan, three,
 };
 use conemarch::base::view::{Beam, footprint};
+use conemarch::pass::look::Light;
 use conemarch::pass::{fog, look, occlusion, shadow};
 use conemarch::plan::Plan;
+use conemarch::scene::AnySolid;
+use conemarch::scene::Assets;
 use conemarch::scene::slab::SlabSettings;
-use conemarch::scene::{Hit, Scene, Solid, Surface};
+use conemarch::scene::{Hit, Solid, Surface};
 use glam::DVec3;
 
 /// A change of a plan, by name.
@@ -29,7 +32,7 @@ fn palette_pigment_and_sky_agree() {
         ]
     };
     let asked: Vec<Numbers> = (0..8192).map(question).collect();
-    let light = plan.light();
+    let light = Light::of(&plan, &Assets::default());
     let errors = |gpu: &Plan| {
         let probe = Probe {
             modules: vec![look::module(), probe!("look")],
@@ -71,7 +74,7 @@ fn palette_pigment_and_sky_agree() {
 
 /// Errors of a lit point: normal, pigment, shadow, occlusion, fog.
 fn lit_errors<S: Solid>(solid: &S, cpu: &Plan, asked: &[Numbers], told: &[Numbers]) -> [Errors; 5] {
-    let light = cpu.light();
+    let light = Light::of(&cpu, &Assets::default());
     let mut all = [vec![], vec![], vec![], vec![], vec![]];
     for (q, a) in asked.iter().zip(told) {
         let ray = Beam {
@@ -122,7 +125,7 @@ fn surfaces_and_their_light_agree() {
         [four(point, t), four(point / t, grain), four(normal, 0.0)]
     };
     let asked: Vec<Numbers> = (0..8192).map(question).collect();
-    let Scene::Distance(scene) = plan.scene() else {
+    let AnySolid::Distance(scene) = plan.solid(&Assets::default()).unwrap() else {
         unreachable!("a distance scene");
     };
     let errors = |gpu: &Plan| {
