@@ -12,7 +12,7 @@ use conemarch::formula::balls::BallsUniform;
 use conemarch::formula::mandelbox::MandelboxUniform;
 use conemarch::formula::rotation::RotationUniform;
 use conemarch::heightfield::conemap::generate::uniform::{
-    GenerateUniform, MipUniform, NineUniform, PyramidUniform, Search, SlopesUniform,
+    GenerateUniform, Min3x3Uniform, PyramidUniform, SearchState,
 };
 use conemarch::heightfield::height_surface::ReliefUniform;
 use conemarch::pass::look::LookUniform;
@@ -126,7 +126,7 @@ fn layouts() -> Vec<(&'static str, Layout)> {
             levels,
             begins,
             keeps,
-            aim,
+            sector,
             steps,
             offset,
             top,
@@ -134,7 +134,7 @@ fn layouts() -> Vec<(&'static str, Layout)> {
             pad1,
             at
         }),
-        layout!(Search {
+        layout!(SearchState {
             squared,
             top,
             note,
@@ -152,27 +152,11 @@ fn layouts() -> Vec<(&'static str, Layout)> {
             first,
             pad
         }),
-        layout!(MipUniform {
-            below,
-            size,
-            below_at,
-            at,
-            pad0,
-            pad1
-        }),
-        layout!(NineUniform {
+        layout!(Min3x3Uniform {
             width,
             rows,
             wrap,
             channels
-        }),
-        layout!(SlopesUniform {
-            size,
-            wrap,
-            first,
-            rows,
-            pad0,
-            pad1
         }),
         layout!(LevelUniform {
             divisor,

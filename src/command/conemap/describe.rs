@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::heightfield::conemap::WIDEST;
 use crate::heightfield::conemap::file::{Layout, MapFile, RatioScale, Slopes};
-use crate::heightfield::conemap::generate::generator::Generator;
+use crate::heightfield::conemap::generate::generator::{Generator, Quality};
 use crate::heightfield::conemap::generate::slopes::slopes;
 use crate::heightfield::heights::wrap_name;
 use crate::heightfield::load::Loaded;
@@ -144,9 +144,9 @@ fn maker(label: Option<&str>) -> String {
         return "another program: its cones may have been rounded up".into();
     };
     let generator = by.split(',').next().and_then(Generator::named);
-    match generator.and_then(|g| g.facts().flaw) {
-        Some(flaw) => format!("{by}: some cones are too wide, {flaw}"),
-        None => by.into(),
+    match generator.map(|g| g.facts().quality) {
+        Some(Quality::Flawed(flaw)) => format!("{by}: some cones are too wide, {flaw}"),
+        _ => by.into(),
     }
 }
 

@@ -11,31 +11,33 @@ use crate::heightfield::conemap::generate::quick::Quick;
 use crate::heightfield::conemap::generate::relaxed::RaySearch;
 use crate::heightfield::conemap::generate::search::BranchAndBound;
 
+/// How the cones of a generator compare with the widest that their kind allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quality {
+    /// As wide, to the last bit.
+    Exact,
+    /// Never wider.
+    Conservative,
+    /// Sometimes wider. In words: what their cones then may contain.
+    Flawed(&'static str),
+}
+
 /// What is particular to a generator.
 pub struct GeneratorFacts {
     /// The kind of map that it makes.
     pub kind: MapKind,
+    /// How wide its cones are.
+    pub quality: Quality,
     /// How it searches.
     pub method: &'static dyn Method,
-    /// What its cones may contain in spite of their kind's promise; `None` for generators
-    /// whose cones are never too wide.
-    pub flaw: Option<&'static str>,
 }
 
 impl GeneratorFacts {
-    fn sound(kind: MapKind, method: &'static dyn Method) -> Self {
+    fn new(kind: MapKind, quality: Quality, method: &'static dyn Method) -> Self {
         Self {
             kind,
+            quality,
             method,
-            flaw: None,
-        }
-    }
-
-    fn flawed(kind: MapKind, method: &'static dyn Method, flaw: &'static str) -> Self {
-        Self {
-            kind,
-            method,
-            flaw: Some(flaw),
         }
     }
 }
@@ -45,49 +47,62 @@ named_enum! {
     pub enum Generator: GeneratorFacts {
         /// Compares every sample with the others in growing rings, until no ring can matter
         /// (Dummer 2006).
-        Brute = "brute" => GeneratorFacts::sound(MapKind::Samples, &BruteForce),
+        Brute = "brute" => GeneratorFacts::new(MapKind::Samples, Quality::Exact, &BruteForce),
         /// Looks at eight neighbours per level of the maxima, each at its nearest point
         /// (Valasek and Ban 2022, Algorithm 1): narrower than `Brute`, never wider.
-        Naive = "naive" => GeneratorFacts::sound(MapKind::Samples, &Quick::Naive),
+        Naive = "naive" => GeneratorFacts::new(
+            MapKind::Samples,
+            Quality::Conservative,
+            &Quick::Naive,
+        ),
         /// The same, each neighbour at the nearest point that finer levels have not seen
         /// (Algorithm 2, corrected).
-        Improved = "improved" => GeneratorFacts::sound(MapKind::Samples, &Quick::Improved),
-        /// The same, each neighbour at its centre: close to `Brute`, but *not* conservative.
-        Center = "center" => GeneratorFacts::flawed(
+        Improved = "improved" => GeneratorFacts::new(
             MapKind::Samples,
+            Quality::Conservative,
+            &Quick::Improved,
+        ),
+        /// The same, each neighbour at its centre: close to `Brute`, but *not* conservative.
+        Center = "center" => GeneratorFacts::new(
+            MapKind::Samples,
+            Quality::Flawed("samples may lie inside"),
             &Quick::Center,
-            "samples may lie inside",
         ),
         /// `Brute` by branch and bound over the maxima: equal to the last bit.
-        Exact = "exact" => GeneratorFacts::sound(
+        Exact = "exact" => GeneratorFacts::new(
             MapKind::Samples,
+            Quality::Exact,
             &BranchAndBound { sectors: &[Sector::All], falling_only: false },
         ),
         /// Four cones per sample, one per side, by branch and bound.
-        Quad = "quad" => GeneratorFacts::sound(
+        Quad = "quad" => GeneratorFacts::new(
             MapKind::Quad,
+            Quality::Exact,
             &BranchAndBound { sectors: &Sector::SIDES, falling_only: false },
         ),
         /// Relaxed cones by a search along rays (Policarpo and Oliveira 2007, Listing
         /// 18-2): unsound at any number of steps.
-        RelaxedSearch = "relaxed-search" => GeneratorFacts::flawed(
+        RelaxedSearch = "relaxed-search" => GeneratorFacts::new(
             MapKind::Relaxed,
+            Quality::Flawed("rays may cross twice"),
             &RaySearch,
-            "rays may cross twice",
         ),
         /// Relaxed cones by the rule of falling edges, by branch and bound.
-        RelaxedExact = "relaxed-exact" => GeneratorFacts::sound(
+        RelaxedExact = "relaxed-exact" => GeneratorFacts::new(
             MapKind::Relaxed,
+            Quality::Exact,
             &BranchAndBound { sectors: &Sector::QUADRANTS, falling_only: true },
         ),
         /// Cones over cells, for the exact tracer.
-        Walk = "walk" => GeneratorFacts::sound(
+        Walk = "walk" => GeneratorFacts::new(
             MapKind::Walk,
+            Quality::Exact,
             &BranchAndBound { sectors: &[Sector::All], falling_only: false },
         ),
         /// The same, limited only by cells that fall away behind.
-        WalkRelaxed = "walk-relaxed" => GeneratorFacts::sound(
+        WalkRelaxed = "walk-relaxed" => GeneratorFacts::new(
             MapKind::WalkRelaxed,
+            Quality::Exact,
             &BranchAndBound { sectors: &Sector::QUADRANTS, falling_only: true },
         ),
     }

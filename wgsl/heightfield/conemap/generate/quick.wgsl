@@ -122,7 +122,7 @@ fn quick_block(axis: u32, before: QuickNode, own: QuickNode, after: QuickNode) -
 }
 
 /// All neighbours of all levels at once: at most 8 times 13, less than a dispatch's.
-fn work(place: vec2<u32>, s: ptr<function, Search>) {
+fn work(place: vec2<u32>, s: ptr<function, SearchState>) {
     // Seen before: only the place itself. First corner, then last.
     var seen = vec4<i32>(vec2<i32>(place), vec2<i32>(place));
     for (var level = 0u; level < params.levels; level++) {

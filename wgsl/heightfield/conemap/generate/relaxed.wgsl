@@ -18,7 +18,7 @@ fn exit_cost(squared: u32, entry: f32, step: u32) -> f32 {
 }
 
 /// The cost of what an earlier dispatch found.
-fn cost_kept(s: Search) -> f32 {
+fn cost_kept(s: SearchState) -> f32 {
     return exit_cost(s.squared, s.top, s.note);
 }
 
@@ -44,7 +44,7 @@ fn surface_height(p: vec2<f32>) -> f32 {
 
 /// Follows the ray through a sample to where it comes out. Each step counts as four
 /// rounds, one per sample read.
-fn ring_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, Search>) -> u32 {
+fn ring_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, SearchState>) -> u32 {
     let entry = ring_height(place, step);
     let rise = entry - apex;
     let squared = u32(step.x * step.x + step.y * step.y);

@@ -15,7 +15,7 @@ fn ring_span(axis: u32, place: u32) -> vec2<i32> {
 }
 
 /// Scans on until no ring can matter, or until the rounds are used up.
-fn work(place: vec2<u32>, s: ptr<function, Search>) {
+fn work(place: vec2<u32>, s: ptr<function, SearchState>) {
     let x = ring_span(0u, place.x);
     let y = ring_span(1u, place.y);
     let last = max(max(-x.x, x.y), max(-y.x, y.y));

@@ -30,7 +30,7 @@ fn by_distance(mask: u32, side: u32) -> u32 {
 
 /// Looks at the four children of a node. Places are taken into account at once; of nodes
 /// those worth a visit are returned, one bit each.
-fn examine(place: vec2<u32>, node: vec2<u32>, level: u32, s: ptr<function, Search>) -> u32 {
+fn examine(place: vec2<u32>, node: vec2<u32>, level: u32, s: ptr<function, SearchState>) -> u32 {
     let width = ((params.size.x - 1u) >> level) + 1u;
     let tops = tiles[params.at[level >> 2u][level & 3u] + node.y * width + node.x];
     let rises = tops - apex;
@@ -92,7 +92,7 @@ fn tile_beside(axis: u32, place: u32) -> u32 {
 }
 
 /// Searches on until the end, or until its rounds are used up.
-fn work(place: vec2<u32>, s: ptr<function, Search>) {
+fn work(place: vec2<u32>, s: ptr<function, SearchState>) {
     // The level up to whose ancestor everything is done, and the node looked at last.
     var climbed = (*s).stage & 31u;
     var level = (*s).stage >> 5u;

@@ -39,7 +39,7 @@ struct GenerateUniform {
 }
 
 /// Where a place stands.
-struct Search {
+struct SearchState {
     /// What bounds the cone: squared distance, and height, which is below 0 for nothing.
     squared: u32,
     top: f32,
@@ -60,7 +60,7 @@ const SEARCH_DONE = 0xffffffffu;
 /// Heights of samples, or apexes of cells, row by row.
 @group(0) @binding(1) var<storage, read> heights: array<f32>;
 /// One per place of the band.
-@group(0) @binding(3) var<storage, read_write> searches: array<Search>;
+@group(0) @binding(3) var<storage, read_write> searches: array<SearchState>;
 
 var<private> params: GenerateUniform;
 /// Apex of this place's cone, and the least cost so far.
