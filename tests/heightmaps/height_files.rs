@@ -78,115 +78,52 @@ fn a_file_of_any_kind_is_read() {
     let depth = vec![("A", two(0.5)), ("R", two(0.1)), ("depth.Z", two(0.7))];
     let named = vec![("Y", two(0.5)), ("height", two(0.25)), ("Z", two(0.7))];
     let half = FlatSamples::F16(vec![exr::prelude::f16::from_f32(0.5); 2]);
-    // Each with its heights, and a word of the note on what is left out, if there is one.
-    let files: [(&str, Vec<u8>, &[f32], &str); 18] = [
-        ("grey.png", grey([2, 1], &[0, 51]), &[0.0, 0.2], ""),
-        (
-            "deep.png",
-            png([2, 1], Grayscale, sixteen, &deep),
-            &[0.2, 1.0],
-            "",
-        ),
-        // One bit, rows from the highest: white, black, white.
-        (
-            "bit.png",
-            png([3, 1], Grayscale, BitDepth::One, &[0b1010_0000]),
-            &[1.0, 0.0, 1.0],
-            "",
-        ),
-        (
-            "palette.png",
-            png([2, 1], Indexed, eight, &[1, 2]),
-            &[0.2, 1.0],
-            "",
-        ),
-        (
-            "even.png",
-            png([1, 2], Rgb, eight, &[51, 51, 51, 255, 255, 255]),
-            &[0.2, 1.0],
-            "",
-        ),
-        (
-            "red.png",
-            png([1, 1], Rgb, eight, &[51, 0, 255]),
-            &[0.2],
-            "red",
-        ),
-        // Alpha is not a height, and full alpha needs no note.
-        (
-            "ga.png",
-            png([2, 1], GrayscaleAlpha, sixteen, &half_seen),
-            &[0.2, 1.0],
-            "alpha",
-        ),
-        (
-            "full.png",
-            png([2, 1], GrayscaleAlpha, sixteen, &full),
-            &[0.2, 1.0],
-            "",
-        ),
-        (
-            "rgba.png",
-            png([1, 1], Rgba, sixteen, &rgba),
-            &[0.2],
-            "alpha",
-        ),
-        // An EXR has its heights in the channel that says so.
-        ("rgb.exr", exr([2, 1], rgb), &[0.1, 0.0], "R is the height"),
-        (
-            "z.exr",
-            exr([2, 1], depth),
-            &[0.7, 0.0],
-            "depth.Z is the height",
-        ),
-        (
-            "named.exr",
-            exr([1, 2], named),
-            &[0.25, 0.0],
-            "height is the height",
-        ),
-        (
-            "half.exr",
-            exr([2, 1], vec![("lonely", half)]),
-            &[0.5, 0.5],
-            "",
-        ),
-        (
-            "8.tif",
-            tiff::<colortype::Gray8>([2, 1], &[0, 51]),
-            &[0.0, 0.2],
-            "",
-        ),
-        (
-            "16.tif",
-            tiff::<colortype::Gray16>([2, 1], &[13107, 65535]),
-            &[0.2, 1.0],
-            "",
-        ),
-        (
-            "float.tif",
-            tiff::<colortype::Gray32Float>([2, 1], &[0.2, 0.75]),
-            &[0.2, 0.75],
-            "",
-        ),
-        (
-            "rgb.tif",
-            tiff::<colortype::RGB8>([2, 1], &[51, 1, 2, 255, 3, 4]),
-            &[0.2, 1.0],
-            "first",
-        ),
-        // Heights within 0 to 1 stay as they are.
-        ("dent-2x1.raw", raw(&[0.4, 0.5]), &[0.4, 0.5], ""),
-    ];
-    for (name, bytes, heights, word) in files {
+    // Checks the heights of a file, and that a note has a word, or that there is no note.
+    let check = |name: &str, bytes: Vec<u8>, heights: &[f32], word: &str| {
         folder.write(name, bytes);
         assert_eq!(values(&folder, name), heights, "{name}");
         let note = note(&folder, name);
-        assert!(
-            note.contains(word) && note.is_empty() == word.is_empty(),
-            "{name}: {note}"
-        );
-    }
+        let right = note.contains(word) && note.is_empty() == word.is_empty();
+        assert!(right, "{name}: {note}");
+    };
+    check("grey.png", grey([2, 1], &[0, 51]), &[0.0, 0.2], "");
+    let file = png([2, 1], Grayscale, sixteen, &deep);
+    check("deep.png", file, &[0.2, 1.0], "");
+    // One bit, rows from the highest: white, black, white.
+    let file = png([3, 1], Grayscale, BitDepth::One, &[0b1010_0000]);
+    check("bit.png", file, &[1.0, 0.0, 1.0], "");
+    let file = png([2, 1], Indexed, eight, &[1, 2]);
+    check("palette.png", file, &[0.2, 1.0], "");
+    let file = png([1, 2], Rgb, eight, &[51, 51, 51, 255, 255, 255]);
+    check("even.png", file, &[0.2, 1.0], "");
+    let file = png([1, 1], Rgb, eight, &[51, 0, 255]);
+    check("red.png", file, &[0.2], "red");
+    // Alpha is not a height, and full alpha needs no note.
+    let file = png([2, 1], GrayscaleAlpha, sixteen, &half_seen);
+    check("ga.png", file, &[0.2, 1.0], "alpha");
+    let file = png([2, 1], GrayscaleAlpha, sixteen, &full);
+    check("full.png", file, &[0.2, 1.0], "");
+    let file = png([1, 1], Rgba, sixteen, &rgba);
+    check("rgba.png", file, &[0.2], "alpha");
+    // An EXR has its heights in the channel that says so.
+    let file = exr([2, 1], rgb);
+    check("rgb.exr", file, &[0.1, 0.0], "R is the height");
+    let file = exr([2, 1], depth);
+    check("z.exr", file, &[0.7, 0.0], "depth.Z is the height");
+    let file = exr([1, 2], named);
+    check("named.exr", file, &[0.25, 0.0], "height is the height");
+    let file = exr([2, 1], vec![("lonely", half)]);
+    check("half.exr", file, &[0.5, 0.5], "");
+    let file = tiff::<colortype::Gray8>([2, 1], &[0, 51]);
+    check("8.tif", file, &[0.0, 0.2], "");
+    let file = tiff::<colortype::Gray16>([2, 1], &[13107, 65535]);
+    check("16.tif", file, &[0.2, 1.0], "");
+    let file = tiff::<colortype::Gray32Float>([2, 1], &[0.2, 0.75]);
+    check("float.tif", file, &[0.2, 0.75], "");
+    let file = tiff::<colortype::RGB8>([2, 1], &[51, 1, 2, 255, 3, 4]);
+    check("rgb.tif", file, &[0.2, 1.0], "first");
+    // Heights within 0 to 1 stay as they are.
+    check("dent-2x1.raw", raw(&[0.4, 0.5]), &[0.4, 0.5], "");
     let uv = vec![("U", two(0.5)), ("V", two(0.5))];
     folder.write("uv.exr", exr([2, 1], uv));
     refused(&folder, "uv.exr", &["channels U, V", "rename"]);
