@@ -206,13 +206,7 @@ impl Writing {
                 "an EXR holds everything in 32 bits; leave out {option}, or write a .png"
             )));
         }
-        if let Some(why) = layout.lacks(kind) {
-            let layout = layout.name();
-            return Err(of_map(MapError::Layout {
-                layout,
-                why: why.into(),
-            }));
-        }
+        layout.check(kind).map_err(of_map)?;
         for (is_given, option, whose, owner) in [
             (self.depth.is_some(), "--depth", "normals", Layout::Relief),
             (self.slopes.is_some(), "--slopes", "slopes", Layout::Dummer),

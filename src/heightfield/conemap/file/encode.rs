@@ -20,13 +20,8 @@ pub(crate) const SIDES: [&str; 4] = ["ratio.E", "ratio.W", "ratio.S", "ratio.N"]
 /// The layout cannot hold such a map.
 pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, MapError> {
     let layout = format.layout;
-    let fail = |why: String| MapError::Layout {
-        layout: layout.name(),
-        why,
-    };
-    if let Some(why) = layout.lacks(file.map.kind) {
-        return Err(fail(why.into()));
-    }
+    let fail = |why: String| layout.error(why);
+    layout.check(file.map.kind)?;
     let mut format = *format;
     if layout == Layout::Full {
         // Small numbers in f32 are as exact as large ones.

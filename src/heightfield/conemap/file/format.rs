@@ -18,6 +18,7 @@
 
 use crate::base::named::named_enum;
 use crate::heightfield::conemap::MapKind;
+use crate::heightfield::conemap::file::error::MapError;
 use crate::heightfield::conemap::file::rounding::Steps;
 
 /// What is particular to a layout.
@@ -59,6 +60,21 @@ impl Layout {
             MapKind::Relaxed => Self::Relief,
             MapKind::Quad => Self::Quad,
             MapKind::Walk | MapKind::WalkRelaxed => Self::Pair,
+        }
+    }
+
+    /// Checks that the layout can hold a kind of map.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn check(self, kind: MapKind) -> Result<(), MapError> {
+        self.lacks(kind).map_or(Ok(()), |why| Err(self.error(why)))
+    }
+
+    pub(crate) fn error(self, why: impl Into<String>) -> MapError {
+        MapError::Layout {
+            layout: self.name(),
+            why: why.into(),
         }
     }
 

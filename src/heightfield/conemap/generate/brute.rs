@@ -12,17 +12,12 @@ use crate::heightfield::conemap::generate::method::{Apex, Method};
 use crate::heightfield::conemap::generate::rings::rings;
 use crate::heightfield::conemap::generate::search::Best;
 use crate::heightfield::conemap::generate::task::MapTask;
-use crate::heightfield::heights::{Heights, Patches};
 use crate::wgsl;
 
 /// The search in rings.
 pub struct BruteForce;
 
 impl Method for BruteForce {
-    fn pyramids(&self, _: &Heights, _: Option<Patches>, _: &[f32]) -> Vec<Vec<f32>> {
-        Vec::new()
-    }
-
     fn modules(&self, task: &MapTask<'_>) -> Vec<Module> {
         vec![
             task.cost().module(1.0),

@@ -164,3 +164,47 @@ impl GridDistance {
         least.map(|n| n - u32::from(self.cells))
     }
 }
+
+/// Places along an axis of the unrolled plane, both ends included; empty if the second
+/// is less.
+pub type Interval = [i64; 2];
+
+/// The places under a node of a level along an axis, by the node's index on the unrolled
+/// plane; `None` beyond a border. With it its index on the grid.
+pub fn node(axis: Axis, level: u32, i: i64) -> Option<(u32, Interval)> {
+    let n = i64::from(axis.count);
+    let nodes = ((n - 1) >> level) + 1;
+    if !axis.wrap && !(0..nodes).contains(&i) {
+        return None;
+    }
+    let (turn, own) = (i.div_euclid(nodes), i.rem_euclid(nodes));
+    let low = own << level;
+    let high = (low + (1 << level) - 1).min(n - 1);
+    Some((own as u32, [low + turn * n, high + turn * n]))
+}
+
+/// A node next to the one that holds a place.
+pub struct Neighbour {
+    /// Its index on the grid.
+    pub at: [u32; 2],
+    /// The places under it along each axis, on the unrolled plane.
+    pub covers: [Interval; 2],
+    /// Where it lies: -1, 0 or 1 along each axis.
+    pub step: [i64; 2],
+}
+
+/// The neighbours of the node of a level that holds a place, at most eight. A node across a
+/// wrapping border may be its own neighbour, which is left out.
+pub fn neighbours(axes: [Axis; 2], level: u32, place: [u32; 2]) -> impl Iterator<Item = Neighbour> {
+    let own = place.map(|i| i >> level);
+    (0..9).filter_map(move |i| {
+        let step = [i % 3 - 1, i / 3 - 1];
+        let at = |a: usize| node(axes[a], level, i64::from(own[a]) + step[a]);
+        let ((x, along), (y, across)) = (at(0)?, at(1)?);
+        ([x, y] != own).then_some(Neighbour {
+            at: [x, y],
+            covers: [along, across],
+            step,
+        })
+    })
+}

@@ -25,9 +25,11 @@ pub trait Method: Sync {
     }
 
     /// The values of which pyramids of maxima are needed: none, one list for all searches,
-    /// or one list for each. `values` are the heights of the places, and `cells` says what
-    /// they are cells of, if they are cells.
-    fn pyramids(&self, heights: &Heights, cells: Option<Patches>, values: &[f32]) -> Vec<Vec<f32>>;
+    /// or one list for each. Given are the height map, what the places are cells of (if they
+    /// are cells), and the heights of the places.
+    fn pyramids(&self, _: &Heights, _: Option<Patches>, _values: &[f32]) -> Vec<Vec<f32>> {
+        Vec::new()
+    }
 
     /// Whether planes above the heights speed it up.
     fn uses_planes(&self) -> bool {

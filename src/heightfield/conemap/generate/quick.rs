@@ -19,6 +19,7 @@
 
 use crate::base::shader::Module;
 use crate::heightfield::conemap::generate::cost::Cost;
+use crate::heightfield::conemap::generate::grid_distance::{Interval, Neighbour, neighbours, node};
 use crate::heightfield::conemap::generate::method::{Apex, Method};
 use crate::heightfield::conemap::generate::search::Best;
 use crate::heightfield::conemap::generate::task::MapTask;
@@ -35,24 +36,6 @@ pub enum Quick {
     Improved,
     /// At its centre.
     Center,
-}
-
-/// Places along an axis of the unrolled plane, both ends included; empty if the second
-/// is less.
-type Interval = [i64; 2];
-
-/// The places under a node of a level along an axis, by the node's index on the unrolled
-/// plane; `None` beyond a border. With it its index on the grid.
-fn node(axis: Axis, level: u32, i: i64) -> Option<(u32, Interval)> {
-    let n = i64::from(axis.count);
-    let nodes = ((n - 1) >> level) + 1;
-    if !axis.wrap && !(0..nodes).contains(&i) {
-        return None;
-    }
-    let (turn, own) = (i.div_euclid(nodes), i.rem_euclid(nodes));
-    let low = own << level;
-    let high = (low + (1 << level) - 1).min(n - 1);
-    Some((own as u32, [low + turn * n, high + turn * n]))
 }
 
 /// What the nodes next to the one that holds a place cover along an axis, with it.
@@ -160,23 +143,13 @@ impl Method for Quick {
         let (axes, place) = (task.axes(), from.place);
         let mut seen = place.map(|i| [i64::from(i); 2]);
         for (level, maxima) in (0_u32..).zip(&task.mips[0].levels) {
-            let own = place.map(|i| i >> level);
-            for i in 0..9 {
-                let step = [i64::from(i % 3) - 1, i64::from(i / 3) - 1];
-                let at = |a: usize| node(axes[a], level, i64::from(own[a]) + step[a]);
-                let (Some((x, along)), Some((y, across))) = (at(0), at(1)) else {
-                    continue;
-                };
-                // A node that is its own neighbour holds nothing new.
-                if [x, y] == own {
-                    continue;
-                }
+            for Neighbour { at, covers, step } in neighbours(axes, level, place) {
                 best.nodes += 1;
-                let rise = f64::from(maxima.at(x, y)) - from.height;
+                let rise = f64::from(maxima.at(at[0], at[1])) - from.height;
                 if rise <= 0.0 {
                     continue;
                 }
-                if let Some(quarters) = self.quarters(axes, place, [along, across], step, seen) {
+                if let Some(quarters) = self.quarters(axes, place, covers, step, seen) {
                     best.cost = best.cost.min(cost(quarters, rise));
                 }
             }

@@ -20,7 +20,7 @@ use crate::heightfield::conemap::generate::rings::rings;
 use crate::heightfield::conemap::generate::search::Best;
 use crate::heightfield::conemap::generate::task::MapTask;
 use crate::heightfield::conemap::generate::uniform::SearchState;
-use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::heights::Patches;
 use crate::wgsl;
 use glam::DVec2;
 
@@ -31,10 +31,6 @@ pub const START: f64 = 1.001;
 pub struct RaySearch;
 
 impl Method for RaySearch {
-    fn pyramids(&self, _: &Heights, _: Option<Patches>, _: &[f32]) -> Vec<Vec<f32>> {
-        Vec::new()
-    }
-
     fn modules(&self, task: &MapTask<'_>) -> Vec<Module> {
         vec![
             task.cost().module(1.0),

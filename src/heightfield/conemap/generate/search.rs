@@ -13,7 +13,9 @@
 use crate::base::shader::Module;
 use crate::heightfield::conemap::generate::cost::Cost;
 use crate::heightfield::conemap::generate::falling;
-use crate::heightfield::conemap::generate::grid_distance::{GridDistance, Places, Sector};
+use crate::heightfield::conemap::generate::grid_distance::{
+    GridDistance, Places, Sector, neighbours,
+};
 use crate::heightfield::conemap::generate::method::{Apex, Method};
 use crate::heightfield::conemap::generate::planes::Planes;
 use crate::heightfield::conemap::generate::task::MapTask;
@@ -116,7 +118,9 @@ impl Search<'_> {
         if most <= 0.0 {
             return;
         }
-        self.seed(best);
+        for neighbour in neighbours(self.distance.axes, 0, self.from.place) {
+            self.consider(neighbour.at, best);
+        }
         // Level 0 is done: the siblings of a place are neighbours of it.
         for level in 1..self.mip.levels.len() {
             let own = self.from.place.map(|i| i >> level);
@@ -128,30 +132,6 @@ impl Search<'_> {
             }
             let parent = own.map(|i| i / 2);
             self.children(level, parent, Some(own), best);
-        }
-    }
-
-    /// The eight neighbours.
-    fn seed(&self, best: &mut Best) {
-        let from = self.from.place;
-        let along = |a: usize, step: u32| {
-            let axis = self.distance.axes[a];
-            // Steps are -1, 0 and 1, moved up by one.
-            match (from[a] + step).checked_sub(1) {
-                Some(i) if i < axis.count => Some(i),
-                Some(_) => axis.wrap.then_some(0),
-                None => axis.wrap.then(|| axis.count - 1),
-            }
-        };
-        for dy in 0..3 {
-            for dx in 0..3 {
-                let (Some(x), Some(y)) = (along(0, dx), along(1, dy)) else {
-                    continue;
-                };
-                if [x, y] != from {
-                    self.consider([x, y], best);
-                }
-            }
         }
     }
 
