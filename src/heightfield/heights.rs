@@ -228,18 +228,15 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Steps from a place to the nearest of the places `low..=high`, across the border where
-    /// that is shorter. 0 if it is one of them.
-    pub fn gap(self, from: u32, low: u32, high: u32) -> u32 {
-        let ahead = low.saturating_sub(from);
-        let back = from.saturating_sub(high);
-        let direct = ahead.max(back);
-        if !self.wrap || direct == 0 {
-            return direct;
-        }
-        // One way round: on past the end to `low`, or back past the start to `high`.
-        let round_up = low + self.count - from;
-        let round_down = from + self.count - high;
-        direct.min(round_up).min(round_down)
+    /// Steps from a place to the nearest of the places `low..=high`, which may lie beyond the
+    /// grid: across the border where that is shorter. 0 if it is one of them.
+    pub fn gap(self, from: u32, [low, high]: [i64; 2]) -> u32 {
+        let (from, n) = (i64::from(from), i64::from(self.count));
+        let to = |from: i64| (low - from).max(from - high).max(0);
+        let steps = match self.wrap {
+            true => to(from).min(to(from + n)).min(to(from - n)),
+            false => to(from),
+        };
+        steps as u32
     }
 }

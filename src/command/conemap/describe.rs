@@ -70,8 +70,21 @@ fn percent(count: usize, all: usize) -> String {
     }
 }
 
-fn row(text: &mut String, name: &str, what: &str) {
-    let _ = writeln!(text, "  {name:<9} {what}");
+/// A report: a name, rows of what is known, and a histogram with its title.
+fn report(
+    name: &str,
+    rows: &[(&str, String)],
+    title: &str,
+    bars: &[(String, usize)],
+    all: usize,
+) -> String {
+    let mut text = format!("{name}\n");
+    for (name, what) in rows {
+        let _ = writeln!(text, "  {name:<9} {what}");
+    }
+    let _ = writeln!(text, "\n  {title}");
+    histogram(&mut text, bars, all);
+    text
 }
 
 /// Rows of a histogram: what, how many of how many.
@@ -91,10 +104,9 @@ fn histogram(text: &mut String, rows: &[(String, usize)], all: usize) {
 
 /// Describes a cone map.
 pub fn describe_map(name: &str, file: &MapFile) -> String {
-    let mut text = format!("{name}\n");
     let (map, label, scale) = (&file.map, &file.label, file.label.scale);
     let ([w, h], [sw, sh]) = (map.size, label.samples);
-    let (kind, promise) = (map.kind.name(), map.kind.facts().promise);
+    let (word, promise) = (map.kind.name(), map.kind.facts().promise);
     let mut heights = format!("{sw} x {sh} samples, wrap {}", wrap_name(map.wrap));
     if map.kind.over_cells() {
         let (surface, offset) = (label.patches.surface(), figure(map.offset));
@@ -105,8 +117,8 @@ pub fn describe_map(name: &str, file: &MapFile) -> String {
     }
     let ratios = Sorted::new(map.ratios.iter().copied());
     let (all, mean) = (ratios.0.len(), file.mean_share());
-    for (name, what) in [
-        ("cone map", format!("{w} x {h}, kind {kind}: {promise}")),
+    let rows = [
+        ("cone map", format!("{w} x {h}, kind {word}: {promise}")),
         ("file", format_of(file)),
         ("heights", heights),
         ("made by", maker(label.generator.as_deref())),
@@ -130,12 +142,14 @@ pub fn describe_map(name: &str, file: &MapFile) -> String {
                 figure(scale)
             ),
         ),
-    ] {
-        row(&mut text, name, &what);
-    }
-    let _ = writeln!(text, "\n  ratios in texels");
-    histogram(&mut text, &octaves(&ratios, scale), all);
-    text
+    ];
+    report(
+        name,
+        &rows,
+        "ratios in texels",
+        &octaves(&ratios, scale),
+        all,
+    )
 }
 
 /// What made a map, with a warning if its cones may be too wide.
@@ -221,40 +235,33 @@ fn short(x: f64) -> String {
 
 /// Describes a height map.
 pub fn describe_heights(name: &str, loaded: &Loaded) -> String {
-    let mut text = format!("{name}\n");
     let heights = &loaded.heights;
-    let [w, h] = heights.size();
-    let what = format!(
-        "{w} x {h} samples, wrap {}, {}",
-        wrap_name(heights.wrap()),
-        loaded.form
-    );
-    row(&mut text, "heights", &what);
+    let ([w, h], wrap) = (heights.size(), wrap_name(heights.wrap()));
     let sorted = Sorted::new(heights.data().iter().map(|z| f64::from(*z)));
-    let range = format!(
-        "from {} to {}, mean {}, median {}",
-        figure(sorted.at(0.0)),
-        figure(sorted.at(1.0)),
-        figure(sorted.mean()),
-        figure(sorted.at(0.5))
-    );
-    row(&mut text, "", &range);
+    let [low, high, median] = [0.0, 1.0, 0.5].map(|share| figure(sorted.at(share)));
     let steep = Sorted::new(slopes(heights).into_iter().map(steepness));
-    let what = format!(
-        "mean {} of the height per texel, steepest {}",
-        figure(steep.mean()),
-        figure(steep.at(1.0))
-    );
-    row(&mut text, "slopes", &what);
-    let _ = writeln!(text, "\n  heights");
+    let [mean, mean_slope] = [&sorted, &steep].map(|s| figure(s.mean()));
+    let steepest = figure(steep.at(1.0));
+    let rows = [
+        (
+            "heights",
+            format!("{w} x {h} samples, wrap {wrap}, {}", loaded.form),
+        ),
+        (
+            "",
+            format!("from {low} to {high}, mean {mean}, median {median}"),
+        ),
+        (
+            "slopes",
+            format!("mean {mean_slope} of the height per texel, steepest {steepest}"),
+        ),
+    ];
     let bound = |i: usize| i as f64 / 10.0;
-    let rows: Vec<(String, usize)> = (0..10)
-        .map(|i| {
-            let end = if i == 9 { f64::INFINITY } else { bound(i + 1) };
-            let n = sorted.under(end) - sorted.under(bound(i));
-            (format!("{:.1} to {:.1}", bound(i), bound(i + 1)), n)
-        })
-        .collect();
-    histogram(&mut text, &rows, sorted.0.len());
-    text
+    let bars = (0..10).map(|i| {
+        let end = if i == 9 { f64::INFINITY } else { bound(i + 1) };
+        let n = sorted.under(end) - sorted.under(bound(i));
+        (format!("{:.1} to {:.1}", bound(i), bound(i + 1)), n)
+    });
+    let bars: Vec<_> = bars.collect();
+    report(name, &rows, "heights", &bars, sorted.0.len())
 }

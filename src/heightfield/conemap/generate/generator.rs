@@ -3,13 +3,12 @@
 use thiserror::Error;
 
 use crate::base::named::named_enum;
-use crate::heightfield::conemap::MapKind;
+use crate::heightfield::conemap::MapKind::{self, Relaxed, Samples};
 use crate::heightfield::conemap::generate::brute::BruteForce;
-use crate::heightfield::conemap::generate::grid_distance::Sector;
 use crate::heightfield::conemap::generate::method::Method;
 use crate::heightfield::conemap::generate::quick::Quick;
 use crate::heightfield::conemap::generate::relaxed::RaySearch;
-use crate::heightfield::conemap::generate::search::BranchAndBound;
+use crate::heightfield::conemap::generate::search;
 
 /// How the cones of a generator compare with the widest that their kind allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +20,8 @@ pub enum Quality {
     /// Sometimes wider. In words: what their cones then may contain.
     Flawed(&'static str),
 }
+
+use Quality::{Conservative, Exact, Flawed};
 
 /// What is particular to a generator.
 pub struct GeneratorFacts {
@@ -47,64 +48,31 @@ named_enum! {
     pub enum Generator: GeneratorFacts {
         /// Compares every sample with the others in growing rings, until no ring can matter
         /// (Dummer 2006).
-        Brute = "brute" => GeneratorFacts::new(MapKind::Samples, Quality::Exact, &BruteForce),
+        Brute = "brute" => GeneratorFacts::new(Samples, Exact, &BruteForce),
         /// Looks at eight neighbours per level of the maxima, each at its nearest point
         /// (Valasek and Ban 2022, Algorithm 1): narrower than `Brute`, never wider.
-        Naive = "naive" => GeneratorFacts::new(
-            MapKind::Samples,
-            Quality::Conservative,
-            &Quick::Naive,
-        ),
+        Naive = "naive" => GeneratorFacts::new(Samples, Conservative, &Quick::Naive),
         /// The same, each neighbour at the nearest point that finer levels have not seen
         /// (Algorithm 2, corrected).
-        Improved = "improved" => GeneratorFacts::new(
-            MapKind::Samples,
-            Quality::Conservative,
-            &Quick::Improved,
-        ),
+        Improved = "improved" => GeneratorFacts::new(Samples, Conservative, &Quick::Improved),
         /// The same, each neighbour at its centre: close to `Brute`, but *not* conservative.
-        Center = "center" => GeneratorFacts::new(
-            MapKind::Samples,
-            Quality::Flawed("samples may lie inside"),
-            &Quick::Center,
-        ),
+        Center = "center" =>
+            GeneratorFacts::new(Samples, Flawed("samples may lie inside"), &Quick::Center),
         /// `Brute` by branch and bound over the maxima: equal to the last bit.
-        Exact = "exact" => GeneratorFacts::new(
-            MapKind::Samples,
-            Quality::Exact,
-            &BranchAndBound { sectors: &[Sector::All], falling_only: false },
-        ),
+        Exact = "exact" => GeneratorFacts::new(Samples, Exact, &search::ALL),
         /// Four cones per sample, one per side, by branch and bound.
-        Quad = "quad" => GeneratorFacts::new(
-            MapKind::Quad,
-            Quality::Exact,
-            &BranchAndBound { sectors: &Sector::SIDES, falling_only: false },
-        ),
+        Quad = "quad" => GeneratorFacts::new(MapKind::Quad, Exact, &search::SIDES),
         /// Relaxed cones by a search along rays (Policarpo and Oliveira 2007, Listing
         /// 18-2): unsound at any number of steps.
-        RelaxedSearch = "relaxed-search" => GeneratorFacts::new(
-            MapKind::Relaxed,
-            Quality::Flawed("rays may cross twice"),
-            &RaySearch,
-        ),
+        RelaxedSearch = "relaxed-search" =>
+            GeneratorFacts::new(Relaxed, Flawed("rays may cross twice"), &RaySearch),
         /// Relaxed cones by the rule of falling edges, by branch and bound.
-        RelaxedExact = "relaxed-exact" => GeneratorFacts::new(
-            MapKind::Relaxed,
-            Quality::Exact,
-            &BranchAndBound { sectors: &Sector::QUADRANTS, falling_only: true },
-        ),
+        RelaxedExact = "relaxed-exact" => GeneratorFacts::new(Relaxed, Exact, &search::FALLING),
         /// Cones over cells, for the exact tracer.
-        Walk = "walk" => GeneratorFacts::new(
-            MapKind::Walk,
-            Quality::Exact,
-            &BranchAndBound { sectors: &[Sector::All], falling_only: false },
-        ),
+        Walk = "walk" => GeneratorFacts::new(MapKind::Walk, Exact, &search::ALL),
         /// The same, limited only by cells that fall away behind.
-        WalkRelaxed = "walk-relaxed" => GeneratorFacts::new(
-            MapKind::WalkRelaxed,
-            Quality::Exact,
-            &BranchAndBound { sectors: &Sector::QUADRANTS, falling_only: true },
-        ),
+        WalkRelaxed = "walk-relaxed" =>
+            GeneratorFacts::new(MapKind::WalkRelaxed, Exact, &search::FALLING),
     }
 }
 

@@ -80,6 +80,11 @@ impl Places {
     pub fn one(at: [u32; 2]) -> Self {
         Self { low: at, high: at }
     }
+
+    /// The lowest and the highest along an axis.
+    fn along(self, axis: usize) -> Interval {
+        [self.low[axis], self.high[axis]].map(i64::from)
+    }
 }
 
 /// Steps from a place to the nearest of `low..=high` in one direction, going round
@@ -114,7 +119,7 @@ impl GridDistance {
     /// count: exact for a single place, not too far for more. `None` if none counts.
     pub fn squared(&self, from: [u32; 2], to: Places) -> Option<u32> {
         let [x, y] = match self.sector {
-            Sector::All => [0, 1].map(|a| self.axes[a].gap(from[a], to.low[a], to.high[a])),
+            Sector::All => [0, 1].map(|a| self.axes[a].gap(from[a], to.along(a))),
             Sector::Quadrant(up) => {
                 let gap = |a: usize| ahead(self.axes[a], up[a], from[a], to.low[a], to.high[a]);
                 [gap(0)?, gap(1)?]
@@ -130,7 +135,7 @@ impl GridDistance {
     fn beside(&self, a: usize, up: bool, from: [u32; 2], to: Places) -> Option<[u32; 2]> {
         let (axis, b) = (self.axes[a], 1 - a);
         let along = ahead(axis, up, from[a], to.low[a], to.high[a])?;
-        let across = self.axes[b].gap(from[b], to.low[b], to.high[b]);
+        let across = self.axes[b].gap(from[b], to.along(b));
         if along >= across {
             return Some([along, across]);
         }

@@ -54,26 +54,9 @@ fn block(axis: Axis, level: u32, from: u32) -> Interval {
     seen
 }
 
-/// Steps from a place to the nearest image of an interval.
-fn gap(axis: Axis, from: u32, at: Interval) -> u32 {
-    let from = i64::from(from);
-    let n = i64::from(axis.count);
-    let to = |turn: i64| {
-        let ([low, high], from) = (at, from + turn);
-        (low - from).max(from - high).max(0)
-    };
-    let direct = to(0);
-    let steps = if axis.wrap {
-        direct.min(to(n)).min(to(-n))
-    } else {
-        direct
-    };
-    steps as u32
-}
-
 /// The squared distance to the nearest image of a rectangle.
 fn squared(axes: [Axis; 2], from: [u32; 2], node: [Interval; 2]) -> u32 {
-    let [x, y] = [0, 1].map(|a| gap(axes[a], from[a], node[a]));
+    let [x, y] = [0, 1].map(|a| axes[a].gap(from[a], node[a]));
     x * x + y * y
 }
 

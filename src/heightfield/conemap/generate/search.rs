@@ -26,11 +26,26 @@ use crate::wgsl;
 /// Branch and bound.
 pub struct BranchAndBound {
     /// Which places each search looks at.
-    pub sectors: &'static [Sector],
-    /// Whether only places limit a cone behind which the surface falls; then the sectors are
-    /// the quadrants.
-    pub falling_only: bool,
+    sectors: &'static [Sector],
+    /// Whether a cone is only limited by places behind which the surface falls.
+    falling_only: bool,
 }
+
+/// One search for places in all directions.
+pub const ALL: BranchAndBound = BranchAndBound {
+    sectors: &[Sector::All],
+    falling_only: false,
+};
+/// A search for each side, one cone each.
+pub const SIDES: BranchAndBound = BranchAndBound {
+    sectors: &Sector::SIDES,
+    falling_only: false,
+};
+/// A search for each quadrant, where the places that limit relaxed cones differ.
+pub const FALLING: BranchAndBound = BranchAndBound {
+    sectors: &Sector::QUADRANTS,
+    falling_only: true,
+};
 
 impl BranchAndBound {
     fn distance(&self, task: &MapTask<'_>, search: usize) -> GridDistance {
