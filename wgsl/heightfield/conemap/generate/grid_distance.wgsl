@@ -1,11 +1,11 @@
-// Which places bound a cone, and how far away they are, in whole numbers: equal to the
-// twin's.
+// Which places bound a cone, and how far away they are, in whole numbers: the same numbers
+// as the twin's.
 //
-// A cone that looks to one side meets a place of a wrapping grid only at that one of its
-// images which lies there. A node is never farther away than a place under it, so that
-// skipping nodes by their distance skips no place that is near.
+// A cone that looks to one side meets a place of a wrapping grid only at the image that lies
+// on that side. A node is never farther away than a place under it, so skipping nodes by
+// their distance skips no place that is near.
 
-/// 0: all around; 1: one quadrant; 2: one side.
+/// The sector: 0 is all around, 1 is a quadrant, 2 is a side.
 override DISTANCE_SECTOR: u32;
 /// Whether places are cells, which touch their neighbours.
 override DISTANCE_OVER_CELLS: bool;

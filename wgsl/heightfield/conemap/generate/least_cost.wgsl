@@ -1,5 +1,5 @@
-// Taking places into account one by one, with an eye on ties: of two places that cost
-// the same in f32, f64 may prefer the other one.
+// Keeps the place of least cost, and marks near ties: of two places that cost the same in
+// f32, f64 may prefer the other one.
 
 /// The cost of what an earlier dispatch found.
 fn cost_kept(s: SearchState) -> f32 {

@@ -1,16 +1,16 @@
-// The 3 x 3 minimum of a cone map (Bán and others 2024): each cone as narrow as the
-// narrowest of those of its place and the eight around it. One invocation per ratio.
+// The 3 x 3 minimum of a cone map (Bán and others 2024): each cone becomes as narrow as the
+// narrowest among its place and the eight around it. One invocation per ratio.
 //
-// Ratios are f64, which few devices have. As they are not negative their bits come in their
-// own order, and the least of them is found as pairs of whole numbers, to the last bit.
+// Ratios are f64, which few devices have. They are not negative, so their bits are in the
+// order of the ratios, and the least is found as pairs of whole numbers, to the last bit.
 
 struct Min3x3Uniform {
     /// Places of a row, and rows of the band.
     width: u32,
     rows: u32,
-    /// 1 if rows come round to their start.
+    /// 1 if the horizontal axis wraps.
     wrap: u32,
-    /// Ratios to a place.
+    /// Ratios per place.
     channels: u32,
 }
 

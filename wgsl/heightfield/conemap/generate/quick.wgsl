@@ -1,9 +1,9 @@
 // Quick cone maps: the eight neighbours of a place's node at every level of the maxima.
-// Together they cover everything, and each is taken to be as near as its rule says.
+// Together they cover everything, and the rule says how near each is taken to be.
 //
 // Rectangles are on the unrolled plane, where a neighbour across a wrapping border has
 // indices below 0 or beyond the last. Distances to them are the shortest on the wrapping
-// grid again, since another image of the same places may be nearer.
+// grid, because another image of the same places may be nearer.
 
 /// 0: naive, at the nearest point; 1: improved, at the nearest point that no finer level
 /// has seen; 2: at the centre.

@@ -1,6 +1,6 @@
-// Relaxed cones by searching along rays (Listing 18-2 of Policarpo and Oliveira). What
+// Relaxed cones by a search along rays (Listing 18-2 of Policarpo and Oliveira). What
 // is kept of an exit is the sample that the ray entered at and the step at which it came
-// out; in f32 a step more or less now and then, as the rule is no exact one anyway.
+// out. In f32 that is now and then a step more or less, which the unsound rule tolerates.
 
 /// Height at which rays start, a little above the top.
 override RELAXED_START: f32;

@@ -1,9 +1,9 @@
-// All places around one, in growing square rings. What is done with a place is joined:
-// `ring_visit` tells how many rounds it took.
+// All places around one, in growing square rings. Another module says what is done with a
+// place: `ring_visit`, which returns how many rounds it took.
 //
 // Each place is visited once, at its nearest image where axes wrap, so that no corner
-// beyond two borders is missed. A ring can be the last once a place on it, as high as
-// the highest of all, would not narrow the cone: a rule in texels, for any aspect.
+// beyond two borders is missed. The search ends at a ring if a place on it, as high as the
+// highest of all, would not narrow the cone. This rule is in texels and holds for any aspect.
 
 /// The least and the greatest step from a place along an axis.
 fn ring_span(axis: u32, place: u32) -> vec2<i32> {
@@ -14,15 +14,15 @@ fn ring_span(axis: u32, place: u32) -> vec2<i32> {
     return vec2<i32>(-i32(place), n - 1 - i32(place));
 }
 
-/// Scans on until no ring can matter, or until the rounds are used up.
+/// Visits rings until none can matter, or until the rounds are used up.
 fn work(place: vec2<u32>, s: ptr<function, SearchState>) {
     let x = ring_span(0u, place.x);
     let y = ring_span(1u, place.y);
     let last = max(max(-x.x, x.y), max(-y.x, y.y));
     let most = params.top - apex;
-    // Rounds left in this dispatch. What is scanned when they end is where it goes on.
+    // Rounds left in this dispatch. The next dispatch continues where they end.
     var left = params.rounds;
-    // It goes on at this ring, this side of it, and this step along the side.
+    // It continues at this ring, this side of it, and this step along the side.
     var ring = max(i32((*s).stage), 1);
     var side = (*s).node_x;
     var done = i32((*s).pending_low);
