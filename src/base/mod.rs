@@ -5,5 +5,6 @@ pub mod key;
 pub mod named;
 pub mod shader;
 pub mod srgb;
+pub mod units;
 pub mod view;
 pub mod work;

@@ -3,6 +3,8 @@
 //! The layouts are read from the WGSL itself, so that a binding is said in one place,
 //! and resources are bound by the name of the variable, so that none can be swapped.
 
+use std::rc::Rc;
+
 use thiserror::Error;
 use wgpu::naga::{self, AddressSpace, StorageAccess};
 
@@ -41,6 +43,25 @@ struct Binding {
     index: u32,
     name: String,
     read_only: bool,
+}
+
+/// The compiled programs of a device. Each is compiled once.
+#[derive(Default)]
+pub struct Kernels(Vec<(Program, Rc<Kernel>)>);
+
+impl Kernels {
+    /// The kernel of a program, compiled now if it is new.
+    ///
+    /// # Errors
+    /// The text is wrong, or the driver refuses it.
+    pub fn get(&mut self, device: &Device, program: &Program) -> Result<Rc<Kernel>, KernelError> {
+        if let Some((_, kernel)) = self.0.iter().find(|(p, _)| p == program) {
+            return Ok(kernel.clone());
+        }
+        let kernel = Rc::new(Kernel::new(device, program)?);
+        self.0.push((program.clone(), kernel.clone()));
+        Ok(kernel)
+    }
 }
 
 /// A compiled program.
@@ -143,6 +164,27 @@ impl Kernel {
             }));
         }
         Ok(groups)
+    }
+
+    /// Runs so many workgroups over buffers by the names of their variables. The device
+    /// reports its failures when results are read.
+    ///
+    /// # Errors
+    /// A variable of the program is not among the buffers.
+    pub fn run(
+        &self,
+        device: &Device,
+        bound: &[(&str, &wgpu::Buffer)],
+        groups: [u32; 2],
+    ) -> Result<(), KernelError> {
+        let named = |name: &str| bound.iter().find(|b| b.0 == name).map(|b| b.1);
+        let bind = self.bind(device, named)?;
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        self.dispatch(&mut pass, &bind, groups);
+        drop(pass);
+        device.queue.submit([encoder.finish()]);
+        Ok(())
     }
 
     /// Encodes one dispatch of so many workgroups.

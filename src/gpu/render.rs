@@ -15,7 +15,7 @@ use crate::base::shader::Program;
 use crate::gpu::buffer::{Buffer, uniform};
 use crate::gpu::conemap::generate::Maker;
 use crate::gpu::device::Device;
-use crate::gpu::kernel::{Kernel, KernelError};
+use crate::gpu::kernel::{Kernel, KernelError, Kernels};
 use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
 use crate::pass::progress::{Progress, Watch};
@@ -29,6 +29,7 @@ use crate::scene::{AnySolid, Assets};
 use super::collect::{Bound, UNWRITTEN, collect};
 use super::dispatch::{Dispatcher, Filled, clear_count};
 pub use super::error::RenderError;
+use super::error::check_room;
 use super::job::{Job, Setup};
 
 /// How the work is cut. It never changes a picture.
@@ -70,26 +71,13 @@ fn most_steps(scene: &AnySolid) -> u32 {
     (MOST_ROUNDS_AT_ONCE / rounds).clamp(1, MOST_STEPS_AT_ONCE)
 }
 
-/// Whether a device that binds so many bytes at most has room for what a scene brings.
-fn has_room(device: &str, what: &'static str, needed: u64, most: u64) -> Result<(), RenderError> {
-    if needed <= most {
-        return Ok(());
-    }
-    Err(RenderError::TooLarge {
-        device: device.into(),
-        what,
-        needed,
-        most,
-    })
-}
-
 /// Renders plans on one device.
 pub struct Renderer {
     /// The device.
     pub device: Device,
     /// How work is cut.
     pub cutting: Cutting,
-    kernels: Vec<(Program, Rc<Kernel>)>,
+    kernels: Kernels,
     pool: HashMap<String, (u64, Rc<wgpu::Buffer>)>,
     dispatcher: Dispatcher,
 }
@@ -101,19 +89,14 @@ impl Renderer {
             dispatcher: Dispatcher::new(&device),
             device,
             cutting: Cutting::default(),
-            kernels: Vec::new(),
+            kernels: Kernels::default(),
             pool: HashMap::new(),
         }
     }
 
     /// The compiled kernel of a program.
     pub fn kernel(&mut self, program: &Program) -> Result<Rc<Kernel>, KernelError> {
-        if let Some((_, kernel)) = self.kernels.iter().find(|(p, _)| p == program) {
-            return Ok(kernel.clone());
-        }
-        let kernel = Rc::new(Kernel::new(&self.device, program)?);
-        self.kernels.push((program.clone(), kernel.clone()));
-        Ok(kernel)
+        self.kernels.get(&self.device, program)
     }
 
     /// A storage buffer of a name that is kept between calls while its size fits.
@@ -192,7 +175,7 @@ impl Renderer {
         let mut bound = Bound::new();
         let most = self.device.most_bound();
         for (name, bytes) in job.scene.twin().uniforms() {
-            has_room(&self.device.info.name, name, bytes.len() as u64, most)?;
+            check_room(&self.device.info.name, name, bytes.len() as u64, most)?;
             bound.insert(name.into(), Rc::new(uniform(&self.device, name, &bytes)));
         }
         let view = job.plan.view().uniform(job.block.origin, job.block.size);
@@ -322,24 +305,5 @@ impl Renderer {
             bound.insert(key, buffer.clone());
             bound.insert(output.name.into(), buffer);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_a_device_has_no_room_for_is_told() {
-        const MOST: u64 = 1 << 27;
-        // Half the cones of four sides over 4096 x 4096 samples fit to the byte.
-        assert!(has_room("d", "ratios", 4096 * 4096 * 2 * 4, MOST).is_ok());
-        let said = has_room("d", "maxima", MOST + 4, MOST)
-            .expect_err("no room")
-            .to_string();
-        assert_eq!(
-            said,
-            "the device `d` binds at most 134217728 bytes at once, and `maxima` of the scene needs 134217732; a smaller height map, another --device, or --device cpu would do"
-        );
     }
 }

@@ -4,26 +4,24 @@
 use std::sync::Arc;
 
 use crate::base::shader::Module;
+use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::generator::Generator;
-use crate::heightfield::conemap::{ConeMap, MapKind};
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::texture::Texture;
 use crate::wgsl;
 
 /// What may pick the hue. `brute` is missing because its map is that of `exact`.
-pub const PAINTS: &[(&str, Option<Generator>)] = &[
-    ("height", None),
-    ("naive", Some(Generator::Naive)),
-    ("improved", Some(Generator::Improved)),
-    ("center", Some(Generator::Center)),
-    ("exact", Some(Generator::Exact)),
-    ("quad", Some(Generator::Quad)),
-    ("relaxed-search", Some(Generator::RelaxedSearch)),
-    ("relaxed-exact", Some(Generator::RelaxedExact)),
-    ("walk", Some(Generator::Walk)),
-    ("walk-relaxed", Some(Generator::WalkRelaxed)),
-];
+pub const PAINTS: &[(&str, Option<Generator>)] = &{
+    // `brute` is the first generator.
+    let mut paints = [("height", None); Generator::ALL.len()];
+    let mut i = 1;
+    while i < paints.len() {
+        paints[i] = (Generator::ALL[i].name(), Some(Generator::ALL[i]));
+        i += 1;
+    }
+    paints
+};
 
 /// A number from 0 to 1 for each place of a cone map.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +44,7 @@ impl Paint {
         };
         Self {
             size: map.size,
-            over_cells: matches!(map.kind, MapKind::Walk | MapKind::WalkRelaxed),
+            over_cells: map.kind.over_cells(),
             values: map.ratios.chunks(channels).map(value).collect(),
         }
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::program;
 use crate::base::shader::Program;
-use crate::heightfield::conemap::generate::program::program_of;
+use crate::heightfield::conemap::generate::task::program_of;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::Assets;

@@ -8,7 +8,7 @@ use conemarch::formula::balls::BallsUniform;
 use conemarch::formula::mandelbox::MandelboxUniform;
 use conemarch::formula::rotation::RotationUniform;
 use conemarch::heightfield::conemap::generate::uniform::{
-    GenerateUniform, MipUniform, NineUniform, PyramidUniform, Search, SlopesUniform,
+    GenerateUniform, Min3x3Uniform, PyramidUniform, SearchState,
 };
 use conemarch::heightfield::height_surface::ReliefUniform;
 use conemarch::pass::look::LookUniform;
@@ -63,13 +63,11 @@ fn layouts() -> Vec<(&'static str, Layout)> {
         HeightfieldUniform: row_x texel row_y depth row_z far eye pad0 slack pad1;
         ReliefUniform: samples cells domain wrap places offset scale levels steps lod rounds starts;
         SlabUniform: eye half normal radius side far other pad;
-        GenerateUniform: size wrap first rows rounds levels begins keeps aim steps offset top pad0
+        GenerateUniform: size wrap first rows rounds levels begins keeps sector steps offset top pad0
             pad1 at;
-        Search: squared top note stage node_x node_y pending_low pending_high;
+        SearchState: squared top note stage node_x node_y pending_low pending_high;
         PyramidUniform: below size below_at at first pad;
-        MipUniform: below size below_at at pad0 pad1;
-        NineUniform: width rows wrap channels;
-        SlopesUniform: size wrap first rows pad0 pad1;
+        Min3x3Uniform: width rows wrap channels;
         LevelUniform: divisor fudge origin cells;
         LookUniform: light key light_color fill sky_high fog sky_low gloss world_up softness
             occlusion_reach occlusion_strength shadow_steps stops palette_cycles flag pad palette;

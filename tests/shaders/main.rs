@@ -24,7 +24,7 @@ use common::files::files_below;
 use common::plans::{preset, program, solid};
 use conemarch::base::shader::{Module, Program, ShaderError};
 use conemarch::gpu::device::{PROMISED_BUFFERS, STORAGE_BUFFERS};
-use conemarch::heightfield::conemap::generate::program as generate;
+use conemarch::heightfield::conemap::generate::task as generate;
 use conemarch::heightfield::texture::Texture;
 use conemarch::plan::{Extras, Pass};
 use programs::ALL;

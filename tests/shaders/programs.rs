@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
-use conemarch::heightfield::conemap::generate::program::every_program;
+use conemarch::heightfield::conemap::generate::task::every_program;
 use conemarch::pass::LookFeature;
 use conemarch::plan::march::MODES;
 use conemarch::plan::{Extras, Plan};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::base::key::{AutoCount, AutoNumber, Fault, Key, Number, Text, Word};
-use crate::heightfield::conemap::file::{Wanted, read_map};
+use crate::heightfield::conemap::file::{MapUse, read_map};
 use crate::heightfield::conemap::generate::cpu::generate;
 use crate::heightfield::conemap::generate::generator::{
     GenerateError, Generator, LEAST_OFFSET, MOST_OFFSET, Options,
@@ -270,13 +270,14 @@ impl TracerSettings {
     fn read(&self, folder: &Path, surface: &HeightSurface) -> Result<Supply, Fault> {
         let path = folder.join(&self.map);
         let file = read_map(&path).map_err(|e| fault(e.to_string()))?;
-        let wanted = Wanted {
+        let wanted = MapUse {
             who: &format!("the tracer {}", self.tracer.name()),
             kinds: self.kinds(),
             heights: surface.heights(),
             patches: surface.patches(),
         };
-        file.fit(&path, &wanted).map_err(|e| fault(e.to_string()))?;
+        file.check_use(&path, &wanted)
+            .map_err(|e| fault(e.to_string()))?;
         let note = file.unknown();
         Ok(Supply {
             note: note.map(|note| format!("{} {note}", path.display())),

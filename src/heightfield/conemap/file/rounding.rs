@@ -1,4 +1,4 @@
-//! Heights and ratios as whole numbers, rounded so that no cone ever becomes wider.
+//! Heights and ratios as whole numbers, rounded so that no cone becomes wider.
 //!
 //! A reader may trace with the heights in the file or with those that the map was made
 //! from. Ratios are safe for both:
@@ -6,25 +6,27 @@
 //! - A ratio becomes the largest number that stands for no more than it. (Rounding to
 //!   the nearest, as the papers' programs do, widens up to half of all cones.) A number
 //!   is read as the largest f32 that is not above its share of 1, so that an EXR holds it
-//!   as it is. Maps remember that they were read from numbers, in EXRs, too: what was read
-//!   so becomes the same number again, and no other ratio becomes one that stands for
-//!   more. (Shares of 8 bits are shares of 16, and f32 tells all of 16 bits apart, as it does
-//!   their squares; but not the ones from the others.) Maps may change layouts as often as
-//!   anybody likes.
+//!   exactly. Maps remember that they were read from numbers, also in EXRs: what was read
+//!   from a number becomes the same number again, and no other ratio becomes one that stands
+//!   for more. (Shares of 8 bits are shares of 16 bits, and f32 tells all shares of 16 bits
+//!   apart, and their squares; but not shares from squares.) So maps may change layouts any
+//!   number of times.
 //! - A height becomes the smallest number that decodes to no less than it, so that the
 //!   surface in the file is never below the true one. But neighbours rise by different
 //!   amounts: the height of sample p by `a(p)`, from 0 to one step. A sample q at a
 //!   distance d >= m that was `d / R` higher than p is now up to `d / R + s` higher,
-//!   `s` being the largest rise of all less `a(p)`; the widest cone that keeps clear is
+//!   where `s` is the largest rise of all less `a(p)`. The widest cone that keeps clear is
 //!   the least `d / (d / R + s)` over d, which is at d = m: `R / (1 + s R / m)`.
-//!   m is one texel between samples; between the cells of a walk it is the offset that
-//!   its distances carry. Heights that the file can hold as they are have rises of 0
+//!   m is one texel between samples; between cells it is the offset that
+//!   their distances include. Heights that the file can hold exactly have rises of 0
 //!   and leave the ratios alone.
 //!
-//! That argument holds for maps of empty cones. Of the relaxed maps only the first half
-//! does: rounding may raise new edges in the surface of the file, of which they know
-//! nothing. For the heights that they were made from they stay what they were; over those
-//! in the file, which the papers trace them with, a ray may cross more than once.
+//! That argument holds for maps of empty cones. For relaxed maps only its first half
+//! does: rounding may raise new edges in the surface of the file, which the map does not
+//! know. Over the heights that they were made from, relaxed maps stay what they were; over
+//! those in the file, which the papers trace them with, a ray may cross more than once.
+
+use crate::heightfield::conemap::file::format::RatioScale;
 
 /// A channel of whole numbers that stand for 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,9 +55,9 @@ impl Steps {
         number
     }
 
-    /// The nearest number to a share of 0..=1, for channels that only shade.
+    /// The nearest number to a share of 0..=1, for shading channels.
     pub fn nearest(self, share: f64) -> u16 {
-        // The cast saturates, and takes no number for 0.
+        // The cast saturates, and NaN becomes 0.
         (share.clamp(0.0, 1.0) * f64::from(self.most) + 0.5) as u16
     }
 }
@@ -65,19 +67,22 @@ impl Steps {
 pub struct Ratios {
     /// The numbers.
     pub steps: Steps,
-    /// Whether they stand for the square root.
-    pub root: bool,
+    /// How they stand for ratios.
+    pub scaling: RatioScale,
     /// Texels that a ratio of 1 in the file means.
     pub scale: f64,
     /// Whether the ratios were read from such numbers.
-    pub again: bool,
+    pub reread: bool,
 }
 
 impl Ratios {
     /// The share of 1 that a number stands for.
     fn share(self, number: u16) -> f64 {
         let share = f64::from(number) / f64::from(self.steps.most);
-        if self.root { share * share } else { share }
+        match self.scaling {
+            RatioScale::Sqrt => share * share,
+            RatioScale::Linear => share,
+        }
     }
 
     /// The ratio in texels that a number is read as.
@@ -85,11 +90,14 @@ impl Ratios {
         f64::from(share_down(self.share(number), 1.0)) * self.scale
     }
 
-    /// The largest number that stands for no more than a ratio, or where ratios were read
-    /// from such numbers the one that was read as it.
+    /// The largest number that stands for no more than a ratio; if ratios were read from such
+    /// numbers, the number that was read as this ratio.
     pub fn ratio_down(self, ratio: f64) -> u16 {
         let share = (ratio / self.scale).clamp(0.0, 1.0);
-        let share = if self.root { share.sqrt() } else { share };
+        let share = match self.scaling {
+            RatioScale::Sqrt => share.sqrt(),
+            RatioScale::Linear => share,
+        };
         let most = self.steps.most;
         let mut number = (share * f64::from(most)).floor() as u16;
         // The quotient and the root may miss by one either way.
@@ -99,7 +107,7 @@ impl Ratios {
         while number > 0 && self.share(number) * self.scale > ratio {
             number -= 1;
         }
-        let was_read = self.again && number < most && self.ratio(number + 1) == ratio;
+        let was_read = self.reread && number < most && self.ratio(number + 1) == ratio;
         if was_read { number + 1 } else { number }
     }
 }
@@ -114,8 +122,8 @@ pub(crate) fn share_down(ratio: f64, scale: f64) -> f32 {
     share.max(0.0)
 }
 
-/// The ratio that stays clear when others may rise by `slack` more than the apex, all of
-/// them being at least `nearest` texels away.
+/// The ratio of a cone that stays empty when other places, all at least `nearest` texels away,
+/// may rise by `slack` more than the apex.
 pub fn narrowed(ratio: f64, slack: f64, nearest: f64) -> f64 {
     if slack <= 0.0 {
         return ratio;

@@ -7,67 +7,62 @@ use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::pattern::Pattern;
 use proptest::prelude::*;
 
-/// Power of the wave number: rough terrain.
-pub const POWER: f64 = 2.6;
-
 /// Which axes wrap, in every combination.
 pub const WRAPS: [[bool; 2]; 4] = [[false, false], [true, false], [false, true], [true, true]];
 
-/// What can lie between samples.
-pub const PATCHES: [Patches; 2] = [Patches::Bilinear, Patches::Boxes];
-
-/// A field as a height map.
-pub fn field(field: Pattern, size: [u32; 2], wrap: [bool; 2]) -> Heights {
-    Heights::new(size, wrap, field.heights(size, 7, POWER)).unwrap()
+/// A pattern of rough terrain as a height map.
+pub fn field(pattern: Pattern, size: [u32; 2], wrap: [bool; 2]) -> Heights {
+    Heights::new(size, wrap, pattern.heights(size, 7, 2.6)).unwrap()
 }
 
-/// Small sizes of every kind: single samples and rows, odd ones, long ones, and such as
-/// halve to odd ones.
-pub const SMALL: [[u32; 2]; 10] = [
-    [1, 1],
-    [1, 9],
-    [7, 1],
-    [2, 2],
-    [3, 2],
-    [5, 5],
-    [16, 16],
-    [13, 22],
-    [33, 6],
-    [4, 41],
-];
+/// Every pattern in every setting, with a name for messages.
+fn every_pattern(
+    settings: impl IntoIterator<Item = ([u32; 2], [bool; 2])>,
+) -> impl Iterator<Item = (String, Heights)> {
+    settings.into_iter().flat_map(|(size, wrap)| {
+        let one = move |p| (format!("{p:?} {size:?} {wrap:?}"), field(p, size, wrap));
+        Pattern::ALL.into_iter().map(one)
+    })
+}
 
-/// Every field at every small size, with every wrap.
+/// Every pattern, and a flat map, at every small size, with every wrap: single samples and
+/// rows, odd sizes, long ones, and sizes that halve to odd ones.
 pub fn small() -> Vec<(String, Heights)> {
-    let mut all = Vec::new();
-    for size in SMALL {
-        for wrap in WRAPS {
-            for f in Pattern::ALL {
-                all.push((format!("{f:?} {size:?} {wrap:?}"), field(f, size, wrap)));
-            }
-            let flat = vec![0.25; (size[0] * size[1]) as usize];
-            let flat = Heights::new(size, wrap, flat).unwrap();
-            all.push((format!("flat {size:?} {wrap:?}"), flat));
-        }
-    }
-    all
+    let sizes = [
+        [1, 1],
+        [1, 9],
+        [7, 1],
+        [2, 2],
+        [3, 2],
+        [5, 5],
+        [16, 16],
+        [13, 22],
+        [33, 6],
+        [4, 41],
+    ];
+    let settings: Vec<_> = sizes
+        .iter()
+        .flat_map(|size| WRAPS.map(|wrap| (*size, wrap)))
+        .collect();
+    let flat = settings.iter().map(|&(size, wrap)| {
+        let data = vec![0.25; (size[0] * size[1]) as usize];
+        let heights = Heights::new(size, wrap, data).unwrap();
+        (format!("flat {size:?} {wrap:?}"), heights)
+    });
+    every_pattern(settings.clone()).chain(flat).collect()
 }
 
-/// Every field, at sizes up to 128 and with every wrap.
+/// Every pattern, at sizes up to 128 and with every wrap.
 pub fn large() -> Vec<(String, Heights)> {
-    let mut all = Vec::new();
-    for (size, wrap) in [
+    let settings = [
         ([32, 32], WRAPS[3]),
         ([64, 64], WRAPS[0]),
         ([61, 90], WRAPS[1]),
         ([100, 37], WRAPS[2]),
         ([128, 128], WRAPS[0]),
         ([128, 128], WRAPS[3]),
-    ] {
-        for f in Pattern::ALL {
-            all.push((format!("{f:?} {size:?} {wrap:?}"), field(f, size, wrap)));
-        }
-    }
-    all
+    ];
+    every_pattern(settings).collect()
 }
 
 /// Any small height map: heights of few different values, so that many are equal, or of
@@ -81,6 +76,14 @@ pub fn any_heights() -> impl Strategy<Value = Heights> {
     })
 }
 
+/// Options with a room between cells.
+pub fn with_offset(offset: f64) -> Options {
+    Options {
+        offset,
+        ..Options::default()
+    }
+}
+
 /// A map from the CPU.
 pub fn make(
     generator: Generator,
@@ -92,7 +95,7 @@ pub fn make(
     map.unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A map from the CPU with nothing special asked.
+/// A map from the CPU with default options.
 pub fn plain(generator: Generator, heights: &Heights) -> ConeMap {
     make(generator, heights, Patches::default(), &Options::default())
 }
@@ -112,4 +115,9 @@ pub fn assert_same(what: &str, a: &[f64], b: &[f64]) {
     if let Some(how) = difference(a, b) {
         panic!("{what}: {how}");
     }
+}
+
+/// Places whose cone is wider on the first map than on the second.
+pub fn wider(a: &[f64], b: &[f64]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a > b).count()
 }

@@ -1,14 +1,14 @@
 // What all generators of cone maps share: which place an invocation works on, what it
-// knows so far, and how it goes on where an earlier dispatch left off.
+// has found so far, and how it continues where an earlier dispatch stopped.
 //
 // A dispatch covers a band of rows and lets each place take a bounded number of rounds;
-// it is run again for the places that are not done. So none is long, however large the
-// map: software Vulkan ends any loop after 65 535 rounds, and drivers give up a device
+// it is repeated for the places that are not done. So no dispatch is long, however large the
+// map is: software Vulkan ends any loop after 65 535 rounds, and drivers give up a device
 // that takes seconds.
 //
-// The answer for a place is not a ratio but the place that bounds its cone, as squared
-// distance and height. From those the ratio is computed in f64, and what is nearly a
-// tie in f32 is marked, and settled there: a map from the device equals one from the CPU.
+// The result for a place is not a ratio but the place that bounds its cone, as squared
+// distance and height. The twin computes the ratio from them in f64. Near ties in f32 are
+// marked, and searched again in f64, so that a map from the device equals one from the CPU.
 
 struct GenerateUniform {
     /// Places along each axis, and whether they wrap.
@@ -21,11 +21,11 @@ struct GenerateUniform {
     rounds: u32,
     /// Levels of tiles.
     levels: u32,
-    /// Whether this dispatch begins: anew, or with what another search has found.
+    /// Whether this dispatch begins a search, and whether it keeps what another one has found.
     begins: u32,
     keeps: u32,
-    /// Which quadrant or side is searched.
-    aim: u32,
+    /// The number of the quadrant or side that is searched.
+    sector: u32,
     /// Steps along a ray.
     steps: u32,
     /// Room that a walk's cones leave, in texels.
@@ -38,16 +38,16 @@ struct GenerateUniform {
     at: array<vec4<u32>, 4>,
 }
 
-/// Where a place stands.
-struct Search {
+/// The search from one place.
+struct SearchState {
     /// What bounds the cone: squared distance, and height, which is below 0 for nothing.
     squared: u32,
     top: f32,
-    /// Generator's own: nearly a tie, or the step at which a ray came out.
+    /// 1 for nearly a tie, or the step at which a ray came out.
     note: u32,
-    /// How far it has come, 0 at first; SEARCH_DONE.
+    /// How far the search has come, from 0 to SEARCH_DONE.
     stage: u32,
-    /// Where it goes on.
+    /// Where it continues.
     node_x: u32,
     node_y: u32,
     pending_low: u32,
@@ -60,7 +60,7 @@ const SEARCH_DONE = 0xffffffffu;
 /// Heights of samples, or apexes of cells, row by row.
 @group(0) @binding(1) var<storage, read> heights: array<f32>;
 /// One per place of the band.
-@group(0) @binding(3) var<storage, read_write> searches: array<Search>;
+@group(0) @binding(3) var<storage, read_write> searches: array<SearchState>;
 
 var<private> params: GenerateUniform;
 /// Apex of this place's cone, and the least cost so far.

@@ -1,13 +1,13 @@
-// Taking places into account one by one, with an eye on ties: of two places that cost
-// the same in f32, f64 may prefer the other one.
+// Keeps the place of least cost, and marks near ties: of two places that cost the same in
+// f32, f64 may prefer the other one.
 
 /// The cost of what an earlier dispatch found.
-fn cost_kept(s: Search) -> f32 {
+fn cost_kept(s: SearchState) -> f32 {
     return cost_of(s.squared, s.top - apex);
 }
 
 /// Takes a place, or a node as high as its maximum, into account.
-fn offer(squared: u32, top: f32, s: ptr<function, Search>) {
+fn consider(squared: u32, top: f32, s: ptr<function, SearchState>) {
     let rise = top - apex;
     if rise < COST_LEAST_RISE {
         return;

@@ -1,12 +1,12 @@
-// All places around one, in growing square rings. What is done with a place is joined:
-// `scan_visit` tells how many rounds it took.
+// All places around one, in growing square rings. Another module says what is done with a
+// place: `ring_visit`, which returns how many rounds it took.
 //
 // Each place is visited once, at its nearest image where axes wrap, so that no corner
-// beyond two borders is missed. A ring can be the last once a place on it, as high as
-// the highest of all, would not narrow the cone: a rule in texels, for any aspect.
+// beyond two borders is missed. The search ends at a ring if a place on it, as high as the
+// highest of all, would not narrow the cone. This rule is in texels and holds for any aspect.
 
 /// The least and the greatest step from a place along an axis.
-fn scan_span(axis: u32, place: u32) -> vec2<i32> {
+fn ring_span(axis: u32, place: u32) -> vec2<i32> {
     let n = i32(params.size[axis]);
     if params.wrap[axis] != 0u {
         return vec2<i32>(-(n / 2), (n - 1) / 2);
@@ -14,15 +14,15 @@ fn scan_span(axis: u32, place: u32) -> vec2<i32> {
     return vec2<i32>(-i32(place), n - 1 - i32(place));
 }
 
-/// Scans on until no ring can matter, or until the rounds are used up.
-fn work(place: vec2<u32>, s: ptr<function, Search>) {
-    let x = scan_span(0u, place.x);
-    let y = scan_span(1u, place.y);
+/// Visits rings until none can matter, or until the rounds are used up.
+fn work(place: vec2<u32>, s: ptr<function, SearchState>) {
+    let x = ring_span(0u, place.x);
+    let y = ring_span(1u, place.y);
     let last = max(max(-x.x, x.y), max(-y.x, y.y));
     let most = params.top - apex;
-    // Rounds left in this dispatch. What is scanned when they end is where it goes on.
+    // Rounds left in this dispatch. The next dispatch continues where they end.
     var left = params.rounds;
-    // It goes on at this ring, this side of it, and this step along the side.
+    // It continues at this ring, this side of it, and this step along the side.
     var ring = max(i32((*s).stage), 1);
     var side = (*s).node_x;
     var done = i32((*s).pending_low);
@@ -50,7 +50,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
                         return;
                     }
                     let step = select(vec2<i32>(across, i), vec2<i32>(i, across), rows);
-                    left -= min(left, scan_visit(place, step, s));
+                    left -= min(left, ring_visit(place, step, s));
                 }
             }
             side += 1u;
@@ -62,7 +62,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
 }
 
 /// The height at some steps from a place, at most one turn away.
-fn scan_height(place: vec2<u32>, step: vec2<i32>) -> f32 {
+fn ring_height(place: vec2<u32>, step: vec2<i32>) -> f32 {
     // One turn more keeps the remainder from being that of a negative number.
     let n = vec2<i32>(params.size);
     let at = (vec2<i32>(place) + step + n) % n;

@@ -1,6 +1,6 @@
-//! Slopes and normals as the channels that shade hold them.
+//! Slopes and normals as shading channels hold them.
 
-use crate::heightfield::conemap::file::round::Steps;
+use crate::heightfield::conemap::file::rounding::Steps;
 
 /// Slope as a share: 0.5 flat, 0 and 1 half the height down or up over one texel, which
 /// is what `(share - 0.5) * texture size` makes a slope per texture again (Dummer 2006).
@@ -8,8 +8,8 @@ fn slope_share(slope: f32) -> f64 {
     0.5 + f64::from(slope)
 }
 
-/// Slopes as Dummer's text and shader take them. His rows are turned for OpenGL, so that y
-/// goes up.
+/// Slopes as Dummer's text and shader take them. His rows are in the order of OpenGL, where
+/// y goes up.
 pub(crate) fn whole([x, y]: [f32; 2], steps: Steps) -> [u16; 2] {
     [x, -y].map(|slope| steps.nearest(slope_share(slope)))
 }

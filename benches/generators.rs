@@ -1,12 +1,11 @@
-//! Measures the generators of cone maps: `cargo run --release --example generators`.
+//! Measures the generators of cone maps: `cargo bench --bench generators -- [TABLE]`.
 //!
-//! Prints, as tables, how many nodes a place takes by field and size, how long each
-//! generator takes on the CPU and on the device that `auto` chooses, and how the maps
-//! compare with the exact one. `generators nodes`, `generators quality` and `generators
-//! device 1024 exact improved` print one of them; `generators sizes` how long the device
-//! takes for maps of 256 x 256 up to 4096 x 4096. All but `quality` write their rows as
-//! JSON, too, where `--json FILE` follows. A generator that is not done within a minute is
-//! given as an estimate, with a tilde.
+//! Prints tables: `nodes` is how many nodes a place takes by field and size, `quality` how
+//! the maps compare with the exact one, and `device SIZE [GENERATOR]...` how long generators
+//! take on the CPU and on the device that `auto` chooses. Without arguments it prints these
+//! three. `sizes` is how long the device takes for maps of 256 x 256 up to 4096 x 4096. All but
+//! `quality` also write their rows as JSON, if `--json FILE` follows. A generator that is not
+//! done within a minute is given as an estimate, with a tilde.
 
 use std::fs;
 use std::time::Instant;
@@ -19,9 +18,10 @@ use conemarch::heightfield::conemap::generate::cpu;
 use conemarch::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
 use conemarch::heightfield::conemap::generate::pyramid::Tiles;
 use conemarch::heightfield::heights::{Heights, Patches};
+use conemarch::heightfield::max_mip::MaxMip;
 use conemarch::heightfield::pattern::Pattern;
 
-#[path = "../benches/common/rows.rs"]
+#[path = "common/rows.rs"]
 mod rows;
 use rows::{NodesRow, SizesRow, TimesRow};
 
@@ -31,7 +31,9 @@ const POWER: f64 = 2.6;
 const PATIENCE: f64 = 60.0;
 
 fn main() -> Result<()> {
-    let args: Vec<String> = std::env::args().skip(1).collect();
+    // Cargo adds this word.
+    let args = std::env::args().skip(1).filter(|a| a != "--bench");
+    let args: Vec<String> = args.collect();
     let mut args: Vec<&str> = args.iter().map(String::as_str).collect();
     let mut json = None;
     if let [.., "--json", file] = args[..] {
@@ -50,10 +52,9 @@ fn main() -> Result<()> {
         ["device", size, ref names @ ..] => {
             let named = |name: &&str| Generator::named(name).context("a generator's name");
             let chosen: Vec<Generator> = names.iter().map(named).collect::<Result<_>>()?;
-            let all = if chosen.is_empty() {
-                &Generator::ALL[..]
-            } else {
-                &chosen
+            let all = match chosen[..] {
+                [] => &Generator::ALL[..],
+                _ => &chosen,
             };
             write(json, &device(size.parse().context("a size")?, all)?)
         }
@@ -88,10 +89,8 @@ fn nodes() -> Result<Vec<NodesRow>> {
         Generator::WalkRelaxed,
     ];
     for generator in searches {
-        println!(
-            "\nNodes per place of `{}`, mean (worst)\n",
-            generator.name()
-        );
+        let name = generator.name();
+        println!("\nNodes per place of `{name}`, mean (worst)\n");
         println!("| field | 64 | 128 | 256 | 512 |\n|---|---:|---:|---:|---:|");
         for f in Pattern::ALL {
             let mut row = format!("| {} |", f.name());
@@ -100,15 +99,15 @@ fn nodes() -> Result<Vec<NodesRow>> {
                 let (patches, options) = (Patches::default(), Options::default());
                 let made =
                     cpu::generate_counted(generator, &heights, patches, &options, &mut |_| true);
-                let (map, work) = made?;
-                let mean = work.nodes as f64 / map.ratios.len() as f64;
-                row += &format!(" {mean:.1} ({}) |", work.most);
+                let (map, count) = made?;
+                let mean = count.total as f64 / map.ratios.len() as f64;
+                row += &format!(" {mean:.1} ({}) |", count.most);
                 rows.push(NodesRow {
-                    generator: generator.name().into(),
+                    generator: name.into(),
                     field: f.name().into(),
                     size,
                     mean,
-                    worst: work.most,
+                    worst: count.most,
                 });
             }
             println!("{row}");
@@ -129,11 +128,8 @@ fn quality() -> Result<()> {
         Generator::RelaxedSearch,
     ];
     let names: Vec<&str> = others.iter().map(|g| g.name()).collect();
-    println!(
-        "| field | {} |\n|---|{}",
-        names.join(" | "),
-        "---:|".repeat(5)
-    );
+    let names = names.join(" | ");
+    println!("| field | {names} |\n|---|{}", "---:|".repeat(5));
     for f in Pattern::ALL {
         let heights = field(f, 128)?;
         let options = Options {
@@ -176,31 +172,30 @@ fn sizes() -> Result<Vec<SizesRow>> {
         ..Options::default()
     };
     let mut rows: Vec<SizesRow> = Vec::new();
+    let mut add = |generator: &str, size, ms, estimated| {
+        println!("{size} {generator} {}{ms:.0} ms", tilde(estimated));
+        rows.push(SizesRow {
+            generator: generator.into(),
+            size,
+            ms,
+            estimated,
+        });
+    };
+    let mut generators = vec![
+        Generator::Brute,
+        Generator::RelaxedSearch,
+        Generator::Improved,
+        Generator::Center,
+        Generator::Exact,
+    ];
     for size in [256, 512, 1024, 2048, 4096] {
         let heights = field(Pattern::Fbm, size)?;
-        let generators = [
-            Generator::Brute,
-            Generator::RelaxedSearch,
-            Generator::Improved,
-            Generator::Center,
-            Generator::Exact,
-        ];
-        for generator in generators {
-            let name = generator.name();
-            if rows.iter().any(|r| r.generator == name && r.estimated) {
-                continue;
-            }
+        for generator in generators.clone() {
             let ([ms, _], estimated) = best(&mut maker, generator, &heights, &options)?;
-            println!(
-                "{size} {name} {}{ms:.0} ms",
-                if estimated { "~" } else { "" }
-            );
-            rows.push(SizesRow {
-                generator: name.into(),
-                size,
-                ms,
-                estimated,
-            });
+            add(generator.name(), size, ms, estimated);
+            if estimated {
+                generators.retain(|g| *g != generator);
+            }
         }
         let mut fastest = f64::INFINITY;
         for _ in 0..3 {
@@ -208,14 +203,14 @@ fn sizes() -> Result<Vec<SizesRow>> {
             maker.max_mip(heights.size(), heights.data())?;
             fastest = fastest.min(ms(start));
         }
-        rows.push(SizesRow {
-            generator: "max-mip".into(),
-            size,
-            ms: fastest,
-            estimated: false,
-        });
+        add("max-mip", size, fastest, false);
     }
     Ok(rows)
+}
+
+/// What an estimate is marked with.
+fn tilde(estimated: bool) -> &'static str {
+    if estimated { "~" } else { "" }
 }
 
 /// Times of one map of `fbm`, whole and of the dispatches alone, warm.
@@ -223,24 +218,19 @@ fn device(size: u32, generators: &[Generator]) -> Result<Vec<TimesRow>> {
     let device = open()?;
     let mut maker = Maker::new(&device);
     let heights = field(Pattern::Fbm, size)?;
-    println!(
-        "\n`fbm` {size} x {size} on {}, milliseconds\n",
-        device.info.name
-    );
-    println!("| generator | device, all | dispatches | settled on the CPU | CPU in f64 |");
+    let name = &device.info.name;
+    println!("\n`fbm` {size} x {size} on {name}, milliseconds\n");
+    println!("| generator | device, all | dispatches | searched again | CPU in f64 |");
     println!("|---|---:|---:|---:|---:|");
     let start = Instant::now();
     maker.max_mip(heights.size(), heights.data())?;
     let there = ms(start);
     let start = Instant::now();
-    let here =
-        conemarch::heightfield::max_mip::MaxMip::new(heights.size(), heights.data().to_vec());
+    MaxMip::new(heights.size(), heights.data().to_vec());
     println!("| max-mip | {there:.0} | | | {:.0} |", ms(start));
-    drop(here);
     let mut rows = Vec::new();
     for &generator in generators {
-        let row = times(&mut maker, generator, &heights, &device.info.name)?;
-        let tilde = |is: bool| if is { "~" } else { "" };
+        let row = times(&mut maker, generator, &heights, name)?;
         let (own, cpu) = (tilde(row.estimated), tilde(row.cpu_estimated));
         println!(
             "| {} | {own}{:.0} | {own}{:.0} | {:.3} % | {cpu}{:.0} |",
@@ -291,8 +281,8 @@ fn times(
 ) -> Result<TimesRow> {
     let size = heights.size();
     let (patches, options) = (Patches::default(), Options::default());
-    // From here on: making the heights takes memory, too. Nothing is lost where a system
-    // has no such file.
+    // Making the heights took memory, too; the peak counts from here. Systems without such a
+    // file report none.
     let _ = fs::write("/proc/self/clear_refs", "5");
     let (best, estimated) = best(maker, generator, heights, &options)?;
     let peak = peak();
@@ -307,7 +297,7 @@ fn times(
         ms: best[0],
         dispatches_ms: best[1],
         estimated,
-        settled: maker.settled as f64 / heights.data().len() as f64,
+        settled: maker.refined as f64 / heights.data().len() as f64,
         cpu_ms: ms(start) / part,
         cpu_estimated: part < 1.0,
         largest_binding: u64::from(Tiles::new(size).count) * size_of::<[f32; 4]>() as u64,
