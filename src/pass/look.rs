@@ -80,11 +80,7 @@ impl Light {
     /// The light of a plan.
     pub fn of(plan: &Plan, assets: &Assets) -> Self {
         let mut look = plan.look.clone();
-        let colors = [
-            &mut look.light_color,
-            &mut look.sky_high,
-            &mut look.sky_low,
-        ];
+        let colors = [&mut look.light_color, &mut look.sky_high, &mut look.sky_low];
         for color in colors.into_iter().chain(&mut look.palette) {
             *color = linear(*color);
         }
