@@ -1,4 +1,4 @@
-//! Why there is no frame.
+//! Why a render failed.
 
 use thiserror::Error;
 
@@ -7,7 +7,7 @@ use crate::gpu::kernel::KernelError;
 use crate::heightfield::conemap::generate::generator::GenerateError;
 use crate::heightfield::tracer::settings::PrepareError;
 
-/// Why there is no frame.
+/// Why a render failed.
 #[derive(Debug, Error)]
 pub enum RenderError {
     /// The device failed.
@@ -16,12 +16,12 @@ pub enum RenderError {
     /// A program failed.
     #[error(transparent)]
     Kernel(#[from] KernelError),
-    /// What the scene needs could not be made.
+    /// An asset of the scene could not be loaded or made.
     #[error(transparent)]
     Prepare(PrepareError),
-    /// Something that the scene brings has no room in a buffer of the device.
+    /// A buffer of the scene is too large for the device.
     #[error(
-        "the device `{device}` binds at most {most} bytes at once, and `{what}` of the scene needs {needed}; {}, another --device, or --device cpu would do",
+        "the device `{device}` binds at most {most} bytes at once, but the scene's `{what}` needs {needed}. Try {}, another --device, or --device cpu",
         smaller(.what)
     )]
     TooLarge {
@@ -34,12 +34,12 @@ pub enum RenderError {
         /// Bytes that the device allows.
         most: u64,
     },
-    /// The caller asked to stop.
+    /// The watch cancelled the render.
     #[error("cancelled")]
     Cancelled,
-    /// The device claims to be done, but cells were never visited.
+    /// The device reported no error but left cells unvisited.
     #[error(
-        "the device `{device}` left {cells} cells of pass `{pass}` unwritten and reported no error; try a smaller --size, another --device, or --device cpu"
+        "the device `{device}` left {cells} cells of pass `{pass}` unwritten and reported no error. Try a smaller --size, another --device, or --device cpu"
     )]
     Unwritten {
         /// Its name.
@@ -62,7 +62,7 @@ impl From<PrepareError> for RenderError {
     }
 }
 
-/// What would be smaller in a buffer of the scene.
+/// What makes a buffer of the scene smaller.
 fn smaller(what: &str) -> &'static str {
     match what {
         "texels" => "a smaller scene.texture",

@@ -84,7 +84,7 @@ impl HeightfieldSettings {
             "paint" = Word(&mut self.paint, PAINTS),
                 "what picks the colour: the height, or the width of the cones in a generator's map";
             "texture" = Text(&mut self.texture),
-                "a picture that colours each tile in place of the palette; \"none\" for none";
+                "a PNG that colours each tile in place of the palette; \"none\" for none";
         ]);
         keys.extend(self.tracing.keys());
         keys
@@ -155,7 +155,8 @@ impl HeightfieldSettings {
             (self.reads_cones(), "scene.map", &self.tracing.map),
             (self.is_textured(), "scene.texture", &self.texture),
         ];
-        let file = |(read, key, name)| read.then(|| (key, self.source.folder.join(name)));
+        let file =
+            |(read, key, name): (bool, _, _)| read.then(|| (key, self.source.folder.join(name)));
         named.into_iter().filter_map(file).collect()
     }
 

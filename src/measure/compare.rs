@@ -13,9 +13,9 @@
 
 use rayon::prelude::*;
 
-use crate::base::view::{Beam, View, footprint};
+use crate::base::view::{Beam, footprint};
 use crate::base::work::State;
-use crate::picture::frame::Frame;
+use crate::picture::frame::{Frame, errors};
 use crate::plan::Plan;
 use crate::scene::AnySolid;
 use crate::scene::{Solid, Task};
@@ -43,27 +43,6 @@ pub struct Report {
     pub mask: f64,
     /// The start violations of each cone level: divisor and number of pixels.
     pub start_violations: Vec<(u32, u64)>,
-}
-
-/// The signed depth error of each pixel in footprints. It is infinite where a hit is shown as
-/// sky, minus infinite where sky is shown as a hit, 0 where both are sky, and NaN where either
-/// reached a limit.
-pub fn errors(frame: &Frame, reference: &Frame, view: &View) -> Vec<f64> {
-    let width = frame.size[0] as usize;
-    let (sky, hit) = (State::Sky as u8, State::Hit as u8);
-    let states = frame.state.iter().zip(&reference.state).enumerate();
-    let error = |(i, (&s, &r)): (usize, (&u8, &u8))| match (s, r) {
-        _ if s == sky && r == sky => 0.0,
-        _ if s == sky && r == hit => f64::INFINITY,
-        _ if s == hit && r == sky => f64::NEG_INFINITY,
-        _ if s == hit && r == hit => {
-            let t = f64::from(reference.depth[i]);
-            let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
-            (f64::from(frame.depth[i]) - t) / (ray.grain * t).max(f64::MIN_POSITIVE)
-        }
-        _ => f64::NAN,
-    };
-    states.map(error).collect()
 }
 
 /// Compares a frame with a reference of the same plan; mode and steps may differ. `solid` is

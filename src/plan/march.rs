@@ -191,7 +191,7 @@ impl Marching {
         };
         let set = self.steps.unwrap_or(STEPS);
         let steps = self.budget().map_or(set, |[cone, _]| cone);
-        Pyramid::new(self.coarsest, fudge, |_| steps)
+        Pyramid::new(self.coarsest, fudge, steps)
     }
 
     /// The step limit of a ray. `crossing` is the largest number of steps that a ray can take
