@@ -302,9 +302,11 @@ pub(super) fn tiles_fault(e: &HeightSurfaceError) -> Fault {
     Fault::new("scene.tiles", e.to_string())
 }
 
-/// The last value that was made, with what it was made from.
+/// The last value that was made, with its key.
 #[derive(Debug)]
-struct Last<K, V>(Arc<Mutex<Option<(K, Arc<V>)>>>);
+struct Last<K, V>(Arc<Mutex<Kept<K, V>>>);
+
+type Kept<K, V> = Option<(K, Arc<V>)>;
 
 impl<K: PartialEq, V> Last<K, V> {
     /// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.

@@ -116,7 +116,9 @@ impl Task for Violations<'_> {
         let (plan, reference) = (self.plan, self.reference);
         let view = plan.view();
         let width = self.frame.size[0] as usize;
-        let least = (CLEAR * plan.march.shell).max(LEAST_CLEAR) / plan.scene.lipschitz();
+        // The shell of the mode: some march without one, whatever the preset says.
+        let shell = plan.march.stepping().shell;
+        let least = (CLEAR * shell).max(LEAST_CLEAR) / plan.scene.lipschitz();
         // Whether a ray reaches the surface between the hit and the front.
         let met = |ray: &Beam, hit: f64, front: f64| {
             let mut t = hit;
@@ -157,6 +159,7 @@ impl Task for Violations<'_> {
 mod tests {
     use super::*;
     use crate::picture::frame::LevelLayer;
+    use crate::plan::march::Mode;
     use crate::scene::Assets;
     use crate::scene::slab::SlabSettings;
     use glam::DVec3;
@@ -231,7 +234,7 @@ mod tests {
     }
 
     /// A ray that grazes a ball stays in the skin for long and passes it, so a front behind the
-    /// skin is right.
+    /// skin is right if the ray keeps clear of the shell. The slides' modes have no shell.
     #[test]
     fn a_front_beyond_a_grazed_skin_is_right() {
         let plan = ball([240, 160]);
@@ -249,16 +252,25 @@ mod tests {
         };
         let reference = rendered(&plan);
         let width = plan.size[0] as usize;
-        for (share, wrong) in [(0.75, 0), (-2.0, 1)] {
+        let cases = [
+            (0.75, Mode::Safe, 0),
+            (0.3, Mode::Safe, 1),
+            (0.3, Mode::SlidesEven, 0),
+            (-2.0, Mode::SlidesEven, 1),
+            (-2.0, Mode::Safe, 1),
+        ];
+        for (share, mode, wrong) in cases {
             let p = past(share).expect("a picture has pixels");
             let i = p[1] as usize * width + p[0] as usize;
             assert_eq!(reference.state[i], State::Hit as u8, "{p:?}");
             // Far behind the skin.
             let mut front = vec![0.0; reference.depth.len()];
             front[i] = reference.depth[i] + 0.5;
+            let mut compared = plan.clone();
+            compared.march.mode = mode;
             let frame = with_fronts(&reference, front);
-            let report = compare(&frame, &reference, &plan, &solid(&plan));
-            assert_eq!(report.start_violations, [(1, wrong)], "{share}");
+            let report = compare(&frame, &reference, &compared, &solid(&compared));
+            assert_eq!(report.start_violations, [(1, wrong)], "{share} {mode:?}");
         }
     }
 

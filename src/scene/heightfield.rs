@@ -159,7 +159,7 @@ impl Heightfield {
     }
 
     /// The world distance from a local position to the surface straight below it. Beside the
-    /// block it is the distance to the nearest point of the rim, or to the point above it.
+    /// block it is the distance to the edge of the top, or to the wall below that edge.
     fn surface_gap(&self, p: DVec3) -> f64 {
         let xy = p.truncate();
         let inside = xy.clamp(DVec2::ZERO, self.made.placement.sides);
