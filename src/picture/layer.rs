@@ -9,9 +9,8 @@ use rayon::prelude::*;
 use crate::base::srgb::srgb;
 use crate::base::view::View;
 use crate::base::work::State;
-use crate::measure::compare::errors;
 use crate::pass::look::tone;
-use crate::picture::frame::Frame;
+use crate::picture::frame::{Frame, errors};
 use crate::plan::{Extras, Plan};
 
 /// What a picture can show.
