@@ -1,22 +1,21 @@
 //! `conemarch render PRESET`
 
-use std::io::{Cursor, IsTerminal};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::print::{print, say};
+use crate::command::progress::Progress;
 use crate::command::sink::{Parcel, Sink, apart, is_stdout, spared};
 use crate::command::stats::{Stats, shares, undecided};
 use crate::command::{interrupt, memory, size};
 use crate::gpu::device::Choice;
-use crate::gpu::render::{Progress, RenderError};
+use crate::gpu::render::RenderError;
 use crate::measure::truth::{self, Cache};
 use crate::picture::frame::Frame;
 use crate::picture::{BitDepth, Layer, Shades, write_exr, write_png};
@@ -291,23 +290,13 @@ fn extras(args: &Render, format: Format) -> Extras {
     extras
 }
 
-/// Renders with a bar on terminals, until done or interrupted.
-fn march(executor: &mut Executor, plan: &Plan, extras: Extras) -> Result<Frame> {
-    let bar = if std::io::stderr().is_terminal() {
-        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
-        ProgressBar::new(1000).with_style(style.context("the progress bar")?)
-    } else {
-        ProgressBar::hidden()
-    };
-    bar.enable_steady_tick(Duration::from_millis(200));
-    let mut watch = |progress: &Progress| {
-        bar.set_position((progress.done * 1000.0) as u64);
-        bar.set_message(progress.pass.clone());
+/// Renders until done or interrupted, with progress.
+fn march(executor: &mut Executor, plan: &Plan, extras: Extras) -> Result<Frame, RenderError> {
+    let mut progress = Progress::start("rendering");
+    executor.render(plan, extras, &mut |now| {
+        progress.report(now.done, &now.pass);
         !interrupt::asked()
-    };
-    let frame = executor.render(plan, extras, &mut watch);
-    bar.finish_and_clear();
-    Ok(frame?)
+    })
 }
 
 /// Longest march that is done again for its time, in milliseconds.
