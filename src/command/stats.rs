@@ -1,10 +1,13 @@
-//! The figures of a render as JSON.
+//! The figures of a render, as JSON and as a line.
+
+use std::path::Path;
 
 use serde::Serialize;
 
 use crate::command::executor::Executor;
+use crate::command::sink::is_stdout;
 use crate::picture::frame::Frame;
-use crate::plan::Plan;
+use crate::plan::{PREPARE, Plan};
 
 /// One render.
 #[derive(Clone, Debug, Serialize)]
@@ -94,4 +97,32 @@ pub fn undecided(frame: &Frame) -> f64 {
 pub fn shares(frame: &Frame) -> [f64; 3] {
     let all = frame.state.len().max(1) as f64;
     frame.census().map(|n| n as f64 / all)
+}
+
+/// One line about a finished picture.
+pub fn summary(output: &Path, frame: &Frame) -> String {
+    let [w, h] = frame.size;
+    let time = |name: &str| Some(frame.passes.iter().find(|p| p.name == name)?.wall_ms);
+    let color = time("color").map_or(String::new(), |ms| format!(", colour {ms:.0} ms"));
+    let made = frame.passes.iter().filter(|p| p.name == PREPARE);
+    let made: Vec<f64> = made.map(|p| p.wall_ms).collect();
+    let ms: f64 = made.iter().sum();
+    let cones = match made.len() {
+        0 => String::new(),
+        1 => format!("cone map {ms:.0} ms, "),
+        _ => format!("cone maps {ms:.0} ms, "),
+    };
+    let [sky, hit, unconverged] = shares(frame).map(|s| 100.0 * s);
+    let shadows = match 100.0 * undecided(frame) {
+        share if share < 0.05 => String::new(),
+        share => format!(", shadows cut short {share:.1} %"),
+    };
+    let name = match is_stdout(output) {
+        true => "standard output".into(),
+        false => output.display().to_string(),
+    };
+    format!(
+        "{name}  {w} x {h}  {cones}march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %{shadows}",
+        frame.march_ms
+    )
 }

@@ -147,7 +147,7 @@ impl DistanceEstimate for Mandelbox {
             Key::new(
                 "scale",
                 Number(&mut self.scale, -100.0, 100.0),
-                "factor after the folds; its size must exceed 1",
+                "factor after the folds; its size must be at least 1.001",
             ),
             Key::new(
                 "min_radius",

@@ -30,6 +30,9 @@ const FUDGES: [f64; 14] = [
     0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95,
 ];
 
+/// Share of the time that the probes take, for progress: the rest is for trying settings.
+const PROBING: f64 = 0.5;
+
 /// Standard errors that are added to a counted share: one in forty is larger by more.
 const DOUBT: f64 = 2.0;
 
@@ -85,12 +88,12 @@ impl Calibration {
 
 /// Proposes settings that lose at most the share `budget` of pixels, from so many rays,
 /// and counts what they lose on as many others.
-/// `None` if `going` says to stop.
+/// `going` is told the share that is done; `None` if it says to stop.
 pub fn calibrate(
     plan: &Plan,
     budget: f64,
     rays: usize,
-    going: &dyn Fn() -> bool,
+    going: &mut dyn FnMut(f64) -> bool,
 ) -> Option<Calibration> {
     let mut truth = plan.clone();
     truth.march.mode = Mode::Truth;
@@ -104,7 +107,7 @@ pub fn calibrate(
             plan: &truth,
             pixels: part,
         }));
-        if !going() {
+        if !going(PROBING * probes.len() as f64 / pixels.len() as f64) {
             return None;
         }
     }
@@ -121,7 +124,7 @@ pub fn calibrate(
     // Half of the budget for the shell, the rest for narrower cones.
     for shell in SHELLS {
         best.march.shell = shell;
-        if !going() {
+        if !going(PROBING) {
             return None;
         }
         if lost(&best) <= 0.5 * budget {
@@ -137,7 +140,7 @@ pub fn calibrate(
         for f in FUDGES {
             fudge[level] = f;
             best.march.fudge.clone_from(&fudge);
-            if !going() {
+            if !going(PROBING + (1.0 - PROBING) * level as f64 / levels as f64) {
                 return None;
             }
             if lost(&best) <= allowed {
@@ -297,7 +300,7 @@ mod tests {
     #[test]
     fn an_exact_field_has_slope_one_and_takes_full_cones() {
         let plan = plan(Formula::Balls(Balls::default()));
-        let found = calibrate(&plan, 0.0, 2000, &|| true).expect("not stopped");
+        let found = calibrate(&plan, 0.0, 2000, &mut |_| true).expect("not stopped");
         assert!(
             found.slope <= 1.0 + 1e-9 && found.slope > 0.9,
             "{}",
@@ -310,7 +313,7 @@ mod tests {
         // Narrow cones do lose pixels of an exact field; the finest may be narrow, since a
         // cone through pixel centres is wider than the four rays in it.
         assert!(found.fudge[0] > 0.5, "{:?}", found.fudge);
-        assert!(calibrate(&plan, 0.0, 2000, &|| false).is_none());
+        assert!(calibrate(&plan, 0.0, 2000, &mut |_| false).is_none());
     }
 
     #[test]
@@ -320,7 +323,7 @@ mod tests {
                 scale,
                 ..Mandelbox::default()
             });
-            calibrate(&plan(shape), 0.01, 1500, &|| true).expect("not stopped")
+            calibrate(&plan(shape), 0.01, 1500, &mut |_| true).expect("not stopped")
         };
         // Cones can be told thinner than they are where the estimate understates the
         // distance, as it does at scale 2 and hardly at -1.5.

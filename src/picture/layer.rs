@@ -1,45 +1,52 @@
-//! One layer of a Frame as display values: what a picture of it shows.
+//! One layer of a frame as display values: what a picture of it shows.
 //!
-//! Colour is tone-mapped; every other layer has a mapping of its own, said at
-//! [`Layer`]. Values are encoded for display, 0..1, so that a file only has to round.
+//! Colour is tone-mapped. [`Layer`] says how each of the other layers becomes a picture.
+//! Values are encoded for display, 0..1, so that a file only has to round them.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::base::srgb::srgb;
-use crate::base::view::View;
 use crate::base::work::State;
-use crate::measure::compare::errors;
 use crate::pass::look::Light;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
 
-/// What a picture can show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Layer {
-    /// Light: exposure, tone curve, sRGB.
-    #[default]
-    Color,
-    /// Distance in grey: the nearest pixel black, the farthest 95 % white, linear
-    /// between; sky white.
-    Depth,
-    /// Unit normals in the world, x y z as red green blue, -1..1 to 0..1; sky mid grey.
-    Normal,
-    /// Positions in the world, x y z as red green blue, each from its least to its
-    /// greatest value in the picture; sky black.
-    Position,
-    /// Evaluations that led to each pixel: dark violet none, through green, to yellow
-    /// at the 99th percentile and above.
-    Steps,
-    /// Sky dark blue, hit light grey, unconverged magenta.
-    State,
-    /// Depth error against the truth: light grey none, through orange to dark red at 8
-    /// footprints too deep and for holes, through blue to dark blue at 8 too near and for
-    /// false hits; unconverged magenta.
-    Error,
+/// Lists the layers once: word, name and what the picture shows.
+macro_rules! layers {
+    ($($(#[$meta:meta])* $word:literal $name:ident $help:literal,)*) => {
+        /// What a picture can show.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub enum Layer {
+            $(#[doc = $help] $(#[$meta])* $name,)*
+        }
+
+        impl Layer {
+            /// Every layer with its word on the command line and what its picture shows.
+            pub const ALL: &'static [(&'static str, Self, &'static str)] =
+                &[$(($word, Self::$name, $help)),*];
+        }
+    };
 }
 
+layers![
+    #[default]
+    "color" Color "light, tone-mapped",
+    "depth" Depth "grey: nearest black, farthest 95 % white, linear between, sky white",
+    "normal" Normal "world normals, x y z as red green blue, -1..1 to 0..1; sky mid grey",
+    "position" Position "world positions, each axis from its least to its greatest in the picture; sky black",
+    "steps" Steps "evaluations: violet none, yellow the 99th percentile and above",
+    "state" State "sky dark blue, hit light grey, unconverged magenta",
+    "error" Error "depth against the truth: grey none, red 8 footprints too deep or lost, blue too near",
+];
+
 impl Layer {
+    /// The layer's word on the command line.
+    pub fn word(self) -> &'static str {
+        let found = Self::ALL.iter().find(|(_, layer, _)| *layer == self);
+        found.map_or("", |(word, _, _)| *word)
+    }
+
     /// What a render must keep for the layer, and what it may leave out.
     pub fn extras(self) -> Extras {
         Extras {
@@ -49,11 +56,6 @@ impl Layer {
             depth_only: !matches!(self, Self::Color | Self::Normal),
             ..Extras::default()
         }
-    }
-
-    /// Whether red, green and blue are always the same.
-    pub fn is_grey(self) -> bool {
-        self == Self::Depth
     }
 }
 
@@ -127,9 +129,9 @@ impl<'a> Shades<'a> {
         shades
     }
 
-    /// The same with the truth that [`Layer::Error`] compares with.
-    pub fn against(mut self, truth: &Frame, view: &View) -> Self {
-        self.error = errors(self.frame, truth, view);
+    /// The same with the errors that [`Layer::Error`] shows: of each pixel, in footprints.
+    pub fn with_errors(mut self, errors: Vec<f64>) -> Self {
+        self.error = errors;
         self
     }
 
@@ -140,7 +142,12 @@ impl<'a> Shades<'a> {
 
     /// Whether one number per pixel is enough.
     pub fn is_grey(&self) -> bool {
-        self.layer.is_grey()
+        self.layer == Layer::Depth
+    }
+
+    /// Whether the picture shows colours, and not data.
+    pub fn is_color(&self) -> bool {
+        self.layer == Layer::Color
     }
 
     fn between(&mut self, values: impl Iterator<Item = DVec3>) {
@@ -192,10 +199,16 @@ impl<'a> Shades<'a> {
         }
     }
 
+    /// All pixels in 8 bits, as [`Shades::samples`].
+    pub(crate) fn bytes(&self) -> Vec<u8> {
+        let samples = self.samples(u16::from(u8::MAX));
+        samples.into_iter().map(|s| s.to_le_bytes()[0]).collect()
+    }
+
     /// All pixels as whole numbers up to `most`, rows over threads: three per pixel,
     /// one where the layer is grey.
     pub(crate) fn samples(&self, most: u16) -> Vec<u16> {
-        let channels = if self.layer.is_grey() { 1 } else { 3 };
+        let channels = if self.is_grey() { 1 } else { 3 };
         let width = self.frame.size[0] as usize;
         let mut out = vec![0; self.frame.state.len() * channels];
         let rows = out.par_chunks_mut((width * channels).max(1)).enumerate();

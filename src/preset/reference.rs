@@ -53,6 +53,28 @@ pub fn reference() -> String {
     text
 }
 
+/// Every `section.key` that `--set` takes, with its help.
+pub fn keys() -> Vec<(String, &'static str)> {
+    let first = [
+        ("title", "a line for people"),
+        ("scene.kind", "what kind of scene it is"),
+        ("scene.formula", "the formula of a distance scene"),
+    ];
+    let mut all = first.map(|(path, help)| (path.to_string(), help)).to_vec();
+    for section in SECTIONS {
+        for subject in Subject::all() {
+            let mut plan = Plan::new(subject);
+            for key in plan.keys(section).unwrap_or_default() {
+                let path = format!("{section}.{}", key.name);
+                if all.iter().all(|(known, _)| *known != path) {
+                    all.push((path, key.help));
+                }
+            }
+        }
+    }
+    all
+}
+
 /// A heading, and a row for each key.
 fn table(text: &mut String, head: &str, keys: Vec<Key<'_>>) {
     // Writing to a string cannot fail, here and below.

@@ -1,4 +1,5 @@
-//! `conemarch bench calibrate`: what a preset can afford, for a stated share of lost pixels.
+//! `conemarch bench calibrate`: the fastest settings of a preset that lose no more than a given
+//! share of its pixels.
 
 use anyhow::Result;
 use clap::Args;
@@ -6,14 +7,15 @@ use serde::Serialize;
 
 use crate::base::work::State;
 use crate::command::bench::common::Common;
-use crate::command::bench::row::flat;
+use crate::command::bench::runner::{COUNTED, Runner, TIMED, of_how_many};
 use crate::command::bench::table;
 use crate::command::executor::Executor;
 use crate::command::interrupt;
+use crate::command::progress::Progress;
 use crate::gpu::render::RenderError;
 use crate::measure::calibrate::{Calibration, calibrate};
+use crate::plan::Plan;
 use crate::plan::march::Mode;
-use crate::plan::{Extras, Plan};
 
 /// Options of `bench calibrate`.
 #[derive(Debug, Args)]
@@ -73,48 +75,47 @@ pub fn run(args: &CalibrateBench) -> Result<()> {
     let files = args.common.files(None, &plans)?;
     let mut executor = args.common.executor()?;
     let mut rows = Vec::new();
-    for (name, plan) in &plans {
-        let found = calibrate(plan, args.budget, args.rays as usize, &|| {
+    for (i, (name, plan)) in plans.iter().enumerate() {
+        let what = of_how_many(name, i, plans.len());
+        let mut progress = Progress::start(&format!("calibrating {what}"));
+        let found = calibrate(plan, args.budget, args.rays as usize, &mut |share| {
+            progress.report(share, "");
             !interrupt::asked()
         });
+        drop(progress);
         let found = found.ok_or(RenderError::Cancelled)?;
-        let row = measure(&mut executor, name, plan, &found, args.budget)?;
+        let row = measure(&mut executor, name, &what, plan, &found, args.budget)?;
         files.show(&sentence(&row, plan))?;
         rows.push(row);
     }
-    let flat: Vec<_> = rows.iter().map(flat).collect();
-    files.write(&rows, &flat)
+    files.write(&rows)
 }
 
 /// The proposal on the device, beside `safe`.
 fn measure(
     executor: &mut Executor,
     name: &str,
+    what: &str,
     plan: &Plan,
     found: &Calibration,
     budget: f64,
 ) -> Result<CalibrateRow, RenderError> {
-    let watch = &mut |_: &_| !interrupt::asked();
+    /// Warm runs that the shortest time is taken of.
+    const RUNS: usize = 4;
+    let (device, precision) = (executor.name(), executor.precision_warning(plan));
+    let mut runner = Runner::new(executor, what, 2 * (RUNS + 1));
     let mut safe = plan.clone();
     safe.march.mode = Mode::Safe;
     let calibrated = found.apply(plan);
-    let counted = Extras {
-        count: true,
-        depth_only: true,
-        ..Extras::default()
-    };
-    let timed = Extras {
-        depth_only: true,
-        ..Extras::default()
-    };
     let mut work = [0.0; 2];
     let mut time = [f64::INFINITY; 2];
     let mut lost = 0;
     for (i, plan) in [&safe, &calibrated].into_iter().enumerate() {
-        let frame = executor.render(plan, counted, watch)?;
+        let mode = plan.march.mode.name();
+        let frame = runner.render(plan, COUNTED, mode)?;
         work[i] = frame.work_per_pixel().map_or(0.0, |w| w.0);
-        for _ in 0..4 {
-            time[i] = time[i].min(executor.render(plan, timed, watch)?.march_ms);
+        for _ in 0..RUNS {
+            time[i] = time[i].min(runner.render(plan, TIMED, mode)?.march_ms);
         }
         let width = plan.size[0] as usize;
         let gone = found.probes.iter().filter(|probe| {
@@ -128,7 +129,7 @@ fn measure(
     Ok(CalibrateRow {
         preset: name.into(),
         size: plan.size,
-        device: executor.name(),
+        device,
         budget,
         rays: found.probes.len(),
         slope: found.slope,
@@ -143,18 +144,18 @@ fn measure(
         evaluations_per_pixel: work[1],
         safe_ms: time[0],
         wall_ms: time[1],
-        precision: executor.precision_warning(plan),
+        precision,
     })
 }
 
-/// What was found, and what to write into the preset.
+/// The result as text, with the lines to write into the preset.
 fn sentence(row: &CalibrateRow, plan: &Plan) -> String {
     let [w, h] = row.size;
     let verdict = if row.within {
         String::new()
     } else {
         format!(
-            "\nThe budget of {:.3} % is out of reach: this is the nearest that was found.\n",
+            "\nThe budget of {:.3} % is out of reach: these settings come nearest.\n",
             100.0 * row.budget
         )
     };

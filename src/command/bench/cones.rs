@@ -11,7 +11,6 @@ use serde::Serialize;
 
 use crate::command::bench::common::Common;
 use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
-use crate::command::bench::row::flat;
 use crate::command::bench::table;
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
@@ -135,8 +134,7 @@ pub fn run(args: &ConesBench) -> Result<()> {
     let all: Vec<_> = all
         .chain(tracers.into_iter().map(ConesRow::Tracer))
         .collect();
-    let flat = one_header(all.iter().map(flat).collect());
-    files.write(&all, &flat)
+    files.write(&all)
 }
 
 fn area([w, h]: [u32; 2]) -> usize {
@@ -154,24 +152,6 @@ fn fields(names: &[String]) -> Result<Vec<Pattern>> {
         Pattern::named(name).ok_or_else(why)
     };
     names.iter().map(one).collect()
-}
-
-/// Rows of two kinds under one line of names: what a kind lacks stays empty.
-fn one_header(rows: Vec<Vec<(String, String)>>) -> Vec<Vec<(String, String)>> {
-    let mut names: Vec<String> = Vec::new();
-    for (name, _) in rows.iter().flatten() {
-        if !names.contains(name) {
-            names.push(name.clone());
-        }
-    }
-    let fill = |row: Vec<(String, String)>| {
-        let value = |name: &String| {
-            let found = row.iter().find(|(n, _)| n == name);
-            found.map_or(String::new(), |(_, v)| v.clone())
-        };
-        names.iter().map(|n| (n.clone(), value(n))).collect()
-    };
-    rows.into_iter().map(fill).collect()
 }
 
 /// Every map of a relief, as far as the budget goes.

@@ -3,8 +3,6 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::measure::compare::Report;
-
 /// Quantiles of |e| in footprints, over pixels that hit in both.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct DepthError {
@@ -77,25 +75,6 @@ pub struct Row {
 }
 
 impl Row {
-    /// Takes over the figures of a comparison.
-    pub fn fill(&mut self, report: &Report) {
-        let [median, p95, p99, max] = report.depth_error;
-        self.depth_error = DepthError {
-            median,
-            p95,
-            p99,
-            max,
-        };
-        self.behind = report.behind;
-        self.front = report.front;
-        self.behind8 = report.behind8;
-        self.front8 = report.front8;
-        self.holes = report.holes;
-        self.false_hits = report.false_hits;
-        self.start_violations = report.start_violations.iter().map(|v| v.1).collect();
-        self.unconverged = report.unconverged;
-    }
-
     /// Share of pixels that are wrong: too deep, lost, or not finished.
     pub fn wrong(&self) -> f64 {
         self.behind + self.holes + self.unconverged

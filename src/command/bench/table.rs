@@ -1,13 +1,24 @@
-//! Rows as tables that are Markdown and read well on a terminal.
+//! The tables of measurements.
 
 use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
 use crate::command::bench::row::Row;
 use crate::command::bench::steps_row::StepsRow;
+use crate::command::table::markdown;
 
-/// Said above times of a device that does not tell its own.
+/// Stands above the times of a device without timestamps.
 const UNTIMED: &str = "The device has no timestamps: times are wall time.\n\n";
 
-/// A line of warning where there is one.
+/// A number with so many digits after the point.
+fn fixed(x: f64, digits: usize) -> String {
+    format!("{x:.digits$}")
+}
+
+/// A share in percent with so many digits after the point.
+fn percent(share: f64, digits: usize) -> String {
+    fixed(100.0 * share, digits)
+}
+
+/// A line of warning, if there is a warning.
 pub fn precision(warning: Option<&str>) -> String {
     warning.map_or(String::new(), |w| format!("Precision: {w}.\n\n"))
 }
@@ -23,27 +34,38 @@ pub fn preset(rows: &[Row]) -> String {
     if rows.iter().all(|r| r.gpu_ms.is_none()) {
         text += UNTIMED;
     }
-    text += "| setting                              | evaluations per pixel | fewer | wall ms | faster | behind % | holes % | behind 8 % | p99 footprints | unconverged % |   FLIP | start violations, coarse to fine |\n";
-    text += "|:-------------------------------------|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|:----|\n";
-    for row in rows {
+    let heads = [
+        "setting",
+        "evaluations per pixel",
+        "fewer",
+        "wall ms",
+        "faster",
+        "behind %",
+        "holes %",
+        "behind 8 %",
+        "p99 footprints",
+        "unconverged %",
+        "FLIP",
+        "start violations, coarse to fine",
+    ];
+    let cells = rows.iter().map(|row| {
         let starts: Vec<String> = row.start_violations.iter().map(u64::to_string).collect();
-        text += &format!(
-            "| {:<36} | {:6.2} | {:5.2} | {:7.1} | {:5.2} | {:.4} | {:.4} | {:.4} | {:8.3} | {:.4} | {:.4} | {} |\n",
+        [
             row.label(),
-            row.evaluations_per_pixel,
-            first.evaluations_per_pixel / row.evaluations_per_pixel,
-            row.wall_ms,
-            first.wall_ms / row.wall_ms,
-            100.0 * row.behind,
-            100.0 * row.holes,
-            100.0 * row.behind8,
-            row.depth_error.p99,
-            100.0 * row.unconverged,
-            row.flip,
+            fixed(row.evaluations_per_pixel, 2),
+            fixed(first.evaluations_per_pixel / row.evaluations_per_pixel, 2),
+            fixed(row.wall_ms, 1),
+            fixed(first.wall_ms / row.wall_ms, 2),
+            percent(row.behind, 4),
+            percent(row.holes, 4),
+            percent(row.behind8, 4),
+            fixed(row.depth_error.p99, 3),
+            percent(row.unconverged, 4),
+            fixed(row.flip, 4),
             starts.join(" "),
-        );
-    }
-    text
+        ]
+    });
+    text + &markdown(heads, &cells.collect::<Vec<_>>())
 }
 
 /// The rows of a setting, preset by preset.
@@ -66,17 +88,25 @@ fn mean(rows: &[&Row], figure: fn(&Row) -> f64) -> f64 {
 /// Means over the presets, of each setting against `ray` and `ray-relaxed`.
 pub fn means(rows: &[Row]) -> String {
     let (ray, relaxed) = (of(rows, "ray"), of(rows, "ray-relaxed"));
-    let mut text = String::from(
+    let text = String::from(
         "\n### Means over the presets\n\nRatios are geometric means, shares arithmetic ones. Wrong pixels are those behind, holes and\nunconverged ones.\n\n",
     );
-    text += "| setting                              | fewer evaluations than ray | than ray-relaxed | faster than ray | than ray-relaxed | wrong pixels % |   FLIP |\n";
-    text += "|:-------------------------------------|----:|----:|----:|----:|----:|----:|\n";
     let mut labels: Vec<String> = Vec::new();
     for row in rows {
         if !labels.contains(&row.label()) {
             labels.push(row.label());
         }
     }
+    let heads = [
+        "setting",
+        "fewer evaluations than ray",
+        "than ray-relaxed",
+        "faster than ray",
+        "than ray-relaxed",
+        "wrong pixels %",
+        "FLIP",
+    ];
+    let mut cells = Vec::new();
     for label in labels {
         let own = of(rows, &label);
         // A setting that does not fit every preset has no mean over them.
@@ -85,17 +115,17 @@ pub fn means(rows: &[Row]) -> String {
         }
         let work = |r: &Row| r.evaluations_per_pixel;
         let time = |r: &Row| r.wall_ms;
-        text += &format!(
-            "| {label:<36} | {:5.2} | {:5.2} | {:5.2} | {:5.2} | {:.4} | {:.4} |\n",
-            ratio(&ray, &own, work),
-            ratio(&relaxed, &own, work),
-            ratio(&ray, &own, time),
-            ratio(&relaxed, &own, time),
-            100.0 * mean(&own, Row::wrong),
-            mean(&own, |r| r.flip),
-        );
+        cells.push([
+            label,
+            fixed(ratio(&ray, &own, work), 2),
+            fixed(ratio(&relaxed, &own, work), 2),
+            fixed(ratio(&ray, &own, time), 2),
+            fixed(ratio(&relaxed, &own, time), 2),
+            percent(mean(&own, Row::wrong), 4),
+            fixed(mean(&own, |r| r.flip), 4),
+        ]);
     }
-    text
+    text + &markdown(heads, &cells)
 }
 
 /// What is listed as better than `safe`, and what is not.
@@ -147,25 +177,40 @@ const CLAIMS: [(&str, u32); 3] = [
 /// The slides' claims beside what was measured.
 pub fn slides(rows: &[Row]) -> String {
     let (ray, safe) = (of(rows, "ray"), of(rows, "safe"));
-    let mut text = String::from(
-        "\n### The claims of the 2012 slides\n\nSpeed gained over plain rays, and what it costs: pixels behind or lost, against those of the\nexact step.\n\n",
-    );
-    text += "| budget      | claimed gain % | measured gain % | fewer evaluations | behind % | holes % | unconverged % | cells' pixels started behind | behind, holes and unconverged of `safe` % |\n";
-    text += "|:------------|----:|----:|----:|----:|----:|----:|----:|----:|\n";
-    for (name, claim) in CLAIMS {
+    let text = "
+### The claims of the 2012 slides
+
+Speed gained over plain rays, and what it costs: pixels behind or lost, against those of the
+exact step.
+
+";
+    let heads = [
+        "budget",
+        "claimed gain %",
+        "measured gain %",
+        "fewer evaluations",
+        "behind %",
+        "holes %",
+        "unconverged %",
+        "cells' pixels started behind",
+        "behind, holes and unconverged of `safe` %",
+    ];
+    let cells = CLAIMS.map(|(name, claim)| {
         let own = of(rows, name);
         let starts: u64 = own.iter().flat_map(|r| r.start_violations.last()).sum();
-        text += &format!(
-            "| {name:<11} | {claim} | {:.0} | {:.2} | {:.3} | {:.3} | {:.3} | {starts} | {:.3} |\n",
-            100.0 * (ratio(&ray, &own, |r| r.wall_ms) - 1.0),
-            ratio(&ray, &own, |r| r.evaluations_per_pixel),
-            100.0 * mean(&own, |r| r.behind),
-            100.0 * mean(&own, |r| r.holes),
-            100.0 * mean(&own, |r| r.unconverged),
-            100.0 * mean(&safe, Row::wrong),
-        );
-    }
-    text
+        [
+            name.into(),
+            claim.to_string(),
+            percent(ratio(&ray, &own, |r| r.wall_ms) - 1.0, 0),
+            fixed(ratio(&ray, &own, |r| r.evaluations_per_pixel), 2),
+            percent(mean(&own, |r| r.behind), 3),
+            percent(mean(&own, |r| r.holes), 3),
+            percent(mean(&own, |r| r.unconverged), 3),
+            starts.to_string(),
+            percent(mean(&safe, Row::wrong), 3),
+        ]
+    });
+    text.to_string() + &markdown(heads, &cells)
 }
 
 /// The levels of one preset and mode.
@@ -176,36 +221,44 @@ pub fn levels(rows: &[StepsRow]) -> String {
     let [w, h] = first.size;
     let mut text = format!("\n### {}, {}, {w} x {h}\n\n", first.preset, first.mode);
     text += &precision(first.precision.as_deref());
-    // One clock for the whole column.
+    // The whole column has one clock.
     let timed = rows.iter().all(|r| r.gpu_ms.is_some());
     if !timed {
         text += UNTIMED;
     }
-    let clock = if timed { " gpu ms" } else { "wall ms" };
-    text += &format!(
-        "| pass       |   cells | evaluations | iterations | p50 | p90 | p99 |  max |  sky % | unconverged % | waste 8 x 4 | waste 8 x 8 | {clock} |\n"
-    );
-    text +=
-        "|:-----------|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|\n";
-    for row in rows {
-        text += &format!(
-            "| {:<10} | {:7} | {:11} | {:10} | {:3} | {:3} | {:3} | {:4} | {:6.2} | {:8.4} | {:5.2} | {:5.2} | {:7.2} |\n",
-            row.pass,
-            row.cells,
-            row.evaluations,
-            row.iterations,
-            row.p50,
-            row.p90,
-            row.p99,
-            row.max,
-            100.0 * row.sky,
-            100.0 * row.unconverged,
-            row.waste_8x4,
-            row.waste_8x8,
-            row.gpu_ms.filter(|_| timed).unwrap_or(row.wall_ms),
-        );
-    }
-    text
+    let heads = [
+        "pass",
+        "cells",
+        "evaluations",
+        "iterations",
+        "p50",
+        "p90",
+        "p99",
+        "max",
+        "sky %",
+        "unconverged %",
+        "waste 8 x 4",
+        "waste 8 x 8",
+        if timed { "gpu ms" } else { "wall ms" },
+    ];
+    let cells = rows.iter().map(|row| {
+        [
+            row.pass.clone(),
+            row.cells.to_string(),
+            row.evaluations.to_string(),
+            row.iterations.to_string(),
+            row.p50.to_string(),
+            row.p90.to_string(),
+            row.p99.to_string(),
+            row.max.to_string(),
+            percent(row.sky, 2),
+            percent(row.unconverged, 4),
+            fixed(row.waste_8x4, 2),
+            fixed(row.waste_8x8, 2),
+            fixed(row.gpu_ms.filter(|_| timed).unwrap_or(row.wall_ms), 2),
+        ]
+    });
+    text + &markdown(heads, &cells.collect::<Vec<_>>())
 }
 
 /// The cone maps of one field.
@@ -214,28 +267,33 @@ pub fn generators(rows: &[GeneratorRow]) -> String {
         return String::new();
     };
     let [w, h] = first.size;
-    let mut text = format!(
+    let head = format!(
         "\n### Maps of {}, {w} x {h}, {}\n\n",
         first.field, first.surface
     );
-    text += "| generator      |       ms | mean ratio | of exact | wider than exact % |\n";
-    text += "|:---------------|----:|----:|----:|----:|\n";
-    for row in rows {
-        let number = |value: Option<f64>| value.map_or("n/a".into(), |v| format!("{v:.4}"));
+    let heads = [
+        "generator",
+        "ms",
+        "mean ratio",
+        "of exact",
+        "wider than exact %",
+    ];
+    let cells = rows.iter().map(|row| {
+        let number = |value: Option<f64>| value.map_or("n/a".into(), |v| fixed(v, 4));
         let ms = match (row.ms, row.estimate_ms) {
-            (Some(ms), _) => format!("{ms:.2}"),
+            (Some(ms), _) => fixed(ms, 2),
             (None, Some(ms)) => format!("n/a, about {ms:.0}"),
             (None, None) => "n/a".into(),
         };
-        text += &format!(
-            "| {:<14} | {ms:>8} | {:>10} | {:>8} | {:>8} |\n",
-            row.generator,
+        [
+            row.generator.clone(),
+            ms,
             number(row.mean_ratio),
             number(row.of_exact),
             number(row.wider_than_exact.map(|share| 100.0 * share)),
-        );
-    }
-    text
+        ]
+    });
+    head + &markdown(heads, &cells.collect::<Vec<_>>())
 }
 
 /// The tracers of one field.
@@ -244,26 +302,33 @@ pub fn tracers(rows: &[TracerRow]) -> String {
         return String::new();
     };
     let [w, h] = first.size;
-    let mut text = format!(
+    let head = format!(
         "\n### Tracers over {}, {w} x {h}, {}\n\n",
         first.field, first.surface
     );
-    text += "| view | tracer        | map            | steps, mean | p99 | skipped % | unconverged % | error, texels |\n";
-    text += "|----:|:--------------|:---------------|----:|----:|----:|----:|----:|\n";
-    for row in rows {
-        text += &format!(
-            "| {:4} | {:<13} | {:<14} | {:7.2} | {:4} | {:7.3} | {:7.3} | {:.2e} |\n",
-            row.view_deg,
-            row.tracer,
-            row.map,
-            row.steps_mean,
-            row.steps_p99,
-            100.0 * row.skipped,
-            100.0 * row.unconverged,
-            row.error_texels,
-        );
-    }
-    text
+    let heads = [
+        "view",
+        "tracer",
+        "map",
+        "steps, mean",
+        "p99",
+        "skipped %",
+        "unconverged %",
+        "error, texels",
+    ];
+    let cells = rows.iter().map(|row| {
+        [
+            row.view_deg.to_string(),
+            row.tracer.clone(),
+            row.map.clone(),
+            fixed(row.steps_mean, 2),
+            row.steps_p99.to_string(),
+            percent(row.skipped, 3),
+            percent(row.unconverged, 3),
+            format!("{:.2e}", row.error_texels),
+        ]
+    });
+    head + &markdown(heads, &cells.collect::<Vec<_>>())
 }
 
 #[cfg(test)]
@@ -320,7 +385,7 @@ mod tests {
             precision,
         };
         let timed = levels(&[step(Some(5.0), None), step(Some(6.0), None)]);
-        assert!(timed.contains("|  gpu ms |") && timed.contains("|    5.00 |"));
+        assert!(timed.contains("| gpu ms |") && timed.contains("|   5.00 |"));
         assert!(!timed.contains("wall") && !timed.contains("Precision"));
         let partly = levels(&[step(Some(5.0), None), step(None, None)]);
         assert!(partly.contains("| wall ms |") && partly.contains(UNTIMED));
