@@ -9,33 +9,22 @@ use crate::command::print::print;
 use crate::command::table::columns;
 use crate::gpu::device::{Adapters, kind};
 
-const HEAD: [&str; 10] = [
-    "index",
-    "name",
-    "backend",
-    "type",
-    "driver",
-    "PCI id",
-    "max buffer",
-    "max binding",
-    "f64",
-    "timestamps",
-];
+const HEAD: &str = "index,name,backend,type,driver,PCI id,max buffer,max binding,f64,timestamps";
 
 /// Prints a table of all devices.
 pub fn run() -> Result<()> {
-    let mut rows = vec![HEAD.map(str::to_string)];
+    let mut rows = vec![HEAD.split(',').map(str::to_string).collect()];
     let adapters = Adapters::find();
     rows.extend(adapters.iter().enumerate().map(|(i, a)| row(i, a)));
     let name = Executor::Cpu.name();
     let cpu = [
         "cpu", &name, "cpu", "executor", "-", "-", "-", "-", "yes", "-",
     ];
-    rows.push(cpu.map(str::to_string));
-    print(columns(&rows).as_bytes())
+    rows.push(cpu.map(str::to_string).to_vec());
+    print(columns(rows).as_bytes())
 }
 
-fn row(index: usize, adapter: &Adapter) -> [String; 10] {
+fn row(index: usize, adapter: &Adapter) -> Vec<String> {
     let info = adapter.get_info();
     let limits = adapter.limits();
     let has = |feature| match adapter.features().contains(feature) {
@@ -44,7 +33,7 @@ fn row(index: usize, adapter: &Adapter) -> [String; 10] {
     };
     let driver = format!("{} {}", info.driver, info.driver_info);
     let driver = driver.trim();
-    [
+    vec![
         index.to_string(),
         info.name.clone(),
         format!("{:?}", info.backend).to_lowercase(),

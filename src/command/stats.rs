@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::command::executor::Executor;
 use crate::command::sink::is_stdout;
-use crate::picture::frame::Frame;
+use crate::picture::frame::{Frame, PassFigures};
 use crate::plan::{PREPARE, Plan};
 
 /// One render.
@@ -25,7 +25,7 @@ pub struct Stats {
     /// March and trace on the clock, without compilation and files.
     pub wall_ms: f64,
     /// Every pass in order.
-    pub passes: Vec<PassStats>,
+    pub passes: Vec<PassFigures>,
     /// Evaluations of march and trace over pixels.
     pub evaluations_per_pixel: Option<f64>,
     /// Fold iterations of march and trace over pixels.
@@ -40,36 +40,11 @@ pub struct Stats {
     pub undecided: f64,
 }
 
-/// One pass.
-#[derive(Clone, Debug, Serialize)]
-pub struct PassStats {
-    /// `prepare`, `march 1/16`, `trace` or `color`.
-    pub name: String,
-    /// Cells or pixels; places of a cone map.
-    pub cells: u64,
-    /// Time on the clock.
-    pub wall_ms: f64,
-    /// Time on the device, where it tells.
-    pub gpu_ms: Option<f64>,
-    /// Estimate evaluations, where they were counted.
-    pub evaluations: Option<u64>,
-    /// Fold iterations, where they were counted.
-    pub iterations: Option<u64>,
-}
-
 impl Stats {
     /// The figures of a frame.
     pub fn new(preset: &str, plan: &Plan, executor: &Executor, frame: &Frame) -> Self {
         let work = frame.work_per_pixel();
         let [sky, hit, unconverged] = shares(frame);
-        let passes = frame.passes.iter().map(|p| PassStats {
-            name: p.name.clone(),
-            cells: p.cells,
-            wall_ms: p.wall_ms,
-            gpu_ms: p.gpu_ms,
-            evaluations: p.evaluations,
-            iterations: p.iterations,
-        });
         Self {
             preset: preset.into(),
             size: frame.size,
@@ -77,7 +52,7 @@ impl Stats {
             backend: executor.backend(),
             mode: plan.march.mode.name(),
             wall_ms: frame.march_ms,
-            passes: passes.collect(),
+            passes: frame.passes.clone(),
             evaluations_per_pixel: work.map(|w| w.0),
             iterations_per_pixel: work.map(|w| w.1),
             hit,

@@ -2,49 +2,58 @@
 //!
 //! Crates for tables write no line of alignments in Markdown, which `docs/` shows.
 
-/// The width of the widest cell of each column.
-fn widths<'a>(rows: impl Iterator<Item = &'a [String]>) -> Vec<usize> {
-    let mut widths = Vec::new();
-    for row in rows {
-        widths.resize(widths.len().max(row.len()), 0);
-        for (width, cell) in widths.iter_mut().zip(row) {
-            *width = cell.chars().count().max(*width);
+/// A column: its head, and the cell of a row.
+pub type Column<'a, R> = (&'a str, &'a dyn Fn(&R) -> String);
+
+/// Pads every cell to the width of its column: on the left in columns that hold a number if
+/// `numbers` is set.
+fn pad(rows: &mut [Vec<String>], numbers: bool) -> Vec<bool> {
+    let columns = rows.first().map_or(0, Vec::len);
+    let mut right = vec![false; columns];
+    for (i, right) in right.iter_mut().enumerate() {
+        *right = numbers && rows.iter().any(|row| row[i].parse::<f64>().is_ok());
+        let width = rows.iter().map(|row| row[i].chars().count()).max();
+        let width = width.unwrap_or(0);
+        for row in &mut *rows {
+            row[i] = match *right {
+                true => format!("{:>width$}", row[i]),
+                false => format!("{:<width$}", row[i]),
+            };
         }
     }
-    widths
+    right
 }
 
-/// A Markdown table. Columns that hold a number are aligned to the right.
-pub fn markdown<const N: usize>(heads: [&str; N], rows: &[[String; N]]) -> String {
-    let heads = heads.map(str::to_string);
-    let widths = widths(rows.iter().chain([&heads]).map(|row| &row[..]));
-    let right: Vec<bool> = (0..N)
-        .map(|i| rows.iter().any(|row| row[i].parse::<f64>().is_ok()))
-        .collect();
-    let line = |row: &[String; N]| {
-        let cells = row.iter().zip(widths.iter().zip(&right));
-        let cells = cells.map(|(cell, (&w, right))| match right {
-            true => format!(" {cell:>w$} |"),
-            false => format!(" {cell:<w$} |"),
-        });
-        format!("|{}\n", cells.collect::<String>())
-    };
-    let rule = widths.iter().zip(&right).map(|(&w, right)| match right {
-        true => format!("{}:|", "-".repeat(w + 1)),
-        false => format!(":{}|", "-".repeat(w + 1)),
+/// A Markdown table of rows. Columns that hold a number are aligned to the right.
+pub fn table<R>(rows: &[R], columns: &[Column<'_, R>]) -> String {
+    let mut cells = vec![
+        columns
+            .iter()
+            .map(|(head, _)| (*head).to_string())
+            .collect(),
+    ];
+    for row in rows {
+        cells.push(columns.iter().map(|(_, cell)| cell(row)).collect());
+    }
+    let right = pad(&mut cells, true);
+    let rule = cells[0].iter().zip(right).map(|(head, right)| {
+        let dashes = "-".repeat(head.chars().count() + 1);
+        if right {
+            format!("{dashes}:")
+        } else {
+            format!(":{dashes}")
+        }
     });
-    let rule = format!("|{}\n", rule.collect::<String>());
-    line(&heads) + &rule + &rows.iter().map(line).collect::<String>()
+    let rule = format!("|{}|\n", rule.collect::<Vec<_>>().join("|"));
+    let mut lines = cells.iter().map(|row| format!("| {} |\n", row.join(" | ")));
+    let head = lines.next().unwrap_or_default();
+    head + &rule + &lines.collect::<String>()
 }
 
-/// Rows in columns, two blanks apart.
-pub fn columns<const N: usize>(rows: &[[String; N]]) -> String {
-    let widths = widths(rows.iter().map(|row| &row[..]));
-    let line = |row: &[String; N]| {
-        let cells = row.iter().zip(&widths);
-        let cells: String = cells.map(|(cell, &w)| format!("{cell:<w$}  ")).collect();
-        format!("{}\n", cells.trim_end())
-    };
+/// Rows of cells in columns, two blanks apart.
+pub fn columns(mut rows: Vec<Vec<String>>) -> String {
+    pad(&mut rows, false);
+    let line = |row: &Vec<String>| format!("{}\n", row.join("  ").trim_end());
     rows.iter().map(line).collect()
 }
 
@@ -54,9 +63,12 @@ mod tests {
 
     #[test]
     fn cells_stand_under_each_other() {
-        let rows = [["a", "1.50"], ["long", "n/a"]].map(|row| row.map(str::to_string));
-        let table = "| who  |   ms |\n|:-----|-----:|\n| a    | 1.50 |\n| long |  n/a |\n";
-        assert_eq!(markdown(["who", "ms"], &rows), table);
-        assert_eq!(columns(&rows), "a     1.50\nlong  n/a\n");
+        let rows = [("a", "1.50"), ("long", "n/a")];
+        let who = |r: &(&str, &str)| r.0.to_string();
+        let ms = |r: &(&str, &str)| r.1.to_string();
+        let text = "| who  |   ms |\n|:-----|-----:|\n| a    | 1.50 |\n| long |  n/a |\n";
+        assert_eq!(table(&rows, &[("who", &who), ("ms", &ms)]), text);
+        let rows = rows.map(|r| vec![who(&r), ms(&r)]);
+        assert_eq!(columns(rows.to_vec()), "a     1.50\nlong  n/a\n");
     }
 }

@@ -10,6 +10,7 @@
 //! well be, and what is told in the end was counted on as many other pixels.
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use crate::base::view::{View, footprint};
 use crate::base::work::{State, Work};
@@ -55,7 +56,7 @@ pub struct Probe {
 }
 
 /// What is proposed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Calibration {
     /// The largest slope of the estimate that the probes met.
     pub slope: f64,
@@ -72,6 +73,7 @@ pub struct Calibration {
     /// Whether the budget holds, on the probes with their doubt and on the others.
     pub within: bool,
     /// The other probes, to check a picture with.
+    #[serde(skip)]
     pub probes: Vec<Probe>,
 }
 

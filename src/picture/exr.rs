@@ -11,8 +11,8 @@ use std::io::{Seek, Write};
 
 use exr::meta::attribute::{AttributeValue, Chromaticities, Text};
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, LayerAttributes, LineOrder, SmallVec,
-    Vec2, WritableImage,
+    AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image, LayerAttributes, LineOrder,
+    SmallVec, Vec2, WritableImage,
 };
 
 use crate::picture::SOFTWARE;
@@ -80,9 +80,10 @@ pub fn write_exr(
     attributes
         .other
         .insert("conemarch preset".into(), text(preset));
+    // Lines in their order, so that threads that end in any order give the same bytes.
     let encoding = Encoding {
+        blocks: Blocks::ScanLines,
         line_order: LineOrder::Increasing,
-        // Lossless, and quick to write and to read.
         ..Encoding::SMALL_FAST_LOSSLESS
     };
     let layer = exr::prelude::Layer::new(size, attributes, encoding, AnyChannels::sort(list));

@@ -3,9 +3,10 @@
 use crate::base::view::View;
 use crate::base::work::Work;
 use glam::DVec3;
+use serde::Serialize;
 
 /// What one pass did.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct PassFigures {
     /// `prepare`, `march 1/16`, `trace`, `color`.
     pub name: String,

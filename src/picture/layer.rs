@@ -47,7 +47,7 @@ impl Layer {
         found.map_or("", |(word, _, _)| *word)
     }
 
-    /// What a render must keep for the layer, and what it may leave out.
+    /// What a render must keep for the layer.
     pub fn extras(self) -> Extras {
         Extras {
             count: self == Self::Steps,
@@ -83,10 +83,10 @@ const HEAT: [DVec3; 6] = [
     DVec3::new(0.993, 0.906, 0.144),
 ];
 
-/// Farthest grey of depth: sky stays apart from it.
+/// Grey of the farthest depth: sky is brighter.
 const FARTHEST: f64 = 0.95;
 
-/// Error in footprints that is as dark as any larger one.
+/// Errors in footprints above this have the same colour.
 const MOST_APART: f64 = 8.0;
 const TOO_DEEP: [DVec3; 2] = [DVec3::new(0.90, 0.55, 0.10), DVec3::new(0.55, 0.0, 0.05)];
 const TOO_NEAR: [DVec3; 2] = [DVec3::new(0.25, 0.60, 0.90), DVec3::new(0.05, 0.10, 0.50)];
@@ -158,9 +158,9 @@ impl<'a> Shades<'a> {
         }
     }
 
-    /// Where a value stands between black and white.
+    /// The place of a value between black and white, 0..1.
     fn share(&self, v: DVec3) -> DVec3 {
-        // An even picture has no range; any shade will do for it.
+        // A picture of one value has no range; any shade will do.
         let range = (self.high - self.low).max(DVec3::splat(f64::MIN_POSITIVE));
         ((v - self.low) / range).clamp(DVec3::ZERO, DVec3::ONE)
     }
@@ -216,7 +216,7 @@ impl<'a> Shades<'a> {
             for (x, pixel) in row.chunks_mut(channels).enumerate() {
                 let shade = self.at(y * width + x).to_array();
                 for (to, value) in pixel.iter_mut().zip(shade) {
-                    // The cast saturates, and takes no number for black.
+                    // The cast saturates, and turns NaN into black.
                     *to = (value * f64::from(most) + 0.5).min(f64::from(most)) as u16;
                 }
             }
@@ -229,7 +229,7 @@ fn vector(v: [f32; 3]) -> DVec3 {
     DVec3::from_array(v.map(f64::from))
 }
 
-/// The colour of a signed error in footprints. The root makes small ones seen.
+/// The colour of a signed error in footprints. The root makes small errors visible.
 fn apart(e: f64) -> DVec3 {
     if e.is_nan() {
         return UNCONVERGED;

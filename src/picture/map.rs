@@ -1,4 +1,4 @@
-//! Cone maps on their way out: encoded in memory, then written whole or not at all.
+//! Writes cone maps, whole or not at all.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use thiserror::Error;
 /// Why a cone map could not be written.
 #[derive(Debug, Error)]
 pub enum WriteMapError {
-    /// It has no place in the layout.
+    /// The layout cannot hold it.
     #[error(transparent)]
     Map(#[from] MapError),
     /// The file cannot be written.
@@ -18,7 +18,7 @@ pub enum WriteMapError {
     Output(#[from] OutputError),
 }
 
-/// Writes a map in a form. The file appears under its name when all of it is there.
+/// Writes a map in a form. The file appears under its name when it is complete.
 ///
 /// # Errors
 /// The layout cannot hold the map, or the file cannot be written.

@@ -1,5 +1,5 @@
-//! Every key of a preset in words: what `docs/presets.md` shows. It is written from the
-//! same lists that presets are read by, so that it cannot name what there is not.
+//! The page `docs/presets.md`, which explains every key. It is written from the lists that
+//! presets are read by, so that it names exactly the keys that exist.
 
 use std::fmt::Write as _;
 
@@ -7,20 +7,20 @@ use crate::base::key::{Key, Text};
 use crate::plan::{Plan, Subject};
 use crate::preset::document::SECTIONS;
 
-/// What stands above the tables.
+/// The text above the tables.
 const HEAD: &str = "# Presets
 
 <!-- Written by `cargo run --release --example presets`; do not edit. -->
 
 A preset is a TOML file with a title and the sections below. Only `scene.kind` is required,
 and `scene.formula` where the kind is \"distance\"; every other key has the default that its
-table shows. Unknown keys and values that a key does not take are refused, with the file, the
-line and what would do.
+table shows. An unknown key or a wrong value is an error that names the file, the line and a valid
+alternative.
 
 `conemarch presets NAME` prints a built-in preset to start from, and
 `conemarch render PRESET --set section.key=value` changes single values, like
 `--set camera.fov=30`; words, fields and paths need no quotes there, like
-`--set scene.field=fbm:64x64,seed=3`. Whole numbers serve where numbers are asked for.
+`--set scene.field=fbm:64x64,seed=3`. A whole number may stand for any number.
 [method.md](method.md) explains shell, detail, cones and bounds, and
 [benchmarks.md](benchmarks.md) shows what the modes and the keys of `[march]` cost in time and
 in error.

@@ -25,7 +25,7 @@ pub struct CalibrateBench {
     /// Share of pixels that may be lost: behind, holes or unconverged
     #[arg(long, value_name = "SHARE", default_value_t = 0.002, value_parser = share)]
     budget: f64,
-    /// Camera rays to probe with
+    /// Number of camera rays that probe the preset
     #[arg(long, value_name = "COUNT", default_value_t = 8192, value_parser = count)]
     rays: u32,
 }
@@ -48,20 +48,15 @@ struct CalibrateRow {
     device: String,
     budget: f64,
     rays: usize,
-    slope: f64,
-    slack: f64,
-    lipschitz: f64,
-    shell: f64,
-    fudge: Vec<f64>,
-    lost: f64,
-    within: bool,
-    /// On the device, at the probed pixels.
+    #[serde(flatten)]
+    found: Calibration,
+    /// Share of the probed pixels that the device loses.
     lost_on_device: f64,
     safe_evaluations_per_pixel: f64,
     evaluations_per_pixel: f64,
     safe_ms: f64,
     wall_ms: f64,
-    /// A warning where f32 cannot hold what the preset asks for.
+    /// A warning if f32 is not precise enough for the preset.
     precision: Option<String>,
 }
 
@@ -84,20 +79,20 @@ pub fn run(args: &CalibrateBench) -> Result<()> {
         });
         drop(progress);
         let found = found.ok_or(RenderError::Cancelled)?;
-        let row = measure(&mut executor, name, &what, plan, &found, args.budget)?;
+        let row = measure(&mut executor, name, &what, plan, found, args.budget)?;
         files.show(&sentence(&row, plan))?;
         rows.push(row);
     }
     files.write(&rows)
 }
 
-/// The proposal on the device, beside `safe`.
+/// Measures the proposal on the device, and `safe` for comparison.
 fn measure(
     executor: &mut Executor,
     name: &str,
     what: &str,
     plan: &Plan,
-    found: &Calibration,
+    found: Calibration,
     budget: f64,
 ) -> Result<CalibrateRow, RenderError> {
     /// Warm runs that the shortest time is taken of.
@@ -132,14 +127,8 @@ fn measure(
         device,
         budget,
         rays: found.probes.len(),
-        slope: found.slope,
-        slack: found.slack,
-        lipschitz: found.lipschitz,
-        shell: found.shell,
-        fudge: found.fudge.clone(),
-        lost: found.lost,
-        within: found.within,
         lost_on_device: lost as f64 / found.probes.len().max(1) as f64,
+        found,
         safe_evaluations_per_pixel: work[0],
         evaluations_per_pixel: work[1],
         safe_ms: time[0],
@@ -151,7 +140,7 @@ fn measure(
 /// The result as text, with the lines to write into the preset.
 fn sentence(row: &CalibrateRow, plan: &Plan) -> String {
     let [w, h] = row.size;
-    let verdict = if row.within {
+    let verdict = if row.found.within {
         String::new()
     } else {
         format!(
@@ -159,27 +148,27 @@ fn sentence(row: &CalibrateRow, plan: &Plan) -> String {
             100.0 * row.budget
         )
     };
-    let fudge: Vec<String> = row.fudge.iter().map(|f| format!("{f}")).collect();
+    let fudge: Vec<String> = row.found.fudge.iter().map(|f| format!("{f}")).collect();
     let precision = table::precision(row.precision.as_deref());
     let mut text = format!(
         "\n### {}, {w} x {h}, {} rays\n\n{precision}Largest slope {:.3}, slack {:.1} in the median. Lost {:.3} % of rays in f64, {:.3} % on the\ndevice. Evaluations per pixel {:.2}, `safe` {:.2}; {:.1} ms of wall\ntime, `safe` {:.1}.\n{verdict}\n",
         row.preset,
         row.rays,
-        row.slope,
-        row.slack,
-        100.0 * row.lost,
+        row.found.slope,
+        row.found.slack,
+        100.0 * row.found.lost,
         100.0 * row.lost_on_device,
         row.evaluations_per_pixel,
         row.safe_evaluations_per_pixel,
         row.wall_ms,
         row.safe_ms,
     );
-    if row.lipschitz > plan.lipschitz() {
-        text += &format!("    [scene]\n    lipschitz = {}\n", row.lipschitz);
+    if row.found.lipschitz > plan.lipschitz() {
+        text += &format!("    [scene]\n    lipschitz = {}\n", row.found.lipschitz);
     }
     text += &format!(
         "    [march]\n    mode = \"calibrated\"\n    shell = {}\n    fudge = [{}]\n",
-        row.shell,
+        row.found.shell,
         fudge.join(", ")
     );
     text

@@ -26,22 +26,22 @@ pub struct Common {
     /// Presets; all built-in ones if none is named
     #[arg(add = completions::presets())]
     pub names: Vec<PathBuf>,
-    /// Pixels, instead of the presets' own
+    /// Width and height in pixels, in place of the presets'
     #[arg(long, value_name = "WxH", value_parser = size::read)]
     pub size: Option<[u32; 2]>,
     /// auto, gpu, software, cpu, an index or a part of a name
     #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
     pub device: Choice,
-    /// Write the rows as JSON too; - is standard output, and the tables go to stderr then
+    /// Also write the rows as JSON; - is standard output, and the tables then go to stderr
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write the rows as CSV too, - as above
+    /// Also write the rows as CSV; - as above
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
 }
 
 impl Common {
-    /// Every preset's name and plan.
+    /// The name and the plan of every preset.
     ///
     /// # Errors
     /// A preset is unknown or wrong, two have one name, or one does not fit into memory.
@@ -98,11 +98,12 @@ impl Common {
         Ok(executor)
     }
 
-    /// Makes sure that the asked files can be written, before anything is measured;
-    /// `plot` is that of a measurement that draws.
+    /// Makes sure before the measurement that its files can be written; `plot` is one of
+    /// them where a measurement draws.
     ///
     /// # Errors
-    /// One of them cannot, two are the same, or one is a preset or a file that a plan names.
+    /// One of them cannot be written, two are the same, or one is a preset or a file that a
+    /// plan names.
     pub fn files(&self, plot: Option<&Path>, plans: &[(String, Plan)]) -> Result<Files> {
         let named = [
             ("--json", self.json.as_deref()),
@@ -137,7 +138,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Shows a table: on standard output, unless that carries rows or a picture.
+    /// Prints a table to standard output, or to standard error if the other carries a file.
     ///
     /// # Errors
     /// Standard output cannot be written.
@@ -160,7 +161,7 @@ impl Files {
         Ok(())
     }
 
-    /// Writes all rows, and hands over everything that was written, or nothing.
+    /// Writes all rows, and hands over all files or none.
     ///
     /// # Errors
     /// A file or standard output cannot be written.
@@ -197,7 +198,7 @@ fn csv(rows: &[Vec<(String, String)>]) -> Result<Vec<u8>> {
     writer.into_inner().context("the rows cannot be written")
 }
 
-/// The middle of some values; sorts them.
+/// The median of some values; sorts them.
 pub fn median_of(values: &mut [f64]) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()

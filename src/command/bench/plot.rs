@@ -1,7 +1,10 @@
-//! Time against error as a picture: a panel for each preset, both axes logarithmic.
+//! Time against error as an SVG: a panel for each preset, both axes logarithmic.
 //!
-//! Each mode has a colour; settings that move one key of a mode are small dots of its
+//! Each mode has a colour; settings that change one key of a mode are small dots of its
 //! colour. The line joins the settings that no other beats in both: the Pareto front.
+//!
+//! Drawn by hand: the logarithmic axes of `plotters` have no ticks within a decade, where most
+//! measurements lie, and its dots cannot tell their names to a pointer.
 
 use std::fmt::Write as _;
 
@@ -54,7 +57,7 @@ pub fn draw(rows: &[Row]) -> String {
     svg
 }
 
-/// Rows that no other beats: none is both faster and less wrong, by time.
+/// Rows that no other row beats in both time and wrong pixels, sorted by time.
 pub fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     let mut sorted: Vec<&Row> = rows.iter().copied().filter(|r| comparable(r)).collect();
     sorted.sort_by(|a, b| {
@@ -70,7 +73,7 @@ pub fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     best
 }
 
-/// A setting of the hit rule asks for another picture: its error is against another truth.
+/// Whether a row is compared with the usual truth: another `detail` has another one.
 fn comparable(row: &Row) -> bool {
     !row.parameters.contains_key("detail")
 }
@@ -85,16 +88,13 @@ struct Axis {
 
 impl Axis {
     fn new(values: impl Iterator<Item = f64>, at: f64, length: f64) -> Self {
-        let start = (f64::INFINITY, 0.0_f64);
-        let (low, high) = values.fold(start, |(low, high), v| (low.min(v), high.max(v)));
-        let (low, high) = if low.is_finite() {
-            (low, high)
-        } else {
-            (1.0, 1.0)
-        };
+        // Without values any range will do.
+        let values: Vec<f64> = values.collect();
+        let low = values.iter().copied().reduce(f64::min).unwrap_or(1.0);
+        let high = values.iter().copied().reduce(f64::max).unwrap_or(1.0);
         Self {
             low: low / 1.25,
-            high: high.max(low) * 1.25,
+            high: high * 1.25,
             at,
             length,
         }
@@ -126,12 +126,12 @@ impl Axis {
     }
 }
 
-/// A tick's number without what its power of ten was rounded by.
+/// A tick's number without the rounding error of its power of ten.
 fn rounded(t: f64) -> f64 {
     (t * 1e6).round() / 1e6
 }
 
-/// No wrong pixel at all is shown as half of one.
+/// Wrong pixels in percent. None at all is drawn as half a pixel: the axis is logarithmic.
 fn shown(row: &Row) -> f64 {
     let pixels = f64::from(row.size[0]) * f64::from(row.size[1]);
     100.0 * row.wrong().max(0.5 / pixels)
@@ -215,7 +215,7 @@ fn panel(svg: &mut String, preset: &str, rows: &[&Row], [left, top]: [f64; 2]) {
     names(svg, &best, &dots, &x, &y);
 }
 
-/// Where a name may stand beside its dot: to the right or left, level, above or below.
+/// Places for a name beside its dot: right or left; level, above or below.
 const BESIDE: [[f64; 2]; 6] = [
     [6.0, 3.0],
     [-6.0, 3.0],
@@ -225,8 +225,8 @@ const BESIDE: [[f64; 2]; 6] = [
     [-5.0, 12.0],
 ];
 
-/// The names of the sweeps on the front, the least wrong first, where there is room for
-/// them: not over each other, nor over a dot. A dot says its name to a pointer, too.
+/// Writes the names of the sweeps on the front, the least wrong first, unless they would
+/// cover each other or a dot. A dot also tells its name to a pointer.
 fn names(svg: &mut String, best: &[&Row], dots: &[[f64; 2]], x: &Axis, y: &Axis) {
     let mut taken: Vec<[f64; 4]> = dots
         .iter()
@@ -274,7 +274,7 @@ fn legend(svg: &mut String, y: f64) {
     }
     let _ = writeln!(
         svg,
-        r##"<text x="20" y="{:.1}">Small dots: one key of the mode moved. Green line: no other setting is both faster and less wrong. Wrong: behind, lost or unconverged.</text>"##,
+        r##"<text x="20" y="{:.1}">Small dots: one key of the mode changed. Green line: no other setting is both faster and less wrong. Wrong: behind, lost or unconverged.</text>"##,
         y + 20.0
     );
 }
@@ -284,10 +284,13 @@ mod tests {
     use super::*;
 
     fn row(wall_ms: f64, behind: f64) -> Row {
-        let text = format!(
-            r#"{{"preset":"p","mode":"safe","parameters":{{"shell":{behind}}},"baseline":false,"size":[100,100],"device":"d","wall_ms":{wall_ms},"gpu_ms":null,"evaluations_per_pixel":1,"iterations_per_pixel":1,"depth_error":{{"median":0,"p95":0,"p99":0,"max":0}},"behind":{behind},"front":0,"behind8":0,"front8":0,"holes":0,"false_hits":0,"start_violations":[],"unconverged":0,"flip":0,"truth":{{"stride":0.1,"moved":0}},"precision":null}}"#
-        );
-        serde_json::from_str(&text).expect("a row")
+        Row {
+            preset: "p".into(),
+            size: [100, 100],
+            wall_ms,
+            behind,
+            ..Row::default()
+        }
     }
 
     #[test]

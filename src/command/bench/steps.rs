@@ -68,7 +68,7 @@ pub fn run(args: &StepsBench) -> Result<()> {
     files.write(&rows)
 }
 
-/// The mode of a name, or all but the truth, which takes long.
+/// The mode of a name; without a name all modes but the truth, which takes long.
 fn modes(name: Option<&str>) -> Result<Vec<Setting>> {
     let Some(name) = name else {
         return Ok(baselines());
@@ -111,16 +111,18 @@ fn measure(
             Some(level) => (&level.work, &level.state, level.cells[0]),
             None => (&frame.work, &frame.state, frame.size[0]),
         };
-        let mut row = count(work, states, width as usize);
-        row.preset = name.into();
-        row.mode = plan.march.mode.name().into();
-        row.pass.clone_from(&pass.name);
-        row.size = plan.size;
-        row.device = executor.name();
-        row.wall_ms = median_of(&mut wall).unwrap_or(0.0);
-        row.gpu_ms = median_of(&mut gpu);
-        row.precision = executor.precision_warning(plan);
-        rows.push(row);
+        let row = count(work, states, width as usize);
+        rows.push(StepsRow {
+            preset: name.into(),
+            mode: plan.march.mode.name().into(),
+            pass: pass.name.clone(),
+            size: plan.size,
+            device: executor.name(),
+            wall_ms: median_of(&mut wall).unwrap_or(0.0),
+            gpu_ms: median_of(&mut gpu),
+            precision: executor.precision_warning(plan),
+            ..row
+        });
     }
     Ok((rows, frame))
 }
@@ -152,11 +154,6 @@ fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
         histogram[bin] += 1;
     }
     StepsRow {
-        preset: String::new(),
-        mode: String::new(),
-        pass: String::new(),
-        size: [0, 0],
-        device: String::new(),
         cells: cells as u64,
         visited: spent.len() as u64,
         evaluations: work.iter().map(|w| u64::from(w.evaluations)).sum(),
@@ -170,9 +167,7 @@ fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
         waste_8x4: waste(work, width, [8, 4]),
         waste_8x8: waste(work, width, [8, 8]),
         histogram,
-        gpu_ms: None,
-        wall_ms: 0.0,
-        precision: None,
+        ..StepsRow::default()
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
 use crate::command::bench::row::Row;
 use crate::command::bench::steps_row::StepsRow;
-use crate::command::table::markdown;
+use crate::command::table::table;
 
 /// Stands above the times of a device without timestamps.
 const UNTIMED: &str = "The device has no timestamps: times are wall time.\n\n";
@@ -34,38 +34,28 @@ pub fn preset(rows: &[Row]) -> String {
     if rows.iter().all(|r| r.gpu_ms.is_none()) {
         text += UNTIMED;
     }
-    let heads = [
-        "setting",
-        "evaluations per pixel",
-        "fewer",
-        "wall ms",
-        "faster",
-        "behind %",
-        "holes %",
-        "behind 8 %",
-        "p99 footprints",
-        "unconverged %",
-        "FLIP",
-        "start violations, coarse to fine",
-    ];
-    let cells = rows.iter().map(|row| {
-        let starts: Vec<String> = row.start_violations.iter().map(u64::to_string).collect();
-        [
-            row.label(),
-            fixed(row.evaluations_per_pixel, 2),
-            fixed(first.evaluations_per_pixel / row.evaluations_per_pixel, 2),
-            fixed(row.wall_ms, 1),
-            fixed(first.wall_ms / row.wall_ms, 2),
-            percent(row.behind, 4),
-            percent(row.holes, 4),
-            percent(row.behind8, 4),
-            fixed(row.depth_error.p99, 3),
-            percent(row.unconverged, 4),
-            fixed(row.flip, 4),
-            starts.join(" "),
-        ]
-    });
-    text + &markdown(heads, &cells.collect::<Vec<_>>())
+    let starts = |row: &Row| {
+        let starts = row.start_violations.iter().map(u64::to_string);
+        starts.collect::<Vec<_>>().join(" ")
+    };
+    let work = |row: &Row| row.evaluations_per_pixel;
+    text + &table(
+        rows,
+        &[
+            ("setting", &Row::label),
+            ("evaluations per pixel", &|r| fixed(work(r), 2)),
+            ("fewer", &|r| fixed(work(first) / work(r), 2)),
+            ("wall ms", &|r| fixed(r.wall_ms, 1)),
+            ("faster", &|r| fixed(first.wall_ms / r.wall_ms, 2)),
+            ("behind %", &|r| percent(r.behind, 4)),
+            ("holes %", &|r| percent(r.holes, 4)),
+            ("behind 8 %", &|r| percent(r.behind8, 4)),
+            ("p99 footprints", &|r| fixed(r.depth_error.p99, 3)),
+            ("unconverged %", &|r| percent(r.unconverged, 4)),
+            ("FLIP", &|r| fixed(r.flip, 4)),
+            ("start violations, coarse to fine", &starts),
+        ],
+    )
 }
 
 /// The rows of a setting, preset by preset.
@@ -89,7 +79,7 @@ fn mean(rows: &[&Row], figure: fn(&Row) -> f64) -> f64 {
 pub fn means(rows: &[Row]) -> String {
     let (ray, relaxed) = (of(rows, "ray"), of(rows, "ray-relaxed"));
     let text = String::from(
-        "\n### Means over the presets\n\nRatios are geometric means, shares arithmetic ones. Wrong pixels are those behind, holes and\nunconverged ones.\n\n",
+        "\n### Means over the presets\n\nRatios are geometric means, shares are arithmetic means. Wrong pixels are those behind, lost or\nunconverged.\n\n",
     );
     let mut labels: Vec<String> = Vec::new();
     for row in rows {
@@ -97,38 +87,32 @@ pub fn means(rows: &[Row]) -> String {
             labels.push(row.label());
         }
     }
-    let heads = [
-        "setting",
-        "fewer evaluations than ray",
-        "than ray-relaxed",
-        "faster than ray",
-        "than ray-relaxed",
-        "wrong pixels %",
-        "FLIP",
-    ];
-    let mut cells = Vec::new();
-    for label in labels {
-        let own = of(rows, &label);
-        // A setting that does not fit every preset has no mean over them.
-        if own.len() != ray.len() {
-            continue;
-        }
-        let work = |r: &Row| r.evaluations_per_pixel;
-        let time = |r: &Row| r.wall_ms;
-        cells.push([
-            label,
-            fixed(ratio(&ray, &own, work), 2),
-            fixed(ratio(&relaxed, &own, work), 2),
-            fixed(ratio(&ray, &own, time), 2),
-            fixed(ratio(&relaxed, &own, time), 2),
-            percent(mean(&own, Row::wrong), 4),
-            fixed(mean(&own, |r| r.flip), 4),
-        ]);
-    }
-    text + &markdown(heads, &cells)
+    // A setting that does not fit every preset has no mean over them.
+    labels.retain(|label| of(rows, label).len() == ray.len());
+    let work = |r: &Row| r.evaluations_per_pixel;
+    let time = |r: &Row| r.wall_ms;
+    let own = |label: &String| of(rows, label);
+    text + &table(
+        &labels,
+        &[
+            ("setting", &String::clone),
+            ("fewer evaluations than ray", &|l| {
+                fixed(ratio(&ray, &own(l), work), 2)
+            }),
+            ("than ray-relaxed", &|l| {
+                fixed(ratio(&relaxed, &own(l), work), 2)
+            }),
+            ("faster than ray", &|l| fixed(ratio(&ray, &own(l), time), 2)),
+            ("than ray-relaxed", &|l| {
+                fixed(ratio(&relaxed, &own(l), time), 2)
+            }),
+            ("wrong pixels %", &|l| percent(mean(&own(l), Row::wrong), 4)),
+            ("FLIP", &|l| fixed(mean(&own(l), |r| r.flip), 4)),
+        ],
+    )
 }
 
-/// What is listed as better than `safe`, and what is not.
+/// The rules of the list of what beats `safe`.
 const BEATS: &str = "
 ### What beats `safe`
 
@@ -140,7 +124,7 @@ it.
 ";
 
 /// Settings that are both at least 5 % faster than `safe` and wrong on fewer pixels, preset
-/// by preset, by the rules that its head states.
+/// by preset.
 pub fn better_than_safe(rows: &[Row]) -> String {
     let mut text = String::from(BEATS);
     let mut found = 0;
@@ -167,14 +151,14 @@ pub fn better_than_safe(rows: &[Row]) -> String {
     text
 }
 
-/// What the slides say that each of their budgets gains.
+/// The gain in percent that the slides claim for each of their budgets.
 const CLAIMS: [(&str, u32); 3] = [
     ("slides-even", 30),
     ("slides-deep", 50),
     ("slides-fast", 100),
 ];
 
-/// The slides' claims beside what was measured.
+/// The claims of the slides beside what was measured.
 pub fn slides(rows: &[Row]) -> String {
     let (ray, safe) = (of(rows, "ray"), of(rows, "safe"));
     let text = "
@@ -184,33 +168,40 @@ Speed gained over plain rays, and what it costs: pixels behind or lost, against 
 exact step.
 
 ";
-    let heads = [
-        "budget",
-        "claimed gain %",
-        "measured gain %",
-        "fewer evaluations",
-        "behind %",
-        "holes %",
-        "unconverged %",
-        "cells' pixels started behind",
-        "behind, holes and unconverged of `safe` %",
-    ];
-    let cells = CLAIMS.map(|(name, claim)| {
-        let own = of(rows, name);
-        let starts: u64 = own.iter().flat_map(|r| r.start_violations.last()).sum();
-        [
-            name.into(),
-            claim.to_string(),
-            percent(ratio(&ray, &own, |r| r.wall_ms) - 1.0, 0),
-            fixed(ratio(&ray, &own, |r| r.evaluations_per_pixel), 2),
-            percent(mean(&own, |r| r.behind), 3),
-            percent(mean(&own, |r| r.holes), 3),
-            percent(mean(&own, |r| r.unconverged), 3),
-            starts.to_string(),
-            percent(mean(&safe, Row::wrong), 3),
-        ]
-    });
-    text.to_string() + &markdown(heads, &cells)
+    let own = |name: &str| of(rows, name);
+    let starts = |name: &str| -> u64 {
+        own(name)
+            .iter()
+            .flat_map(|r| r.start_violations.last())
+            .sum()
+    };
+    text.to_string()
+        + &table(
+            &CLAIMS,
+            &[
+                ("budget", &|(name, _)| (*name).to_string()),
+                ("claimed gain %", &|(_, claim)| claim.to_string()),
+                ("measured gain %", &|(n, _)| {
+                    percent(ratio(&ray, &own(n), |r| r.wall_ms) - 1.0, 0)
+                }),
+                ("fewer evaluations", &|(n, _)| {
+                    fixed(ratio(&ray, &own(n), |r| r.evaluations_per_pixel), 2)
+                }),
+                ("behind %", &|(n, _)| {
+                    percent(mean(&own(n), |r| r.behind), 3)
+                }),
+                ("holes %", &|(n, _)| percent(mean(&own(n), |r| r.holes), 3)),
+                ("unconverged %", &|(n, _)| {
+                    percent(mean(&own(n), |r| r.unconverged), 3)
+                }),
+                ("cells' pixels started behind", &|(n, _)| {
+                    starts(n).to_string()
+                }),
+                ("behind, holes and unconverged of `safe` %", &|_| {
+                    percent(mean(&safe, Row::wrong), 3)
+                }),
+            ],
+        )
 }
 
 /// The levels of one preset and mode.
@@ -226,39 +217,26 @@ pub fn levels(rows: &[StepsRow]) -> String {
     if !timed {
         text += UNTIMED;
     }
-    let heads = [
-        "pass",
-        "cells",
-        "evaluations",
-        "iterations",
-        "p50",
-        "p90",
-        "p99",
-        "max",
-        "sky %",
-        "unconverged %",
-        "waste 8 x 4",
-        "waste 8 x 8",
-        if timed { "gpu ms" } else { "wall ms" },
-    ];
-    let cells = rows.iter().map(|row| {
-        [
-            row.pass.clone(),
-            row.cells.to_string(),
-            row.evaluations.to_string(),
-            row.iterations.to_string(),
-            row.p50.to_string(),
-            row.p90.to_string(),
-            row.p99.to_string(),
-            row.max.to_string(),
-            percent(row.sky, 2),
-            percent(row.unconverged, 4),
-            fixed(row.waste_8x4, 2),
-            fixed(row.waste_8x8, 2),
-            fixed(row.gpu_ms.filter(|_| timed).unwrap_or(row.wall_ms), 2),
-        ]
-    });
-    text + &markdown(heads, &cells.collect::<Vec<_>>())
+    let clock = if timed { "gpu ms" } else { "wall ms" };
+    let ms = |r: &StepsRow| fixed(r.gpu_ms.filter(|_| timed).unwrap_or(r.wall_ms), 2);
+    text + &table(
+        rows,
+        &[
+            ("pass", &|r| r.pass.clone()),
+            ("cells", &|r| r.cells.to_string()),
+            ("evaluations", &|r| r.evaluations.to_string()),
+            ("iterations", &|r| r.iterations.to_string()),
+            ("p50", &|r| r.p50.to_string()),
+            ("p90", &|r| r.p90.to_string()),
+            ("p99", &|r| r.p99.to_string()),
+            ("max", &|r| r.max.to_string()),
+            ("sky %", &|r| percent(r.sky, 2)),
+            ("unconverged %", &|r| percent(r.unconverged, 4)),
+            ("waste 8 x 4", &|r| fixed(r.waste_8x4, 2)),
+            ("waste 8 x 8", &|r| fixed(r.waste_8x8, 2)),
+            (clock, &ms),
+        ],
+    )
 }
 
 /// The cone maps of one field.
@@ -267,33 +245,27 @@ pub fn generators(rows: &[GeneratorRow]) -> String {
         return String::new();
     };
     let [w, h] = first.size;
-    let head = format!(
+    let number = |value: Option<f64>| value.map_or("n/a".into(), |v| fixed(v, 4));
+    let ms = |row: &GeneratorRow| match (row.ms, row.estimate_ms) {
+        (Some(ms), _) => fixed(ms, 2),
+        (None, Some(ms)) => format!("n/a, about {ms:.0}"),
+        (None, None) => "n/a".into(),
+    };
+    format!(
         "\n### Maps of {}, {w} x {h}, {}\n\n",
         first.field, first.surface
-    );
-    let heads = [
-        "generator",
-        "ms",
-        "mean ratio",
-        "of exact",
-        "wider than exact %",
-    ];
-    let cells = rows.iter().map(|row| {
-        let number = |value: Option<f64>| value.map_or("n/a".into(), |v| fixed(v, 4));
-        let ms = match (row.ms, row.estimate_ms) {
-            (Some(ms), _) => fixed(ms, 2),
-            (None, Some(ms)) => format!("n/a, about {ms:.0}"),
-            (None, None) => "n/a".into(),
-        };
-        [
-            row.generator.clone(),
-            ms,
-            number(row.mean_ratio),
-            number(row.of_exact),
-            number(row.wider_than_exact.map(|share| 100.0 * share)),
-        ]
-    });
-    head + &markdown(heads, &cells.collect::<Vec<_>>())
+    ) + &table(
+        rows,
+        &[
+            ("generator", &|r| r.generator.clone()),
+            ("ms", &ms),
+            ("mean ratio", &|r| number(r.mean_ratio)),
+            ("of exact", &|r| number(r.of_exact)),
+            ("wider than exact %", &|r| {
+                number(r.wider_than_exact.map(|share| 100.0 * share))
+            }),
+        ],
+    )
 }
 
 /// The tracers of one field.
@@ -302,45 +274,40 @@ pub fn tracers(rows: &[TracerRow]) -> String {
         return String::new();
     };
     let [w, h] = first.size;
-    let head = format!(
+    format!(
         "\n### Tracers over {}, {w} x {h}, {}\n\n",
         first.field, first.surface
-    );
-    let heads = [
-        "view",
-        "tracer",
-        "map",
-        "steps, mean",
-        "p99",
-        "skipped %",
-        "unconverged %",
-        "error, texels",
-    ];
-    let cells = rows.iter().map(|row| {
-        [
-            row.view_deg.to_string(),
-            row.tracer.clone(),
-            row.map.clone(),
-            fixed(row.steps_mean, 2),
-            row.steps_p99.to_string(),
-            percent(row.skipped, 3),
-            percent(row.unconverged, 3),
-            format!("{:.2e}", row.error_texels),
-        ]
-    });
-    head + &markdown(heads, &cells.collect::<Vec<_>>())
+    ) + &table(
+        rows,
+        &[
+            ("view", &|r| r.view_deg.to_string()),
+            ("tracer", &|r| r.tracer.clone()),
+            ("map", &|r| r.map.clone()),
+            ("steps, mean", &|r| fixed(r.steps_mean, 2)),
+            ("p99", &|r| r.steps_p99.to_string()),
+            ("skipped %", &|r| percent(r.skipped, 3)),
+            ("unconverged %", &|r| percent(r.unconverged, 3)),
+            ("error, texels", &|r| format!("{:.2e}", r.error_texels)),
+        ],
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A row of `safe` but for its mode, a setting, its time and its wrong pixels.
+    /// A row of some mode, setting, time and wrong pixels.
     fn row(mode: &str, set: &str, wall_ms: f64, behind: f64, unconverged: f64) -> Row {
-        let text = format!(
-            r#"{{"preset":"p","mode":"{mode}","parameters":{{{set}}},"baseline":false,"size":[100,100],"device":"d","wall_ms":{wall_ms},"gpu_ms":null,"evaluations_per_pixel":1,"iterations_per_pixel":1,"depth_error":{{"median":0,"p95":0,"p99":0,"max":0}},"behind":{behind},"front":0,"behind8":0,"front8":0,"holes":0,"false_hits":0,"start_violations":[],"unconverged":{unconverged},"flip":0,"truth":{{"stride":0.1,"moved":0}},"precision":null}}"#
-        );
-        serde_json::from_str(&text).expect("a row")
+        Row {
+            preset: "p".into(),
+            mode: mode.into(),
+            parameters: serde_json::from_str(&format!("{{{set}}}")).expect("a setting"),
+            size: [100, 100],
+            wall_ms,
+            behind,
+            unconverged,
+            ..Row::default()
+        }
     }
 
     #[test]
@@ -362,27 +329,10 @@ mod tests {
     #[test]
     fn a_column_of_times_has_one_clock_and_says_which() {
         let step = |gpu_ms: Option<f64>, precision: Option<String>| StepsRow {
-            preset: "p".into(),
-            mode: "safe".into(),
-            pass: "trace".into(),
-            size: [9, 9],
-            device: "d".into(),
-            cells: 81,
-            visited: 81,
-            evaluations: 81,
-            iterations: 81,
-            p50: 1,
-            p90: 1,
-            p99: 1,
-            max: 1,
-            sky: 0.0,
-            unconverged: 0.0,
-            waste_8x4: 1.0,
-            waste_8x8: 1.0,
-            histogram: Vec::new(),
             gpu_ms,
             wall_ms: 77.0,
             precision,
+            ..StepsRow::default()
         };
         let timed = levels(&[step(Some(5.0), None), step(Some(6.0), None)]);
         assert!(timed.contains("| gpu ms |") && timed.contains("|   5.00 |"));
