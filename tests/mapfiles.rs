@@ -10,7 +10,6 @@ use conemarch::heightfield::conemap::file::{
 };
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::pattern::Pattern;
-use conemarch::picture::write_map;
 use png::{BitDepth, ColorType};
 use proptest::prelude::*;
 
@@ -288,7 +287,10 @@ fn a_map_is_refused_for_what_it_was_not_made_for() {
     let heights = field([12, 10], [true, false]);
     let path = folder.0.join("a.png");
     let file = made(&heights, MapKind::Samples);
-    write_map(&path, &file, &Form::new(Layout::Dummer)).expect("a file");
+    folder.write(
+        "a.png",
+        encode(&file, &Form::new(Layout::Dummer)).expect("a file"),
+    );
     assert_eq!(folder.files(), ["a.png"]);
     let read = read_map(&path).expect("a map");
     let wanted = Wanted {

@@ -37,7 +37,7 @@ layers![
     "position" Position "world positions, each axis from its least to its greatest in the picture; sky black",
     "steps" Steps "evaluations: violet none, yellow the 99th percentile and above",
     "state" State "sky dark blue, hit light grey, unconverged magenta",
-    "error" Error "depth against the truth: grey none, red 8 footprints too deep or lost, blue too near",
+    "error" Error "depth against the truth in footprints (half a pixel's width): grey 0, red 8 too deep or lost, blue 8 too near",
 ];
 
 impl Layer {

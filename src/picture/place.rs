@@ -135,6 +135,7 @@ pub fn commit(places: Vec<Place>) -> Result<(), OutputError> {
     let _no_interrupt = temporary();
     for place in places {
         if let Some(held) = place.held {
+            drop(place.file);
             let renamed = held.persist(&place.target);
             renamed.map_err(|e| OutputError::io(&place.shown, "cannot be renamed", &e.error))?;
         }

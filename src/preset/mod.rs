@@ -15,5 +15,5 @@ pub use error::PresetError;
 pub use nearest::nearest;
 pub use read::{read, read_with};
 pub use reference::{keys, reference};
-pub use source::{MOST_BYTES, PNG_KEYWORD, Preset, Source, file, find, load};
+pub use source::{PNG_KEYWORD, Preset, Source, file, find, load};
 pub use write::write;

@@ -16,7 +16,7 @@ use crate::preset::read::read_in;
 
 /// Largest preset that is read: far more than any preset needs, so that a wrong file is
 /// rejected at once.
-pub const MOST_BYTES: u64 = 1 << 20;
+const MOST_BYTES: u64 = 1 << 20;
 
 /// Keyword of the text chunk in which a PNG carries its preset.
 pub const PNG_KEYWORD: &str = "conemarch preset";

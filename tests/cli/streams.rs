@@ -5,7 +5,7 @@ use std::process::{Child, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::folder::{Folder, said, text};
+use crate::folder::{Folder, said, signal, text};
 use crate::tools::{done, fails, rendered, tiny, words};
 
 #[test]
@@ -140,17 +140,11 @@ fn begun(folder: &Folder, args: &str, is_begun: impl Fn() -> bool) -> Child {
     child
 }
 
-/// Sends signals to a process, by a shell: a bare machine has no program for it. Returns its
-/// exit code and what it said.
+/// Sends signals to a process. Returns its exit code and what it said.
 #[cfg(unix)]
 fn ended(child: Child, signals: &[&str]) -> (Option<i32>, String) {
-    let id = child.id();
-    for signal in signals {
-        let kill = format!("kill -{signal} {id}");
-        let sent = std::process::Command::new("sh")
-            .args(["-c", &kill])
-            .status();
-        assert!(sent.expect("a shell").success());
+    for name in signals {
+        signal(child.id(), name);
         sleep(Duration::from_millis(50));
     }
     let sent = Instant::now();

@@ -6,8 +6,6 @@
 //! Drawn by hand: the logarithmic axes of `plotters` have no ticks within a decade, where most
 //! measurements lie, and its dots cannot tell their names to a pointer.
 
-use std::fmt::Write as _;
-
 use crate::command::bench::row::Row;
 
 const PANEL: [f64; 2] = [460.0, 330.0];
@@ -37,13 +35,11 @@ pub fn draw(rows: &[Row]) -> String {
     let columns = presets.len().clamp(1, COLUMNS);
     let lines = presets.len().div_ceil(columns).max(1);
     let (w, h) = (columns as f64 * PANEL[0], lines as f64 * PANEL[1] + LEGEND);
-    let mut svg = String::new();
-    // Writing to a string cannot fail, here and below.
-    let _ = writeln!(
-        svg,
-        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="11" fill="#333">"##
+    let mut svg = format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="11" fill="#333">
+<rect width="{w}" height="{h}" fill="#fff"/>
+"##
     );
-    let _ = writeln!(svg, r##"<rect width="{w}" height="{h}" fill="#fff"/>"##);
     for (i, preset) in presets.iter().enumerate() {
         let own: Vec<&Row> = rows.iter().filter(|r| r.preset == *preset).collect();
         let at = [
@@ -140,78 +136,64 @@ fn shown(row: &Row) -> f64 {
 fn panel(svg: &mut String, preset: &str, rows: &[&Row], [left, top]: [f64; 2]) {
     let rows: Vec<&Row> = rows.iter().copied().filter(|r| comparable(r)).collect();
     let [x0, y0] = [left + MARGIN[0], top + MARGIN[1]];
-    let [w, h] = [
-        PANEL[0] - MARGIN[0] - MARGIN[2],
-        PANEL[1] - MARGIN[1] - MARGIN[3],
-    ];
+    let [x1, y1] = [left + PANEL[0] - MARGIN[2], top + PANEL[1] - MARGIN[3]];
+    let [w, h] = [x1 - x0, y1 - y0];
     let x = Axis::new(rows.iter().map(|r| r.wall_ms), x0, w);
     // Downwards is better, so the least error is at the bottom.
-    let y = Axis::new(rows.iter().map(|r| shown(r)), y0 + h, -h);
-    let _ = writeln!(
-        svg,
-        r##"<text x="{x0}" y="{:.1}" font-size="13" font-weight="bold">{preset}</text>"##,
-        y0 - 12.0
+    let y = Axis::new(rows.iter().map(|r| shown(r)), y1, -h);
+    let place = |row: &Row| [x.place(row.wall_ms), y.place(shown(row))];
+    let above = y0 - 12.0;
+    *svg += &format!(
+        r##"<text x="{x0}" y="{above:.1}" font-size="13" font-weight="bold">{preset}</text>
+"##
     );
     for t in x.ticks() {
-        let (at, label) = (x.place(t), rounded(t));
-        let _ = writeln!(
-            svg,
-            r##"<path d="M{at:.1} {y0:.1}v{h:.1}" stroke="#eee"/><text x="{at:.1}" y="{:.1}" text-anchor="middle">{label}</text>"##,
-            y0 + h + 14.0
+        let (at, below, label) = (x.place(t), y1 + 14.0, rounded(t));
+        *svg += &format!(
+            r##"<path d="M{at:.1} {y0:.1}v{h:.1}" stroke="#eee"/><text x="{at:.1}" y="{below:.1}" text-anchor="middle">{label}</text>
+"##
         );
     }
     for t in y.ticks() {
-        let at = y.place(t);
-        let label = rounded(t);
-        let _ = writeln!(
-            svg,
-            r##"<path d="M{x0:.1} {at:.1}h{w:.1}" stroke="#eee"/><text x="{:.1}" y="{:.1}" text-anchor="end">{label}</text>"##,
-            x0 - 5.0,
-            at + 4.0
+        let (at, beside, base, label) = (y.place(t), x0 - 5.0, y.place(t) + 4.0, rounded(t));
+        *svg += &format!(
+            r##"<path d="M{x0:.1} {at:.1}h{w:.1}" stroke="#eee"/><text x="{beside:.1}" y="{base:.1}" text-anchor="end">{label}</text>
+"##
         );
     }
-    let _ = writeln!(
-        svg,
-        r##"<rect x="{x0}" y="{y0}" width="{w}" height="{h}" fill="none" stroke="#999"/>"##
-    );
-    let _ = writeln!(
-        svg,
-        r##"<text x="{:.1}" y="{:.1}" text-anchor="middle">march and trace, ms</text><text transform="translate({:.1} {:.1}) rotate(-90)" text-anchor="middle">wrong pixels, %</text>"##,
-        x0 + 0.5 * w,
-        y0 + h + 32.0,
-        x0 - 44.0,
-        y0 + 0.5 * h
-    );
+    let (middle, below) = (x0 + 0.5 * w, y1 + 32.0);
+    let (beside, height) = (x0 - 44.0, y0 + 0.5 * h);
     let best = front(&rows);
-    let line: Vec<String> = best
+    let line = best
         .iter()
-        .map(|r| format!("{:.1},{:.1}", x.place(r.wall_ms), y.place(shown(r))))
-        .collect();
-    let _ = writeln!(
-        svg,
-        r##"<polyline points="{}" fill="none" stroke="#009e73" stroke-width="1.5"/>"##,
-        line.join(" ")
+        .map(|r| place(r))
+        .map(|[x, y]| format!("{x:.1},{y:.1}"));
+    let line = line.collect::<Vec<_>>().join(" ");
+    *svg += &format!(
+        r##"<rect x="{x0}" y="{y0}" width="{w}" height="{h}" fill="none" stroke="#999"/>
+<text x="{middle:.1}" y="{below:.1}" text-anchor="middle">march and trace, ms</text><text transform="translate({beside:.1} {height:.1}) rotate(-90)" text-anchor="middle">wrong pixels, %</text>
+<polyline points="{line}" fill="none" stroke="#009e73" stroke-width="1.5"/>
+"##
     );
     for row in &rows {
-        let (cx, cy) = (x.place(row.wall_ms), y.place(shown(row)));
+        let [x, y] = place(row);
         let (radius, stroke) = if row.baseline {
             (5.0, "#fff")
         } else {
             (2.6, "none")
         };
-        let _ = writeln!(
-            svg,
-            r##"<circle cx="{cx:.1}" cy="{cy:.1}" r="{radius}" fill="{}" stroke="{stroke}"><title>{}: {:.1} ms, {:.4} %</title></circle>"##,
+        let (color, label, ms, wrong) = (
             color(&row.mode),
             row.label(),
             row.wall_ms,
-            100.0 * row.wrong()
+            100.0 * row.wrong(),
+        );
+        *svg += &format!(
+            r##"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" fill="{color}" stroke="{stroke}"><title>{label}: {ms:.1} ms, {wrong:.4} %</title></circle>
+"##
         );
     }
-    let dots: Vec<[f64; 2]> = rows
-        .iter()
-        .map(|r| [x.place(r.wall_ms), y.place(shown(r))])
-        .collect();
+    let dots: Vec<[f64; 2]> = rows.iter().map(|row| place(row)).collect();
     names(svg, &best, &dots, &x, &y);
 }
 
@@ -248,9 +230,9 @@ fn names(svg: &mut String, best: &[&Row], dots: &[[f64; 2]], x: &Axis, y: &Axis)
         });
         if let Some((shape, start, base)) = room {
             taken.push(shape);
-            let _ = writeln!(
-                svg,
-                r##"<text x="{start:.1}" y="{base:.1}" font-size="9" fill="#666">{label}</text>"##
+            *svg += &format!(
+                r##"<text x="{start:.1}" y="{base:.1}" font-size="9" fill="#666">{label}</text>
+"##
             );
         }
     }
@@ -262,20 +244,18 @@ fn color(mode: &str) -> &'static str {
 }
 
 fn legend(svg: &mut String, y: f64) {
-    let mut x = 20.0;
+    let (mut x, middle, below) = (20.0, y - 4.0, y + 20.0);
     for (name, color) in COLORS {
-        let _ = writeln!(
-            svg,
-            r##"<circle cx="{x}" cy="{:.1}" r="5" fill="{color}"/><text x="{:.1}" y="{y}">{name}</text>"##,
-            y - 4.0,
-            x + 9.0
+        let beside = x + 9.0;
+        *svg += &format!(
+            r##"<circle cx="{x}" cy="{middle:.1}" r="5" fill="{color}"/><text x="{beside:.1}" y="{y}">{name}</text>
+"##
         );
         x += 30.0 + 6.5 * name.len() as f64;
     }
-    let _ = writeln!(
-        svg,
-        r##"<text x="20" y="{:.1}">Small dots: one key of the mode changed. Green line: no other setting is both faster and less wrong. Wrong: behind, lost or unconverged.</text>"##,
-        y + 20.0
+    *svg += &format!(
+        r##"<text x="20" y="{below:.1}">Small dots: one key of the mode changed. Green line: no other setting is both faster and less wrong. Wrong: behind, lost or unconverged.</text>
+"##
     );
 }
 
