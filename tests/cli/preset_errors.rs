@@ -3,41 +3,30 @@
 use conemarch::preset::{Override, PresetError, read, read_with, write};
 use toml::Value;
 
-use super::presets::{SECTIONS, get, least, names, subjects, toml};
+use super::presets::{all_keys, get, least, toml, with};
 
 #[test]
 fn no_key_takes_what_is_no_value_for_anything_and_says_where() {
     let bad = r#"nan;inf;-inf;{};[];1979-05-27;"?";[nan, 0, 0];1e400"#;
-    for plan in subjects() {
-        for section in SECTIONS {
-            for name in names(&plan, section) {
-                for text in bad.split(';') {
-                    let head = match section {
-                        "scene" => "",
-                        other => &format!("\n[{other}]\n"),
-                    };
-                    let file = format!("{}{head}{name} = {text}\n", least(&plan));
-                    let line = file.lines().count();
-                    let e = read(&file, "bad.toml").expect_err(&file);
-                    let e = e.to_string();
-                    let place = format!("bad.toml:{line}: ");
-                    assert!(e.starts_with(&place), "{e}");
-                    // Numbers that TOML has no room for are the parser's to refuse, and
-                    // files of heights, cones and colours are looked for.
-                    let named = ["field", "map", "texture"].contains(&name) && text == "\"?\"";
-                    if text != "1e400" && !named {
-                        let what = format!("bad.toml:{line}: {section}.{name} = {text}: must be ");
-                        assert!(e.starts_with(&what), "{e}");
-                    }
-                    let set = Override::read(&format!("{section}.{name}={text}"));
-                    let e = set
-                        .and_then(|set| read_with(&least(&plan), "good.toml", &[set]))
-                        .expect_err(&file);
-                    assert!(e.is_usage(), "{e}");
-                    let what = format!("--set {section}.{name}={text}: ");
-                    assert!(e.to_string().starts_with(&what), "{e}");
-                }
+    for (plan, section, name) in all_keys() {
+        for text in bad.split(';') {
+            let file = with(&plan, section, &format!("{name} = {text}"));
+            let line = file.lines().count();
+            let e = read(&file, "bad.toml").expect_err(&file).to_string();
+            assert!(e.starts_with(&format!("bad.toml:{line}: ")), "{e}");
+            // The parser itself rejects numbers that are too large, and files of heights,
+            // cones and colours are looked for.
+            let named = ["field", "map", "texture"].contains(&name) && text == "\"?\"";
+            if text != "1e400" && !named {
+                let what = format!("bad.toml:{line}: {section}.{name} = {text}: must be ");
+                assert!(e.starts_with(&what), "{e}");
             }
+            let set = Override::read(&format!("{section}.{name}={text}"));
+            let e = set.and_then(|set| read_with(&least(&plan), "good.toml", &[set]));
+            let e = e.expect_err(&file);
+            assert!(e.is_usage(), "{e}");
+            let what = format!("--set {section}.{name}={text}: ");
+            assert!(e.to_string().starts_with(&what), "{e}");
         }
     }
 }

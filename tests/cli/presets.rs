@@ -1,5 +1,6 @@
 //! Presets are the text of a plan: what is written reads back to the last bit.
 
+use conemarch::base::key::Key;
 use conemarch::plan::{Plan, Subject};
 use conemarch::preset::{BUILTIN, Override, builtin, load, read, read_with, write};
 use conemarch::scene::slab::SlabSettings;
@@ -7,8 +8,6 @@ use proptest::prelude::*;
 use toml::Value;
 
 use super::preset_errors::set_error;
-
-pub const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
 
 /// A plan of every subject there is.
 pub fn subjects() -> Vec<Plan> {
@@ -22,25 +21,41 @@ pub fn least(plan: &Plan) -> String {
     format!("[scene]\nkind = \"{kind}\"\n{formula}")
 }
 
-pub fn names(plan: &Plan, section: &str) -> Vec<&'static str> {
+/// Asks a key of a plan.
+fn ask<T>(plan: &Plan, section: &str, name: &str, question: impl FnOnce(Key<'_>) -> T) -> T {
     let mut plan = plan.clone();
-    let keys = plan.keys(section).expect("a section");
-    keys.iter().map(|k| k.name).collect()
+    let mut keys = plan.keys(section).expect("a section").into_iter();
+    question(keys.find(|k| k.name == name).expect("a key"))
 }
 
 pub fn get(plan: &Plan, section: &str, name: &str) -> Value {
-    let mut plan = plan.clone();
-    let keys = plan.keys(section).expect("a section");
-    let key = keys.into_iter().find(|k| k.name == name).expect("a key");
-    key.slot.get()
+    ask(plan, section, name, |key| key.slot.get())
 }
 
-/// Whether a key takes a value, asked of the key itself.
-fn takes(plan: &Plan, section: &str, name: &str, value: &Value) -> bool {
-    let mut plan = plan.clone();
-    let keys = plan.keys(section).expect("a section");
-    let mut key = keys.into_iter().find(|k| k.name == name).expect("a key");
-    key.slot.set(value).is_ok()
+/// Every key of every section, with a plan of each subject.
+pub fn all_keys() -> Vec<(Plan, &'static str, &'static str)> {
+    let mut all = Vec::new();
+    for plan in subjects() {
+        for section in ["scene", "camera", "march", "look", "image"] {
+            let keys = plan
+                .clone()
+                .keys(section)
+                .expect("a section")
+                .into_iter()
+                .map(|k| k.name)
+                .collect::<Vec<_>>();
+            all.extend(keys.into_iter().map(|name| (plan.clone(), section, name)));
+        }
+    }
+    all
+}
+
+/// The text of a preset with nothing but what is required, and one line more.
+pub fn with(plan: &Plan, section: &str, line: &str) -> String {
+    match section {
+        "scene" => format!("{}{line}\n", least(plan)),
+        _ => format!("{}[{section}]\n{line}\n", least(plan)),
+    }
 }
 
 pub fn toml(text: &str) -> Value {
@@ -51,16 +66,14 @@ pub fn toml(text: &str) -> Value {
 #[test]
 fn the_list_of_presets_is_the_folder() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/presets");
-    let mut files: Vec<String> = std::fs::read_dir(folder)
-        .expect("the folder")
-        .map(|f| {
-            let name = f.expect("a file").file_name();
-            let name = name.into_string().expect("a name");
-            name.strip_suffix(".toml").expect("a preset").to_string()
-        })
-        .collect();
+    let files = std::fs::read_dir(folder).expect("the folder");
+    let name = |file: std::fs::DirEntry| {
+        let name = file.file_name().into_string().expect("a name");
+        name.strip_suffix(".toml").expect("a preset").to_string()
+    };
+    let mut files: Vec<String> = files.map(|f| name(f.expect("a file"))).collect();
     files.sort();
-    let list: Vec<String> = BUILTIN.iter().map(|(n, _)| (*n).to_string()).collect();
+    let list: Vec<&str> = BUILTIN.iter().map(|(n, _)| *n).collect();
     assert_eq!(
         list, files,
         "src/preset/builtin.rs and presets/ differ, or are unsorted"
@@ -119,38 +132,32 @@ const CANDIDATES: &str = r#"0;1;2;3;17;100;0.5;0.25;1.5;-1.5;1e-3;0.1;true;false
 
 #[test]
 fn every_key_can_be_set_in_a_file_and_by_override_and_reads_back() {
-    for plan in subjects() {
-        for section in SECTIONS {
-            for name in names(&plan, section) {
-                let before = get(&plan, section, name);
-                let mut changed = 0;
-                for text in CANDIDATES.split(';') {
-                    if !takes(&plan, section, name, &toml(text)) {
-                        continue;
-                    }
-                    let set = Override::read(&format!("{section}.{name}={text}"));
-                    let set = set.unwrap_or_else(|e| panic!("{e}"));
-                    // Some values fit the key, but not the rest of the plan.
-                    let Ok(by_set) = read_with(&least(&plan), "least", &[set]) else {
-                        continue;
-                    };
-                    let head = match section {
-                        "scene" => "",
-                        other => &format!("[{other}]\n"),
-                    };
-                    let file = format!("{}{head}{name} = {text}\n", least(&plan));
-                    assert_eq!(read(&file, "file").expect(&file), by_set, "{file}");
-                    assert_eq!(read(&write(&by_set), "again").expect(&file), by_set);
-                    changed += usize::from(get(&by_set, section, name) != before);
-                }
-                // More than one tile needs axes that wrap, a texture a file: see the
-                // heightfields below.
-                assert!(
-                    changed > 0 || ["tiles", "texture"].contains(&name),
-                    "no candidate changes {section}.{name}"
-                );
+    for (plan, section, name) in all_keys() {
+        let before = get(&plan, section, name);
+        let mut changed = 0;
+        for text in CANDIDATES.split(';') {
+            if ask(&plan, section, name, |mut key| {
+                key.slot.set(&toml(text)).is_err()
+            }) {
+                continue;
             }
+            let set = Override::read(&format!("{section}.{name}={text}"));
+            let set = set.unwrap_or_else(|e| panic!("{e}"));
+            // Some values fit the key, but not the rest of the plan.
+            let Ok(by_set) = read_with(&least(&plan), "least", &[set]) else {
+                continue;
+            };
+            let file = with(&plan, section, &format!("{name} = {text}"));
+            assert_eq!(read(&file, "file").expect(&file), by_set, "{file}");
+            assert_eq!(read(&write(&by_set), "again").expect(&file), by_set);
+            changed += usize::from(get(&by_set, section, name) != before);
         }
+        // More than one tile needs axes that wrap, a texture a file: see the heightfields.
+        let elsewhere = ["tiles", "texture"].contains(&name);
+        assert!(
+            changed > 0 || elsewhere,
+            "no candidate changes {section}.{name}"
+        );
     }
 }
 
