@@ -9,6 +9,7 @@
 //! the standard error is added to each counted share, and other probes check the result.
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use crate::base::view::{View, footprint};
 use crate::base::work::{State, Work};
@@ -32,6 +33,9 @@ const FUDGES: [f64; 14] = [
     0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95,
 ];
 
+/// Share of the time that the probes take, for progress: the rest is for trying settings.
+const PROBING: f64 = 0.5;
+
 /// Standard errors that are added to a counted share. One true share in forty is still larger.
 const DOUBT: f64 = 2.0;
 
@@ -54,7 +58,7 @@ pub struct Probe {
 }
 
 /// Proposed settings, and what the probes found.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Calibration {
     /// The largest slope of the estimate.
     pub slope: f64,
@@ -71,6 +75,7 @@ pub struct Calibration {
     /// Whether the budget holds, on the first probes with their error and on the others.
     pub within: bool,
     /// The other probes, to check a picture with.
+    #[serde(skip)]
     pub probes: Vec<Probe>,
 }
 
@@ -89,13 +94,13 @@ impl Calibration {
 /// and as many others to check the result.
 ///
 /// # Errors
-/// [`RenderError::Cancelled`] if `going` returns `false`. A named file cannot be read.
+/// [`RenderError::Cancelled`] if `going` returns `false`; it is told the share that is done. A named file cannot be read.
 pub fn calibrate(
     plan: &Plan,
     assets: &Assets,
     budget: f64,
     rays: usize,
-    going: &dyn Fn() -> bool,
+    going: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Calibration, RenderError> {
     let mut truth = plan.clone();
     truth.march.mode = Mode::Truth;
@@ -104,8 +109,8 @@ pub fn calibrate(
     let view = plan.view();
     let mut probes = Vec::new();
     let pixels = spread(plan.size, 2 * rays);
-    let check = || {
-        if going() {
+    let mut check = |share: f64| {
+        if going(share) {
             Ok(())
         } else {
             Err(RenderError::Cancelled)
@@ -119,7 +124,7 @@ pub fn calibrate(
             hit: (state == State::Hit).then_some(hit.t),
             grain: footprint(&view.view_ray(*pixel), hit.t),
         }));
-        check()?;
+        check(PROBING * probes.len() as f64 / pixels.len() as f64)?;
     }
     let others = probes.split_off(rays.min(probes.len()));
     let slopes = Slopes {
@@ -136,8 +141,8 @@ pub fn calibrate(
         };
         Ok::<_, RenderError>(plan.solid(assets)?.run(lost))
     };
-    let lost = |plan: &Plan| {
-        check()?;
+    let mut lost = |plan: &Plan, share: f64| {
+        check(share)?;
         Ok::<_, RenderError>(at_most(count(plan, &probes)?, probes.len()))
     };
     let mut best = plan.clone();
@@ -146,27 +151,28 @@ pub fn calibrate(
     // The shell may use half of the budget, narrower cones the rest.
     for shell in SHELLS {
         best.march.shell = shell;
-        if lost(&best)? <= 0.5 * budget {
+        if lost(&best, PROBING)? <= 0.5 * budget {
             break;
         }
     }
     let levels = best.pyramid().levels.len();
     let mut fudge = vec![1.0; levels];
-    let exact = lost(&best)?;
+    let exact = lost(&best, PROBING)?;
     for level in 0..levels {
         let share = (level + 1) as f64 / levels as f64;
         let allowed = exact + (budget - exact).max(0.0) * share;
         for f in FUDGES {
             fudge[level] = f;
             best.march.fudge.clone_from(&fudge);
-            if lost(&best)? <= allowed {
+            let share = PROBING + (1.0 - PROBING) * level as f64 / levels as f64;
+            if lost(&best, share)? <= allowed {
                 break;
             }
             fudge[level] = 1.0;
         }
     }
     best.march.fudge = if fudge.is_empty() { vec![1.0] } else { fudge };
-    let held = lost(&best)? <= budget;
+    let held = lost(&best, 1.0)? <= budget;
     let lost = count(&best, &others)?;
     Ok(Calibration {
         slope,
@@ -284,7 +290,8 @@ mod tests {
     #[test]
     fn an_exact_field_has_slope_one_and_takes_full_cones() {
         let plan = plan(Formula::Balls(Balls::default()));
-        let found = calibrate(&plan, &Assets::default(), 0.0, 2000, &|| true).expect("not stopped");
+        let found =
+            calibrate(&plan, &Assets::default(), 0.0, 2000, &mut |_| true).expect("not stopped");
         assert!(
             found.slope <= 1.0 + 1e-9 && found.slope > 0.9,
             "{}",
@@ -297,7 +304,7 @@ mod tests {
         // Narrow cones lose pixels of an exact field. Only the finest cones may be narrow, as
         // a cone through pixel centres is wider than its four rays.
         assert!(found.fudge[0] > 0.5, "{:?}", found.fudge);
-        assert!(calibrate(&plan, &Assets::default(), 0.0, 2000, &|| false).is_err());
+        assert!(calibrate(&plan, &Assets::default(), 0.0, 2000, &mut |_| false).is_err());
     }
 
     #[test]
@@ -307,7 +314,8 @@ mod tests {
                 scale,
                 ..Mandelbox::default()
             });
-            calibrate(&plan(shape), &Assets::default(), 0.01, 1500, &|| true).expect("not stopped")
+            calibrate(&plan(shape), &Assets::default(), 0.01, 1500, &mut |_| true)
+                .expect("not stopped")
         };
         // The estimate understates the distance at scale 2, and hardly at -1.5.
         let (slack, tight) = (of(2.0), of(-1.5));

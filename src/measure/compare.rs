@@ -210,9 +210,18 @@ mod tests {
     fn a_front_in_the_skin_is_no_violation_and_one_beyond_it_is() {
         let mut plan = ball([8, 1]);
         plan.camera.fov = 1.0;
-        for (detail, shell) in [(1.0, 0.45), (3.0, 0.45), (1.0, 0.0), (0.5, 0.9)] {
+        for (mode, detail, shell) in [
+            (Mode::Safe, 1.0, 0.45),
+            (Mode::Safe, 3.0, 0.45),
+            (Mode::Safe, 1.0, 0.0),
+            (Mode::Safe, 0.5, 0.9),
+            // The cones of the slides keep clear of nothing, whatever the preset says.
+            (Mode::SlidesDeep, 1.0, 0.45),
+        ] {
+            plan.march.mode = mode;
             plan.march.detail = detail;
             plan.march.shell = shell;
+            let shell = if mode == Mode::Safe { shell } else { 0.0 };
             let mut reference = rendered(&plan);
             // The last two pixels are no hits.
             reference.state[6] = State::Sky as u8;
@@ -229,7 +238,11 @@ mod tests {
             });
             let frame = with_fronts(&reference, front.collect());
             let report = compare(&frame, &reference, &plan, &solid(&plan));
-            assert_eq!(report.start_violations, [(1, 3)], "{detail} {shell}");
+            assert_eq!(
+                report.start_violations,
+                [(1, 3)],
+                "{mode:?} {detail} {shell}"
+            );
         }
     }
 

@@ -5,11 +5,13 @@ use crate::base::work::{State, Work};
 use crate::heightfield::assets::Preparation;
 use crate::plan::{Extras, Pass, Plan};
 use glam::DVec3;
+use serde::{Serialize, Serializer};
 
 /// What one pass did.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct PassFigures {
-    /// The pass.
+    /// The pass; its name in JSON.
+    #[serde(rename = "name", serialize_with = "pass_name")]
     pub pass: Pass,
     /// Number of cells or pixels; for a cone map, of its places.
     pub cells: u64,
@@ -21,6 +23,10 @@ pub struct PassFigures {
     pub evaluations: Option<u64>,
     /// Iterations of the formula, if they were counted.
     pub iterations: Option<u64>,
+}
+
+fn pass_name<S: Serializer>(pass: &Pass, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&pass.name())
 }
 
 impl PassFigures {

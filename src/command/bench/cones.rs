@@ -11,7 +11,6 @@ use serde::Serialize;
 
 use crate::command::bench::common::Common;
 use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
-use crate::command::bench::row::flat;
 use crate::command::bench::table;
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
@@ -157,11 +156,11 @@ pub fn run(args: &ConesBench) -> Result<()> {
             tracers.extend(rows);
         }
     }
-    let generators = generators.into_iter().map(ConesRow::Generator);
-    let tracers = tracers.into_iter().map(ConesRow::Tracer);
-    let all: Vec<_> = generators.chain(tracers).collect();
-    let flat = one_header(all.iter().map(flat).collect());
-    files.write(&all, &flat)
+    let all = generators.into_iter().map(ConesRow::Generator);
+    let all: Vec<_> = all
+        .chain(tracers.into_iter().map(ConesRow::Tracer))
+        .collect();
+    files.write(&all)
 }
 
 /// The named fields, or the default ones if there are no names.
@@ -179,24 +178,6 @@ fn fields(names: &[String]) -> Result<Vec<Pattern>> {
         Pattern::named(name).ok_or_else(why)
     };
     names.iter().map(one).collect()
-}
-
-/// Rows of two kinds under one header. A value that a kind lacks stays empty.
-fn one_header(rows: Vec<Vec<(String, String)>>) -> Vec<Vec<(String, String)>> {
-    let mut names: Vec<String> = Vec::new();
-    for (name, _) in rows.iter().flatten() {
-        if !names.contains(name) {
-            names.push(name.clone());
-        }
-    }
-    let fill = |row: Vec<(String, String)>| {
-        let value = |name: &String| {
-            let found = row.iter().find(|(n, _)| n == name);
-            found.map_or(String::new(), |(_, v)| v.clone())
-        };
-        names.iter().map(|n| (n.clone(), value(n))).collect()
-    };
-    rows.into_iter().map(fill).collect()
 }
 
 /// A map with its time, or the time that it would have taken.
