@@ -21,7 +21,7 @@ use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::max_mip::MaxMip;
 use conemarch::heightfield::pattern::Pattern;
 
-#[path = "../examples/common/rows.rs"]
+#[path = "common/rows.rs"]
 mod rows;
 use rows::{NodesRow, SizesRow, TimesRow};
 

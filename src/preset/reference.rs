@@ -11,7 +11,7 @@ use crate::scene::Scene;
 /// What stands above the tables.
 const HEAD: &str = "# Presets
 
-<!-- Written by `cargo run --release --example presets`; do not edit. -->
+<!-- Written by `cargo bench --bench pages -- presets`; do not edit. -->
 
 A preset is a TOML file with a title and the sections below. Only `scene.kind` is required,
 and `scene.formula` where the kind is \"distance\"; every other key has the default that its
@@ -81,7 +81,7 @@ mod tests {
         let text = std::fs::read_to_string(page).expect("the page");
         assert!(
             text == reference(),
-            "{page} is out of date; `cargo run --release --example presets` writes it"
+            "{page} is out of date; `cargo bench --bench pages -- presets` writes it"
         );
     }
 
