@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn words_are_read_as_they_are_written() {
-        let read = |text| {
+        let read = |text: &str| {
             PatternSpec::read(text)
                 .expect("a field")
                 .expect("a good one")
