@@ -17,6 +17,7 @@ mod common {
     pub mod exact;
     pub mod groups;
     pub mod hard;
+    pub mod plans;
     pub mod precision;
     pub mod probe;
     pub mod random;
@@ -96,11 +97,11 @@ fn errors<'a>(what: &str, groups: impl Iterator<Item = (String, Vec<&'a Sample>)
     let groups = groups.filter(|(_, all)| !all.is_empty());
     let rows = groups.map(|(label, all)| {
         let mut pairs = vec![
-            quantiles(all.iter().map(|s| s.computed())),
-            quantiles(all.iter().map(|s| s.in_all())),
+            quantiles(all.iter().map(|s| s.computed)),
+            quantiles(all.iter().map(|s| s.in_all)),
         ];
         if has_f64() {
-            pairs.push(quantiles(all.iter().filter_map(|s| s.doubled())));
+            pairs.push(quantiles(all.iter().filter_map(|s| s.doubled)));
         }
         let errors = pairs.into_iter().flatten();
         let errors: String = errors.map(|e| format!(" | {e:.0e}")).collect();

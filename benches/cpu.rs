@@ -2,6 +2,7 @@
 //!
 //! These functions make up the CPU executor, the truth and the comparisons.
 
+use conemarch::scene::Assets;
 use std::hint::black_box;
 
 use conemarch::base::cone::ConeRule;
@@ -28,7 +29,7 @@ fn depth(mode: Mode) -> conemarch::picture::frame::Frame {
         depth_only: true,
         ..Extras::default()
     };
-    cpu::render(&plan(mode), extras, &mut |_| true).expect("nothing cancels it")
+    cpu::render(&plan(mode), &Assets::default(), extras, &mut |_| true).expect("nothing cancels it")
 }
 
 fn estimates(c: &mut Criterion) {
@@ -58,7 +59,10 @@ fn passes(c: &mut Criterion) {
         group.bench_function(mode.name(), |b| b.iter(|| depth(mode)));
     }
     group.bench_function("truth", |b| {
-        b.iter(|| truth::truth(&plan(Mode::Safe), &mut |_| true).expect("nothing cancels it"));
+        b.iter(|| {
+            truth::truth(&plan(Mode::Safe), &Assets::default(), &mut |_| true)
+                .expect("nothing cancels it")
+        });
     });
     group.finish();
 }
@@ -67,7 +71,14 @@ fn comparisons(c: &mut Criterion) {
     let (one, two) = (depth(Mode::Safe), depth(Mode::Ray));
     let plan = plan(Mode::Safe);
     c.bench_function("compare, 160 x 90", |b| {
-        b.iter(|| compare::compare(black_box(&one), &two, &plan));
+        b.iter(|| {
+            compare::compare(
+                black_box(&one),
+                &two,
+                &plan,
+                &plan.solid(&Assets::default()).unwrap(),
+            )
+        });
     });
     let ramp: Vec<DVec3> = (0..160 * 90)
         .map(|i| DVec3::splat(f64::from(i) / 14_400.0))

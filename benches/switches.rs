@@ -10,6 +10,8 @@ use conemarch::gpu::device::Choice;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset;
+use conemarch::scene::Assets;
+use conemarch::scene::distance::DistanceSettings;
 
 /// A changed setting: its name, and a function that changes it.
 type Switch = (&'static str, fn(&mut Plan, &mut Extras));
@@ -36,11 +38,11 @@ const SWITCHES: &[Switch] = &[
 const RUNS: usize = 21;
 
 fn rotate(plan: &mut Plan, degrees: f64) {
-    use conemarch::{formula::Formula, plan::Subject};
-    if let Subject::Distance {
-        shape: Formula::Mandelbox(mandelbox),
+    use conemarch::{formula::Formula, scene::Scene};
+    if let Scene::Distance(DistanceSettings {
+        formula: Formula::Mandelbox(mandelbox),
         ..
-    } = &mut plan.subject
+    }) = &mut plan.scene
     {
         mandelbox.rotation.z = degrees;
     }
@@ -58,8 +60,14 @@ fn main() -> Result<()> {
         let mut ratios = [Vec::new(), Vec::new()];
         // The first run compiles.
         for run in 0..=RUNS {
-            let base = times(&executor.render(&plan, Extras::default(), &mut |_| true)?);
-            let other = times(&executor.render(&changed, extras, &mut |_| true)?);
+            let base = times(&executor.render(
+                &plan,
+                &Assets::default(),
+                Extras::default(),
+                &mut |_| true,
+            )?);
+            let other =
+                times(&executor.render(&changed, &Assets::default(), extras, &mut |_| true)?);
             if run > 0 {
                 for i in 0..2 {
                     ratios[i].push(other[i] / base[i]);

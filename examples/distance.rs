@@ -4,7 +4,9 @@ use anyhow::{Result, anyhow};
 use conemarch::cpu;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::formula::{DistanceEstimate as _, Formula};
-use conemarch::plan::{Extras, Plan, Subject};
+use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Assets;
+use conemarch::scene::Scene;
 use glam::DVec3;
 
 fn main() -> Result<()> {
@@ -19,13 +21,10 @@ fn main() -> Result<()> {
     }
 
     // The CPU renders in f64. A frame has a depth and a state for every pixel, row by row.
-    let mut plan = Plan::new(Subject::Distance {
-        shape: Formula::Mandelbox(mandelbox),
-        iterations: None,
-    });
+    let mut plan = Plan::new(Scene::from(Formula::Mandelbox(mandelbox)));
     plan.size = [64, 36];
     plan.check().map_err(|fault| anyhow!(fault.why))?;
-    let frame = cpu::render(&plan, Extras::default(), &mut |_| true)?;
+    let frame = cpu::render(&plan, &Assets::default(), Extras::default(), &mut |_| true)?;
     let [sky, hit, unconverged] = frame.census();
     println!("{hit} pixels hit, {sky} show sky, {unconverged} did not converge");
     println!("depth in the middle: {}", frame.depth[18 * 64 + 32]);

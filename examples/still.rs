@@ -6,6 +6,7 @@ use conemarch::gpu::device::Choice;
 use conemarch::picture::{BitDepth, Layer, Shades, write_png};
 use conemarch::plan::Extras;
 use conemarch::preset;
+use conemarch::scene::Assets;
 use glam::DVec3;
 
 fn main() -> Result<()> {
@@ -19,7 +20,7 @@ fn main() -> Result<()> {
     // the progress; it may return false to cancel.
     let (mut executor, name) = Executor::open(&Choice::Auto)?;
     println!("rendering on {name}");
-    let frame = executor.render(&plan, Extras::default(), &mut |_| true)?;
+    let frame = executor.render(&plan, &Assets::default(), Extras::default(), &mut |_| true)?;
 
     let mut file = std::fs::File::create("still.png").context("still.png")?;
     let shades = Shades::new(Layer::Color, &frame, &plan);

@@ -9,42 +9,26 @@
 )]
 
 mod adapter;
-#[allow(dead_code, reason = "other files use the rest")]
+#[allow(dead_code, reason = "other crates use the rest")]
 mod common {
     pub mod exact;
     pub mod overclaims;
+    pub mod plans;
     pub mod solved;
 }
 
-use adapter::{render, render_cut};
+use adapter::{COUNTED, EVERYTHING, HIT, LEVELS, SKY, UNCONVERGED, on_cpu, render, render_cut};
+use common::exact::first_hit;
 use common::overclaims::{brought_near, overclaims};
-use common::solved::{balls, camera, cameras, meet, slab, solved};
-use conemarch::base::work::{State, Work};
-use conemarch::cpu;
+use common::plans::{camera, compared, sized};
+use common::solved::{balls, cameras, rays, slab, solids, solved};
+use conemarch::base::work::Work;
 use conemarch::gpu::render::Cutting;
-use conemarch::measure::compare::compare;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::march::Mode;
-use conemarch::plan::{Extras, Plan, Subject};
-use conemarch::preset::load;
-
-const SKY: u8 = State::Sky as u8;
-const HIT: u8 = State::Hit as u8;
-const UNCONVERGED: u8 = State::Unconverged as u8;
-/// Fronts and states of every level, and no colour.
-const LEVELS: Extras = Extras {
-    count: false,
-    normals: false,
-    levels: true,
-    depth_only: true,
-    time: false,
-};
-/// The same, with counts.
-const COUNTED: Extras = Extras {
-    count: true,
-    ..LEVELS
-};
+use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Scene;
 
 /// Asserts that no cell of a render claims too much; says how near they bring rays.
 fn assert_sound(plan: &Plan, what: &str) -> f64 {
@@ -53,17 +37,13 @@ fn assert_sound(plan: &Plan, what: &str) -> f64 {
     let divisors: Vec<u32> = frame.levels.iter().map(|l| l.divisor).collect();
     assert_eq!(divisors, [32, 16, 8, 4, 2]);
     assert_eq!(overclaims(&frame, &t), 0, "{what}");
-    let report = compare(&frame, &reference, plan);
+    let report = compared(&frame, &reference, plan);
     for (divisor, pixels) in report.start_violations {
         assert_eq!(pixels, 0, "{what}: level 1/{divisor}");
     }
     // On a field of slope 1 neither can a ray pass what it meets.
     assert_eq!((report.holes, report.behind), (0.0, 0.0), "{what}");
-    assert!(
-        frame.state.iter().all(|s| *s <= HIT),
-        "{what}: {:?}",
-        frame.census()
-    );
+    assert_eq!(frame.census()[2], 0, "{what}");
     brought_near(&frame, &t)
 }
 
@@ -109,64 +89,41 @@ fn no_cell_starts_behind_a_surface_in_large_images() {
 /// The rule of the 2012 slides leaves gaps, and both counts must find them: they can.
 #[test]
 fn the_rule_of_the_slides_is_caught() {
-    for plan in [
-        balls(1e-3, &cameras()[3], [160, 90]),
-        slab(&cameras()[3], [160, 90]),
-    ] {
-        let mut plan = plan;
+    let camera = &cameras()[3];
+    for mut plan in [balls(1e-3, camera, [160, 90]), slab(camera, [160, 90])] {
         plan.march.mode = Mode::SlidesDeep;
         let (reference, t) = solved(&plan);
         let frame = render(&plan, LEVELS);
         assert!(overclaims(&frame, &t) > 100);
-        let report = compare(&frame, &reference, &plan);
+        let report = compared(&frame, &reference, &plan);
         let found: u64 = report.start_violations.iter().map(|v| v.1).sum();
         assert!(found > 100, "{:?}", report.start_violations);
         assert!(report.behind > 0.001, "{}", report.behind);
     }
 }
 
-/// The plan of a built-in preset at another size.
-fn preset(name: &str, size: [u32; 2]) -> Plan {
-    let mut plan = load(name, &[]).unwrap().plan;
-    plan.size = size;
-    plan
-}
-
 /// Every number of a frame but times, as bits.
-fn bits(frame: &Frame) -> Vec<Vec<u32>> {
-    let word = |s: &u8| u32::from(*s);
-    let floats = |v: &[f32]| v.iter().map(|x| x.to_bits()).collect::<Vec<u32>>();
-    let work = |w: &[Work]| {
-        w.iter()
-            .flat_map(|w| [w.evaluations, w.iterations])
-            .collect()
+fn bits(frame: &Frame) -> Vec<u32> {
+    let mut all = Vec::new();
+    let mut add = |numbers: &[f32], states: &[u8], work: &[Work]| {
+        all.extend(numbers.iter().map(|x| x.to_bits()));
+        all.extend(states.iter().map(|s| u32::from(*s)));
+        all.extend(work.iter().flat_map(|w| [w.evaluations, w.iterations]));
     };
-    let mut all = vec![
-        floats(&frame.depth),
-        frame.state.iter().map(word).collect(),
-        floats(frame.radiance.as_flattened()),
-        floats(frame.normal.as_flattened()),
-        work(&frame.work),
-    ];
+    add(&frame.depth, &frame.state, &frame.work);
+    add(frame.radiance.as_flattened(), &[], &[]);
+    add(frame.normal.as_flattened(), &[], &[]);
     for level in &frame.levels {
-        all.push(floats(&level.front));
-        all.push(level.state.iter().map(word).collect());
-        all.push(work(&level.work));
+        add(&level.front, &level.state, &level.work);
     }
     all
 }
 
 #[test]
 fn blocks_and_chunks_never_change_a_bit() {
-    let extras = Extras {
-        count: true,
-        normals: true,
-        levels: true,
-        ..Extras::default()
-    };
     let size = [333, 217];
     let plans = [
-        preset("bench-outside", size),
+        sized("bench-outside", size),
         balls(1e-3, &cameras()[3], size),
         slab(&cameras()[1], size),
     ];
@@ -176,34 +133,32 @@ fn blocks_and_chunks_never_change_a_bit() {
         for (coarsest, steps) in [(16, 7), (32, 300)] {
             plan.march.coarsest = coarsest;
             plan.march.steps = Some(steps);
-            let frame = render(&plan, extras);
-            let limited = steps == 7 && !matches!(plan.subject, Subject::Slab(_));
+            let frame = render(&plan, EVERYTHING);
+            let limited = steps == 7 && !matches!(plan.scene, Scene::Slab(_));
             assert_eq!(frame.census()[2] > 0, limited);
             let whole = bits(&frame);
-            let cuts = [(64, 4), (96, 4), (1024, 1), (1024, 3), (1024, 256), (96, 3)];
-            for (block, chunk) in cuts {
-                let cut = bits(&render_cut(&plan, extras, Cutting { block, chunk }));
-                let what = format!("coarsest {coarsest}, blocks of {block}, chunks of {chunk}");
+            for (block, chunk) in [(64, 4), (96, 4), (1024, 1), (1024, 3), (1024, 256), (96, 3)] {
+                let cut = bits(&render_cut(&plan, EVERYTHING, Cutting { block, chunk }));
                 // Not assert_eq: it would print a million numbers.
-                assert!(whole == cut, "{what}");
+                assert!(
+                    whole == cut,
+                    "1/{coarsest}, blocks of {block}, chunks of {chunk}"
+                );
             }
             // Anything that matters does change bits.
             let mut other = plan.clone();
             other.camera.fov += 1e-4;
-            assert!(whole != bits(&render(&other, extras)));
+            assert!(whole != bits(&render(&other, EVERYTHING)));
         }
     }
 }
 
 #[test]
 fn levels_halve_and_children_of_the_sky_do_nothing() {
-    let mut far = preset("bench-far", [333, 217]);
+    let mut far = sized("bench-far", [333, 217]);
     far.camera.eye *= 2.0;
-    for mut plan in [
-        far,
-        balls(0.05, &cameras()[0], [333, 217]),
-        slab(&cameras()[0], [333, 217]),
-    ] {
+    let (size, camera) = ([333, 217], &cameras()[0]);
+    for mut plan in [far, balls(0.05, camera, size), slab(camera, size)] {
         plan.march.coarsest = 32;
         let frame = render(&plan, COUNTED);
         assert_eq!(frame.levels.len(), 5);
@@ -242,36 +197,34 @@ fn cells_cut_by_the_image_are_complete() {
     for size in [[1366, 768], [1600, 1050], [33, 17], [200, 1], [1, 1]] {
         for plan in [slab(&down, size), balls(0.05, &cameras()[2], size)] {
             let frame = render(&plan, LEVELS);
-            let other = cpu::render(&plan, LEVELS, &mut |_| true).unwrap();
-            let view = plan.view();
-            let [w, h] = size;
-            let last_row = (0..w).map(|x| [x, h - 1]);
-            let last_column = (0..h).map(|y| [w - 1, y]);
+            let other = on_cpu(&plan, LEVELS);
+            let ([w, h], solids) = (size, solids(&plan).unwrap());
             let mut differ = 0;
-            for p in last_row.chain(last_column) {
-                let i = (p[1] * w + p[0]) as usize;
-                let ray = view.view_ray(p);
-                if let Subject::Slab(_) = plan.subject {
-                    let t = meet(&plan.subject, view.eye, ray.axis);
+            for (i, ray) in rays(&plan).enumerate() {
+                let last_column = i as u32 % w == w - 1;
+                if !last_column && i as u32 / w < h - 1 {
+                    continue;
+                }
+                if let Scene::Slab(_) = plan.scene {
                     assert_eq!(frame.state[i], HIT);
+                    let t = first_hit(&solids, plan.camera.eye, ray.axis);
                     assert!((f64::from(frame.depth[i]) / t - 1.0).abs() < 1e-5);
                 }
                 let apart = f64::from(frame.depth[i] - other.depth[i]).abs();
-                let same = frame.state[i] == other.state[i]
-                    && (frame.state[i] != HIT
-                        || apart < 2.0 * ray.grain * f64::from(frame.depth[i]));
-                differ += u32::from(!same);
+                let near = apart < 2.0 * ray.grain * f64::from(frame.depth[i]);
+                let alike = frame.state[i] == other.state[i];
+                differ += u32::from(!alike || frame.state[i] == HIT && !near);
             }
             // f32 and f64 may part where a ray grazes an edge: few of hundreds.
             assert!(differ <= (w + h) / 200, "{size:?}: {differ} pixels differ");
-            assert!(frame.state.iter().all(|s| *s <= HIT));
+            assert_eq!(frame.census()[2], 0);
         }
     }
 }
 
 #[test]
 fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
-    let mut plan = preset("bench-far", [96, 54]);
+    let mut plan = sized("bench-far", [96, 54]);
     plan.march.mode = Mode::Ray;
     plan.march.steps = Some(1);
     let frame = render(&plan, Extras::default());
@@ -290,9 +243,9 @@ fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
     for steps in [1, 2, 3] {
         plan.march.steps = Some(steps);
         let frame = render(&plan, Extras::default());
-        let other = cpu::render(&plan, Extras::default(), &mut |_| true).unwrap();
+        let other = on_cpu(&plan, Extras::default());
         assert!(frame.census()[1] > 100 && frame.census()[2] > 20);
-        let report = compare(&frame, &other, &plan);
+        let report = compared(&frame, &other, &plan);
         // Of 5184 rays, those that end within a rounding of the threshold.
         assert!(report.mask < 1e-3, "{}", report.mask);
         for f in [&frame, &other] {
@@ -308,8 +261,8 @@ fn a_limit_that_is_reached_is_a_state_and_shown_only_on_request() {
 
 #[test]
 fn passes_figures_and_fudge_are_what_the_plan_says() {
-    let mut plan = preset("bench-outside", [160, 90]);
-    let names = |f: &Frame| f.passes.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
+    let mut plan = sized("bench-outside", [160, 90]);
+    let names = |f: &Frame| f.passes.iter().map(|p| p.pass.name()).collect::<Vec<_>>();
     let marched = render(&plan, COUNTED);
     assert_eq!(
         names(&marched),
@@ -324,33 +277,24 @@ fn passes_figures_and_fudge_are_what_the_plan_says() {
         assert!(sum(|w| w.evaluations) > 0);
     }
     let uncounted = render(&plan, LEVELS);
-    assert!(
-        uncounted
-            .passes
-            .iter()
-            .all(|p| p.evaluations.is_none() && p.iterations.is_none())
-    );
+    let mut figures = uncounted.passes.iter();
+    assert!(figures.all(|p| p.evaluations.is_none() && p.iterations.is_none()));
     assert!(uncounted.work.is_empty() && uncounted.work_per_pixel().is_none());
     // Full cones take no factor. In the mode that does, one stands for all that follow.
-    let full = bits(&render(&plan, LEVELS));
-    plan.march.fudge = vec![0.6];
-    assert!(full == bits(&render(&plan, LEVELS)));
-    plan.march.mode = Mode::Calibrated;
-    let short = bits(&render(&plan, LEVELS));
+    let fronts = |mode, fudge: &[f64]| {
+        let mut plan = plan.clone();
+        plan.march.mode = mode;
+        plan.march.fudge = fudge.to_vec();
+        bits(&render(&plan, LEVELS))
+    };
+    let full = fronts(Mode::Safe, &plan.march.fudge);
+    assert!(full == fronts(Mode::Safe, &[0.6]));
+    let short = fronts(Mode::Calibrated, &[0.6]);
     assert!(short != full);
-    plan.march.fudge = vec![0.6; 4];
-    assert!(short == bits(&render(&plan, LEVELS)));
-    plan.march.fudge = vec![0.6, 1.0];
-    assert!(short != bits(&render(&plan, LEVELS)));
+    assert!(short == fronts(Mode::Calibrated, &[0.6; 4]));
+    assert!(short != fronts(Mode::Calibrated, &[0.6, 1.0]));
     plan.march.mode = Mode::Ray;
-    let alone = render(
-        &plan,
-        Extras {
-            count: true,
-            levels: true,
-            ..Extras::default()
-        },
-    );
+    let alone = render(&plan, EVERYTHING);
     assert_eq!(names(&alone), ["trace", "color"]);
     assert!(alone.levels.is_empty());
 }
@@ -361,12 +305,14 @@ fn passes_do_not_know_what_they_march() {
     let size = [333, 217];
     for camera in &cameras()[..4] {
         let plan = slab(camera, size);
-        assert_eq!(plan.passes(), balls(0.05, camera, size).passes());
+        assert_eq!(
+            plan.passes(LEVELS),
+            balls(0.05, camera, size).passes(LEVELS)
+        );
         let (reference, t) = solved(&plan);
-        let cpu = cpu::render(&plan, LEVELS, &mut |_| true).unwrap();
         // An f32 solution is off by some roundings of the eye's coordinates, up to 20,
         // times the slope at which a ray meets the planes.
-        for (frame, allowed) in [(render(&plan, LEVELS), 1e-4), (cpu, 1e-6)] {
+        for (frame, allowed) in [(render(&plan, LEVELS), 1e-4), (on_cpu(&plan, LEVELS), 1e-6)] {
             let mut differ = 0;
             for (i, &t) in t.iter().enumerate() {
                 differ += u32::from(frame.state[i] != reference.state[i]);

@@ -1,8 +1,10 @@
 //! Presets are the text of a Plan: what is written reads back to the last bit, and what
 //! is wrong is named with its place.
 
-use conemarch::plan::{Plan, Subject};
+use conemarch::plan::Plan;
 use conemarch::preset::{BUILTIN, Override, PresetError, builtin, load, read, read_with, write};
+use conemarch::scene::Scene;
+use conemarch::scene::distance::DistanceSettings;
 use conemarch::scene::slab::SlabSettings;
 use proptest::prelude::*;
 use toml::Value;
@@ -11,12 +13,12 @@ const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
 
 /// A plan of every subject there is.
 fn subjects() -> Vec<Plan> {
-    Subject::all().into_iter().map(Plan::new).collect()
+    Scene::all().into_iter().map(Plan::new).collect()
 }
 
 /// `[scene]` with nothing but what is required.
 fn least(plan: &Plan) -> String {
-    let (kind, formula) = plan.subject.words();
+    let (kind, formula) = (plan.scene.kind(), plan.scene.formula());
     let formula = formula.map_or(String::new(), |f| format!("formula = \"{f}\"\n"));
     format!("[scene]\nkind = \"{kind}\"\n{formula}")
 }
@@ -523,13 +525,16 @@ fn fields_and_paths_need_no_quotes() {
 fn another_formula_starts_from_its_own_defaults() {
     let set = Override::read("scene.formula=balls").expect("a value");
     let plan = load("mandelbox", &[set]).expect("scale is dropped").plan;
-    assert_eq!(plan.subject.words(), ("distance", Some("balls")));
+    assert_eq!(
+        (plan.scene.kind(), plan.scene.formula()),
+        ("distance", Some("balls"))
+    );
     let same = Override::read("scene.formula=mandelbox").expect("a value");
     let plan = load("bench-thin", &[same]).expect("no change").plan;
     assert_eq!(get(&plan, "scene", "scale"), Value::Float(3.0));
     let set = Override::read("scene.kind=slab").expect("a value");
     let plan = load("mandelbox", &[set]).expect("all is dropped").plan;
-    assert_eq!(plan.subject, Subject::Slab(SlabSettings::default()));
+    assert_eq!(plan.scene, Scene::Slab(SlabSettings::default()));
 }
 
 proptest! {
@@ -570,7 +575,7 @@ proptest! {
         plan.camera.eye = eye.into();
         plan.look.exposure = exposure;
         plan.title = title;
-        if let Subject::Distance { iterations: slot, .. } = &mut plan.subject {
+        if let Scene::Distance(DistanceSettings { iterations: slot, .. }) = &mut plan.scene {
             *slot = iterations;
         }
         let again = read(&write(&plan), "written");

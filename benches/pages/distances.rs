@@ -73,7 +73,7 @@ pub fn measure() -> Result<Vec<DistanceRow>> {
         let mut times = vec![Vec::new(); TRACERS.len()];
         for run in 0..=RUNS {
             for (plan, times) in plans.iter().zip(&mut times) {
-                let frame = executor.render(plan, DEPTHS, &mut |_| true)?;
+                let frame = executor.render(plan, &Assets::default(), DEPTHS, &mut |_| true)?;
                 // The first run makes maps and compiles.
                 if run > 0 {
                     times.push(frame_ms(&frame));
@@ -83,7 +83,7 @@ pub fn measure() -> Result<Vec<DistanceRow>> {
         let mut counted = |mode| -> Result<Vec<Frame>> {
             let one = |plan: &mut Plan| {
                 plan.march.mode = mode;
-                cpu::render(plan, COUNTED, &mut |_| true)
+                cpu::render(plan, &Assets::default(), COUNTED, &mut |_| true)
             };
             Ok(plans.iter_mut().map(one).collect::<Result<_, _>>()?)
         };

@@ -8,6 +8,7 @@ use conemarch::gpu::device::Choice;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};
+use conemarch::scene::Assets;
 use serde::{Deserialize, Serialize};
 
 /// Warm runs, of which the median is taken.
@@ -104,7 +105,8 @@ pub fn skipped(frame: &Frame, truth: &Frame, texel: f64) -> f64 {
 /// Renders all kinds in turn, so that a busy machine slows all of them alike.
 pub fn measure(field: &str, relaxed: &str) -> Result<Vec<FrameRow>> {
     let (mut executor, _) = Executor::open(&Choice::Auto)?;
-    let mut render = |plan: &Plan| executor.render(plan, Extras::default(), &mut |_| true);
+    let mut render =
+        |plan: &Plan| executor.render(plan, &Assets::default(), Extras::default(), &mut |_| true);
     let truth = render(&plan(field, relaxed, KINDS[KINDS.len() - 1], 1024)?)?;
     ensure!(truth.census()[2] == 0, "the walk did not converge");
     let mut rows = Vec::new();

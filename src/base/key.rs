@@ -8,14 +8,22 @@
 use glam::DVec3;
 use toml::Value;
 
-/// Something that a preset's value can be put into.
+/// A place for one value of a preset.
 pub trait Slot {
-    /// The present value, as a preset would say it.
+    /// The present value, as a preset says it.
     fn get(&self) -> Value;
-    /// Takes a value over, or says what would have been right.
-    fn set(&mut self, value: &Value) -> Result<(), String>;
+    /// Takes a value over; `None` leaves the present one and means that it does not fit.
+    fn put(&mut self, value: &Value) -> Option<()>;
     /// What the slot takes, in words.
     fn expects(&self) -> String;
+
+    /// Takes a value over.
+    ///
+    /// # Errors
+    /// The value does not fit; [`Slot::expects`].
+    fn set(&mut self, value: &Value) -> Result<(), String> {
+        self.put(value).ok_or_else(|| self.expects())
+    }
 }
 
 /// One setting of a part of a Plan.
@@ -39,6 +47,14 @@ impl<'a> Key<'a> {
     }
 }
 
+/// Lists keys as `"name" = slot, "help";`.
+#[macro_export]
+macro_rules! keys {
+    ($($name:literal = $slot:expr, $help:literal;)*) => {
+        vec![$($crate::base::key::Key::new($name, $slot, $help)),*]
+    };
+}
+
 /// A value that is impossible together with others, found after reading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
@@ -58,7 +74,7 @@ impl Fault {
     }
 }
 
-/// A finite number of a TOML value, an integer serving as a float.
+/// A finite number of a TOML value. An integer serves as a float.
 pub fn number(value: &Value) -> Option<f64> {
     let x = match value {
         Value::Float(x) => *x,
@@ -67,6 +83,48 @@ pub fn number(value: &Value) -> Option<f64> {
         _ => return None,
     };
     x.is_finite().then_some(x)
+}
+
+fn number_in(value: &Value, low: f64, high: f64) -> Option<f64> {
+    number(value).filter(|x| (low..=high).contains(x))
+}
+
+fn count_in(value: &Value, low: u32, high: u32) -> Option<u32> {
+    let n = u32::try_from(value.as_integer()?).ok()?;
+    (low..=high).contains(&n).then_some(n)
+}
+
+/// As many values as an array has, each read alike.
+fn array<T: Copy + Default, const N: usize>(
+    value: &Value,
+    read: impl Fn(&Value) -> Option<T>,
+) -> Option<[T; N]> {
+    let list = value.as_array().filter(|a| a.len() == N)?;
+    let mut out = [T::default(); N];
+    for (to, from) in out.iter_mut().zip(list) {
+        *to = read(from)?;
+    }
+    Some(out)
+}
+
+/// `"auto"` as `None`, or what `read` reads.
+fn auto<T>(value: &Value, read: impl Fn(&Value) -> Option<T>) -> Option<Option<T>> {
+    match value.as_str() {
+        Some("auto") => Some(None),
+        _ => read(value).map(Some),
+    }
+}
+
+fn auto_value(value: Option<Value>) -> Value {
+    value.unwrap_or_else(|| Value::String("auto".into()))
+}
+
+fn integer(n: u32) -> Value {
+    Value::Integer(n.into())
+}
+
+fn triple(v: &DVec3) -> Value {
+    Value::Array(v.to_array().map(Value::Float).to_vec())
 }
 
 /// How a number in a sentence reads best.
@@ -78,6 +136,10 @@ fn plain(x: f64) -> String {
     }
 }
 
+fn from_to(low: f64, high: f64) -> String {
+    format!("from {} to {}", plain(low), plain(high))
+}
+
 /// A number in a closed range.
 pub struct Number<'a>(pub &'a mut f64, pub f64, pub f64);
 
@@ -85,17 +147,12 @@ impl Slot for Number<'_> {
     fn get(&self) -> Value {
         Value::Float(*self.0)
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        match number(value) {
-            Some(x) if (self.1..=self.2).contains(&x) => {
-                *self.0 = x;
-                Ok(())
-            }
-            _ => Err(self.expects()),
-        }
+    fn put(&mut self, value: &Value) -> Option<()> {
+        *self.0 = number_in(value, self.1, self.2)?;
+        Some(())
     }
     fn expects(&self) -> String {
-        format!("a number from {} to {}", plain(self.1), plain(self.2))
+        format!("a number {}", from_to(self.1, self.2))
     }
 }
 
@@ -104,78 +161,46 @@ pub struct Count<'a>(pub &'a mut u32, pub u32, pub u32);
 
 impl Slot for Count<'_> {
     fn get(&self) -> Value {
-        Value::Integer(i64::from(*self.0))
+        integer(*self.0)
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        match value {
-            Value::Integer(i) => match u32::try_from(*i) {
-                Ok(n) if (self.1..=self.2).contains(&n) => {
-                    *self.0 = n;
-                    Ok(())
-                }
-                _ => Err(self.expects()),
-            },
-            _ => Err(self.expects()),
-        }
+    fn put(&mut self, value: &Value) -> Option<()> {
+        *self.0 = count_in(value, self.1, self.2)?;
+        Some(())
     }
     fn expects(&self) -> String {
         format!("a whole number from {} to {}", self.1, self.2)
     }
 }
 
-/// `"auto"`, kept as `None`, or what `Count` takes.
+/// `"auto"`, kept as `None`, or what [`Count`] takes.
 pub struct AutoCount<'a>(pub &'a mut Option<u32>, pub u32, pub u32);
 
 impl Slot for AutoCount<'_> {
     fn get(&self) -> Value {
-        match &*self.0 {
-            Some(n) => Value::Integer(i64::from(*n)),
-            None => Value::String("auto".into()),
-        }
+        auto_value(self.0.map(integer))
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        if value.as_str() == Some("auto") {
-            *self.0 = None;
-            return Ok(());
-        }
-        let mut n = 0;
-        let read = Count(&mut n, self.1, self.2).set(value);
-        read.map_err(|_| self.expects())?;
-        *self.0 = Some(n);
-        Ok(())
+    fn put(&mut self, value: &Value) -> Option<()> {
+        *self.0 = auto(value, |v| count_in(v, self.1, self.2))?;
+        Some(())
     }
     fn expects(&self) -> String {
         format!("\"auto\" or a whole number from {} to {}", self.1, self.2)
     }
 }
 
-/// `"auto"`, kept as `None`, or what `Number` takes.
+/// `"auto"`, kept as `None`, or what [`Number`] takes.
 pub struct AutoNumber<'a>(pub &'a mut Option<f64>, pub f64, pub f64);
 
 impl Slot for AutoNumber<'_> {
     fn get(&self) -> Value {
-        match &*self.0 {
-            Some(x) => Value::Float(*x),
-            None => Value::String("auto".into()),
-        }
+        auto_value(self.0.map(Value::Float))
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        if value.as_str() == Some("auto") {
-            *self.0 = None;
-            return Ok(());
-        }
-        let mut x = 0.0;
-        let read = Number(&mut x, self.1, self.2).set(value);
-        read.map_err(|_| self.expects())?;
-        *self.0 = Some(x);
-        Ok(())
+    fn put(&mut self, value: &Value) -> Option<()> {
+        *self.0 = auto(value, |v| number_in(v, self.1, self.2))?;
+        Some(())
     }
     fn expects(&self) -> String {
-        format!(
-            "\"auto\" or a number from {} to {}",
-            plain(self.1),
-            plain(self.2)
-        )
+        format!("\"auto\" or a number {}", from_to(self.1, self.2))
     }
 }
 
@@ -186,9 +211,9 @@ impl Slot for Switch<'_> {
     fn get(&self) -> Value {
         Value::Boolean(*self.0)
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        *self.0 = value.as_bool().ok_or_else(|| self.expects())?;
-        Ok(())
+    fn put(&mut self, value: &Value) -> Option<()> {
+        *self.0 = value.as_bool()?;
+        Some(())
     }
     fn expects(&self) -> String {
         "true or false".into()
@@ -200,29 +225,19 @@ pub struct Triple<'a>(pub &'a mut DVec3, pub f64, pub f64);
 
 impl Slot for Triple<'_> {
     fn get(&self) -> Value {
-        Value::Array(self.0.to_array().map(Value::Float).to_vec())
+        triple(self.0)
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        let list = value.as_array().filter(|a| a.len() == 3);
-        let mut out = [0.0; 3];
-        for (i, v) in list.ok_or_else(|| self.expects())?.iter().enumerate() {
-            out[i] = number(v)
-                .filter(|x| (self.1..=self.2).contains(x))
-                .ok_or_else(|| self.expects())?;
-        }
-        *self.0 = DVec3::from_array(out);
-        Ok(())
+    fn put(&mut self, value: &Value) -> Option<()> {
+        *self.0 = array(value, |v| number_in(v, self.1, self.2))?.into();
+        Some(())
     }
     fn expects(&self) -> String {
-        format!(
-            "three numbers like [1, 2, 3], each from {} to {}",
-            plain(self.1),
-            plain(self.2)
-        )
+        let range = from_to(self.1, self.2);
+        format!("three numbers like [1, 2, 3], each {range}")
     }
 }
 
-/// A list of numbers or of triples: how many, and each of them in a closed range.
+/// A list of numbers or of triples: how many, and each number in a closed range.
 pub struct List<'a, T>(
     pub &'a mut Vec<T>,
     pub std::ops::RangeInclusive<usize>,
@@ -230,69 +245,56 @@ pub struct List<'a, T>(
     pub f64,
 );
 
+impl<T> List<'_, T> {
+    /// As many values as the list takes, each read alike.
+    fn all(&self, value: &Value, read: impl Fn(&Value) -> Option<T>) -> Option<Vec<T>> {
+        let list = value.as_array().filter(|a| self.1.contains(&a.len()))?;
+        list.iter().map(read).collect()
+    }
+
+    fn count(&self) -> String {
+        format!("a list of {} to {}", self.1.start(), self.1.end())
+    }
+}
+
 impl Slot for List<'_, f64> {
     fn get(&self) -> Value {
         Value::Array(self.0.iter().map(|x| Value::Float(*x)).collect())
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        let list = value.as_array().filter(|a| self.1.contains(&a.len()));
-        let mut out = Vec::new();
-        for v in list.ok_or_else(|| self.expects())? {
-            let x = number(v).filter(|x| (self.2..=self.3).contains(x));
-            out.push(x.ok_or_else(|| self.expects())?);
-        }
-        *self.0 = out;
-        Ok(())
+    fn put(&mut self, value: &Value) -> Option<()> {
+        *self.0 = self.all(value, |v| number_in(v, self.2, self.3))?;
+        Some(())
     }
     fn expects(&self) -> String {
-        format!(
-            "a list of {} to {} numbers, each from {} to {}",
-            self.1.start(),
-            self.1.end(),
-            plain(self.2),
-            plain(self.3)
-        )
+        format!("{} numbers, each {}", self.count(), from_to(self.2, self.3))
     }
 }
 
 impl Slot for List<'_, DVec3> {
     fn get(&self) -> Value {
-        let triple = |v: &DVec3| Value::Array(v.to_array().map(Value::Float).to_vec());
         Value::Array(self.0.iter().map(triple).collect())
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        let list = value.as_array().filter(|a| self.1.contains(&a.len()));
-        let mut out = Vec::new();
-        for v in list.ok_or_else(|| self.expects())? {
-            let mut x = DVec3::ZERO;
-            let read = Triple(&mut x, self.2, self.3).set(v);
-            read.map_err(|_| self.expects())?;
-            out.push(x);
-        }
-        *self.0 = out;
-        Ok(())
+    fn put(&mut self, value: &Value) -> Option<()> {
+        let one = |v: &Value| Some(array(v, |x| number_in(x, self.2, self.3))?.into());
+        *self.0 = self.all(value, one)?;
+        Some(())
     }
     fn expects(&self) -> String {
-        format!(
-            "a list of {} to {} triples like [0.9, 0.5, 0.2], each number from {} to {}",
-            self.1.start(),
-            self.1.end(),
-            plain(self.2),
-            plain(self.3)
-        )
+        let range = from_to(self.2, self.3);
+        let count = self.count();
+        format!("{count} triples like [0.9, 0.5, 0.2], each number {range}")
     }
 }
 
-/// Image width and height in pixels.
+/// Image width and height in pixels, each from 1.
 pub struct Size<'a>(pub &'a mut [u32; 2], pub u32);
 
 impl Slot for Size<'_> {
     fn get(&self) -> Value {
-        Value::Array(self.0.map(|n| Value::Integer(i64::from(n))).to_vec())
+        Value::Array(self.0.map(integer).to_vec())
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        let set = Counts(self.0, 1, self.1).set(value);
-        set.map_err(|_| self.expects())
+    fn put(&mut self, value: &Value) -> Option<()> {
+        Counts(self.0, 1, self.1).put(value)
     }
     fn expects(&self) -> String {
         format!("[width, height] in pixels, each from 1 to {}", self.1)
@@ -304,27 +306,19 @@ pub struct Counts<'a>(pub &'a mut [u32; 2], pub u32, pub u32);
 
 impl Slot for Counts<'_> {
     fn get(&self) -> Value {
-        Value::Array(self.0.map(|n| Value::Integer(i64::from(n))).to_vec())
+        Value::Array(self.0.map(integer).to_vec())
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        let list = value.as_array().filter(|a| a.len() == 2);
-        let mut out = [0; 2];
-        for (i, v) in list.ok_or_else(|| self.expects())?.iter().enumerate() {
-            let read = Count(&mut out[i], self.1, self.2).set(v);
-            read.map_err(|_| self.expects())?;
-        }
-        *self.0 = out;
-        Ok(())
+    fn put(&mut self, value: &Value) -> Option<()> {
+        *self.0 = array(value, |v| count_in(v, self.1, self.2))?;
+        Some(())
     }
     fn expects(&self) -> String {
-        format!(
-            "two whole numbers like [2, 2], each from {} to {}",
-            self.1, self.2
-        )
+        let (low, high) = (self.1, self.2);
+        format!("two whole numbers like [2, 2], each from {low} to {high}")
     }
 }
 
-/// A word out of a few.
+/// One word of a few.
 pub struct Word<'a, T: 'static>(pub &'a mut T, pub &'static [(&'static str, T)]);
 
 impl<T: Copy + PartialEq> Slot for Word<'_, T> {
@@ -332,10 +326,10 @@ impl<T: Copy + PartialEq> Slot for Word<'_, T> {
         let word = self.1.iter().find(|(_, v)| v == self.0);
         Value::String(word.map_or("", |(w, _)| w).into())
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        let word = self.1.iter().find(|(w, _)| value.as_str() == Some(w));
-        *self.0 = word.ok_or_else(|| self.expects())?.1;
-        Ok(())
+    fn put(&mut self, value: &Value) -> Option<()> {
+        let mut words = self.1.iter();
+        *self.0 = words.find(|(w, _)| value.as_str() == Some(w))?.1;
+        Some(())
     }
     fn expects(&self) -> String {
         let words: Vec<String> = self.1.iter().map(|(w, _)| format!("\"{w}\"")).collect();
@@ -350,12 +344,10 @@ impl Slot for Text<'_> {
     fn get(&self) -> Value {
         Value::String(self.0.clone())
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
-        let text = value
-            .as_str()
-            .filter(|t| t.len() <= 200 && !t.contains(char::is_control));
-        *self.0 = text.ok_or_else(|| self.expects())?.to_string();
-        Ok(())
+    fn put(&mut self, value: &Value) -> Option<()> {
+        let fits = |t: &&str| t.len() <= 200 && !t.contains(char::is_control);
+        *self.0 = value.as_str().filter(fits)?.into();
+        Some(())
     }
     fn expects(&self) -> String {
         "a line of text of at most 200 bytes, without control characters".into()

@@ -2,7 +2,9 @@
 
 pub mod cone;
 pub mod key;
+pub mod named;
 pub mod shader;
 pub mod srgb;
+pub mod units;
 pub mod view;
 pub mod work;

@@ -1,4 +1,17 @@
-//! What a pixel is, and what it cost.
+//! What a step came to, what a pixel is, and what it cost.
+
+/// What one step of a ray came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The ray goes on.
+    Moving,
+    /// The surface is met.
+    Hit,
+    /// The ray is past its end and has met nothing.
+    Out,
+    /// The tracer's own limit of steps is reached: the ray has not converged.
+    Spent,
+}
 
 /// What a pixel is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

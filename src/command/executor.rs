@@ -1,10 +1,13 @@
 //! One executor out of two: a renderer on a device, or the CPU.
 
 use crate::cpu;
+use crate::gpu::RenderError;
 use crate::gpu::device::{Adapters, Choice, Device, DeviceError, STORAGE_BUFFERS};
-use crate::gpu::render::{RenderError, Renderer, Watch};
+use crate::gpu::render::Renderer;
+use crate::pass::progress::Watch;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
+use crate::scene::Assets;
 
 /// Who runs a plan.
 pub enum Executor {
@@ -86,12 +89,13 @@ impl Executor {
     pub fn render(
         &mut self,
         plan: &Plan,
+        assets: &Assets,
         extras: Extras,
         watch: Watch<'_>,
     ) -> Result<Frame, RenderError> {
         match self {
-            Self::Gpu(renderer) => renderer.render(plan, extras, watch),
-            Self::Cpu => cpu::render(plan, extras, watch),
+            Self::Gpu(renderer) => renderer.render(plan, assets, extras, watch),
+            Self::Cpu => cpu::render(plan, assets, extras, watch),
         }
     }
 

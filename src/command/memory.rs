@@ -2,7 +2,9 @@
 
 use std::fs;
 
-use crate::plan::{Plan, Preparation};
+use crate::heightfield::assets::Preparation;
+use crate::plan::Plan;
+use crate::scene::Assets;
 
 /// Assumed where the system does not tell.
 const UNKNOWN: u64 = 16 << 30;
@@ -61,19 +63,22 @@ pub fn lacking_maps(ratios: u64, available: u64) -> Option<String> {
 }
 
 /// A sentence where what a plan prepares does not fit.
-pub fn lacking_for(plan: &Plan, available: u64) -> Option<String> {
+pub fn lacking_for(plan: &Plan, assets: &Assets, available: u64) -> Option<String> {
     let ratios = |made: &Preparation| {
         let places: u64 = made.places.map(u64::from).iter().product();
         places * made.generator.channels() as u64
     };
-    lacking_maps(plan.preparations().iter().map(ratios).sum(), available)
+    lacking_maps(
+        plan.scene.preparations(assets).iter().map(ratios).sum(),
+        available,
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::heightfield::settings::{HeightfieldSettings, Wrap};
-    use crate::plan::Subject;
+    use crate::heightfield::tracer::TracerKind;
 
     #[test]
     fn a_size_that_is_offered_fits() {
@@ -98,16 +103,16 @@ mod tests {
         let mut shape = HeightfieldSettings::default();
         shape.source.field = "fbm:8192x8192".into();
         shape.source.wrap = Wrap::Both;
-        shape.tracing.tracer = "quad";
+        shape.tracing.tracer = TracerKind::Quad;
         let lacking = |shape: &HeightfieldSettings, available| {
-            let plan = Plan::new(Subject::Heightfield(shape.clone()));
-            lacking_for(&plan, available)
+            let plan = Plan::new(shape.clone());
+            lacking_for(&plan, &Assets::default(), available)
         };
         let needed = 8192 * 8192 * 4 * BYTES_PER_RATIO;
         assert_eq!(lacking(&shape, needed), None);
         let why = lacking(&shape, needed - 1).unwrap_or_default();
         assert!(why.contains(&format!("{needed} bytes of memory")), "{why}");
-        shape.tracing.tracer = "max-mip";
+        shape.tracing.tracer = TracerKind::MaxMip;
         assert_eq!(lacking(&shape, 0), None);
     }
 }

@@ -11,6 +11,7 @@ pub mod line;
 pub mod memory;
 pub mod presets;
 pub mod print;
+pub mod progress;
 pub mod render;
 pub mod sink;
 pub mod size;

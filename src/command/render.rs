@@ -15,13 +15,16 @@ use crate::command::print::{print, say};
 use crate::command::sink::{Parcel, Sink, apart, is_stdout, spared};
 use crate::command::stats::{Stats, shares, undecided};
 use crate::command::{interrupt, memory, size};
+use crate::gpu::RenderError;
 use crate::gpu::device::Choice;
-use crate::gpu::render::{Progress, RenderError};
 use crate::measure::truth::{self, Cache};
+use crate::pass;
+use crate::pass::progress::Progress;
 use crate::picture::frame::Frame;
 use crate::picture::{BitDepth, Layer, Shades, write_exr, write_png};
-use crate::plan::{Extras, PREPARE, Plan};
+use crate::plan::{Extras, Pass, Plan};
 use crate::preset::{self, Override, Preset};
+use crate::scene::Assets;
 
 /// What `render` takes.
 #[derive(Args, Debug)]
@@ -131,7 +134,10 @@ enum Format {
 /// Renders a preset.
 pub fn run(args: &Render) -> Result<()> {
     let overrides: Result<Vec<Override>, _> = args.set.iter().map(|s| Override::read(s)).collect();
-    let Preset { name, mut plan } = preset::load(&args.preset, &overrides?)?;
+    let preset = preset::load(&args.preset, &overrides?)?;
+    let assets = Assets::default();
+    preset.load_assets(&assets)?;
+    let Preset { name, mut plan, .. } = preset;
     if let Some(size) = args.size {
         plan.size = size;
     }
@@ -143,7 +149,7 @@ pub fn run(args: &Render) -> Result<()> {
     let stats = args.stats.as_deref();
     let outputs = [("the picture", Some(output.as_path())), ("--stats", stats)];
     apart(&outputs)?;
-    spared(&outputs, &plan.files())?;
+    spared(&outputs, &plan.scene.files())?;
     // A picture may take the place of the one whose preset it was rendered from.
     let preset = preset::file(&args.preset).map(|file| ("the preset", file));
     spared(&outputs[1..], preset.as_slice())?;
@@ -152,14 +158,14 @@ pub fn run(args: &Render) -> Result<()> {
     if let Some(why) = memory::lacking(plan.size, per_pixel, memory::available()) {
         anyhow::bail!(why);
     }
-    if let Some(why) = memory::lacking_for(&plan.lean(extras), memory::available()) {
+    if let Some(why) = memory::lacking_for(&plan.lean(extras), &assets, memory::available()) {
         anyhow::bail!(why);
     }
-    for note in plan.notes() {
+    for note in plan.scene.notes(&assets) {
         say(&format!("note: {note}"));
     }
     if args.explain {
-        return explain(args, &plan, extras);
+        return explain(args, &plan, &assets, extras);
     }
     interrupt::listen();
     let picture = Sink::prepare(&output)?;
@@ -169,13 +175,13 @@ pub fn run(args: &Render) -> Result<()> {
     if let Some(warning) = executor.precision_warning(&plan) {
         say(&format!("warning: {warning}"));
     }
-    let frame = march(&mut executor, &plan, extras)?;
+    let frame = march(&mut executor, &plan, &assets, extras)?;
     let preset = preset::write(&plan);
     let truth = match args.layer {
         Layer::Error => {
             say("rendering the truth to compare with, in f64");
             let watch = &mut |_: &_| !interrupt::asked();
-            Some(truth::cached(Cache::user().as_ref(), &plan, watch)?.0)
+            Some(truth::cached(Cache::user().as_ref(), &plan, &assets, watch)?.0)
         }
         _ => None,
     };
@@ -199,7 +205,7 @@ pub fn run(args: &Render) -> Result<()> {
     drop(content);
     if let Some(figures) = figures {
         let mut frame = frame.clone();
-        warm_times(&mut executor, &plan, &mut frame)?;
+        warm_times(&mut executor, &plan, &assets, &mut frame)?;
         let stats = Stats::new(&name, &plan, &executor, &frame);
         let mut text = serde_json::to_vec_pretty(&stats)?;
         text.push(b'\n');
@@ -226,7 +232,7 @@ fn ends_at_the_eye(frame: &Frame, plan: &Plan) -> bool {
 
 /// Prints what would be run, once all arguments are known to be right: those that a
 /// render would refuse are refused here too. No device is opened.
-fn explain(args: &Render, plan: &Plan, extras: Extras) -> Result<()> {
+fn explain(args: &Render, plan: &Plan, assets: &Assets, extras: Extras) -> Result<()> {
     for path in args.output.iter().chain(&args.stats) {
         // Nothing is written: what was prepared goes again at once.
         Sink::prepare(path)?;
@@ -239,7 +245,7 @@ fn explain(args: &Render, plan: &Plan, extras: Extras) -> Result<()> {
     if args.layer == Layer::Error {
         text += "compared with: the truth of the same plan, in f64 on the CPU\n";
     }
-    text += &plan.explain(extras);
+    text += &pass::explain(plan, assets, extras)?;
     print(text.as_bytes())
 }
 
@@ -292,7 +298,7 @@ fn extras(args: &Render, format: Format) -> Extras {
 }
 
 /// Renders with a bar on terminals, until done or interrupted.
-fn march(executor: &mut Executor, plan: &Plan, extras: Extras) -> Result<Frame> {
+fn march(executor: &mut Executor, plan: &Plan, assets: &Assets, extras: Extras) -> Result<Frame> {
     let bar = if std::io::stderr().is_terminal() {
         let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
         ProgressBar::new(1000).with_style(style.context("the progress bar")?)
@@ -305,7 +311,7 @@ fn march(executor: &mut Executor, plan: &Plan, extras: Extras) -> Result<Frame> 
         bar.set_message(progress.pass.clone());
         !interrupt::asked()
     };
-    let frame = executor.render(plan, extras, &mut watch);
+    let frame = executor.render(plan, assets, extras, &mut watch);
     bar.finish_and_clear();
     Ok(frame?)
 }
@@ -317,7 +323,12 @@ const AGAIN: usize = 3;
 
 /// Puts the times of warm runs into a frame, as the first one compiled its programs and
 /// counted; only what takes very long keeps the times of that one.
-fn warm_times(executor: &mut Executor, plan: &Plan, frame: &mut Frame) -> Result<()> {
+fn warm_times(
+    executor: &mut Executor,
+    plan: &Plan,
+    assets: &Assets,
+    frame: &mut Frame,
+) -> Result<()> {
     if frame.march_ms > MOST_AGAIN {
         return Ok(());
     }
@@ -329,14 +340,14 @@ fn warm_times(executor: &mut Executor, plan: &Plan, frame: &mut Frame) -> Result
     let watch = &mut |_: &_| !interrupt::asked();
     let mut runs = Vec::new();
     for _ in 0..AGAIN {
-        runs.push(executor.render(plan, extras, watch)?);
+        runs.push(executor.render(plan, assets, extras, watch)?);
     }
     runs.sort_by(|a, b| a.march_ms.total_cmp(&b.march_ms));
     let middle = &runs[AGAIN / 2];
     frame.march_ms = middle.march_ms;
     // What was prepared is kept: only the first time tells what it takes.
-    let passes = frame.passes.iter_mut().filter(|pass| pass.marches());
-    let warm = middle.passes.iter().filter(|pass| pass.marches());
+    let passes = frame.passes.iter_mut().filter(|p| p.pass.marches());
+    let warm = middle.marched();
     for (pass, warm) in passes.zip(warm) {
         pass.gpu_ms = warm.gpu_ms;
         pass.wall_ms = warm.wall_ms;
@@ -347,12 +358,12 @@ fn warm_times(executor: &mut Executor, plan: &Plan, frame: &mut Frame) -> Result
 /// One line about a finished picture.
 fn summary(output: &Path, frame: &Frame) -> String {
     let [w, h] = frame.size;
-    let time = |name: &str| Some(frame.passes.iter().find(|p| p.name == name)?.wall_ms);
-    let color = time("color").map_or(String::new(), |ms| format!(", colour {ms:.0} ms"));
+    let color = frame.passes.iter().find(|p| p.pass == Pass::Color);
+    let color = color.map_or(String::new(), |p| format!(", colour {:.0} ms", p.wall_ms));
     let made: Vec<f64> = frame
         .passes
         .iter()
-        .filter(|p| p.name == PREPARE)
+        .filter(|p| matches!(p.pass, Pass::Prepare(_)))
         .map(|p| p.wall_ms)
         .collect();
     let cones = match made.len() {

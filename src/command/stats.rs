@@ -60,7 +60,7 @@ impl Stats {
         let work = frame.work_per_pixel();
         let [sky, hit, unconverged] = shares(frame);
         let passes = frame.passes.iter().map(|p| PassStats {
-            name: p.name.clone(),
+            name: p.pass.name(),
             cells: p.cells,
             wall_ms: p.wall_ms,
             gpu_ms: p.gpu_ms,

@@ -9,14 +9,17 @@ use rayon::prelude::*;
 
 use crate::base::view::View;
 use crate::base::work::{State, Work};
-use crate::gpu::render::{Progress, RenderError, Watch, blank, prepare, preparing};
+use crate::gpu::RenderError;
 use crate::heightfield::conemap::generate::cpu::generate;
+use crate::pass::look::Light;
 use crate::pass::march::{Ended, march};
+use crate::pass::prepare::prepare;
+use crate::pass::progress::{Progress, Watch};
 use crate::pass::{color, trace};
 use crate::picture::frame::Frame;
 use crate::plan::pyramid::Level;
 use crate::plan::{Extras, Pass, Plan};
-use crate::scene::{Hit, Solid, Task};
+use crate::scene::{Assets, Hit, Solid, Task};
 
 /// Cells between two looks at the watch: some tens of milliseconds on two cores.
 const BAND_CELLS: usize = 1 << 15;
@@ -34,28 +37,34 @@ struct Proofs {
     cells: Vec<Proof>,
 }
 
-/// Renders a plan that passes [`Plan::check`].
+/// Renders a plan that passes [`Plan::check`]. The assets keep what is loaded and made for it.
 ///
 /// # Errors
-/// [`RenderError::Cancelled`], when `watch` returns `false`; heights or cones that cannot
-/// be had any more.
-pub fn render(plan: &Plan, extras: Extras, watch: Watch<'_>) -> Result<Frame, RenderError> {
+/// [`RenderError::Cancelled`], when `watch` returns `false`; a named file cannot be read or does
+/// not fit; a cone map cannot be made.
+pub fn render(
+    plan: &Plan,
+    assets: &Assets,
+    extras: Extras,
+    watch: Watch<'_>,
+) -> Result<Frame, RenderError> {
     let plan = &*plan.lean(extras);
-    let prepared = prepare(plan, &mut |generator, heights, patches, options| {
-        let mut told = |share: f64| watch(&preparing(share));
-        generate(generator, heights, patches, options, &mut told)
-    })?;
-    let mut frame = plan.scene().run(Render {
+    let prepared = prepare(plan, assets, &mut generate, watch)?;
+    let mut frame = plan.solid(assets)?.run(Render {
         plan,
+        light: Light::of(plan, assets),
+        ray_steps: plan.ray_steps(assets),
         extras,
         watch,
     })?;
-    frame.lead(prepared);
+    frame.finish(prepared);
     Ok(frame)
 }
 
 struct Render<'a> {
     plan: &'a Plan,
+    light: Light,
+    ray_steps: u32,
     extras: Extras,
     watch: Watch<'a>,
 }
@@ -65,13 +74,15 @@ impl Task for Render<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let (plan, extras) = (self.plan, self.extras);
-        let passes = plan.passes_for(extras);
+        let passes = plan.passes(extras);
         let mut run = Run {
             solid,
             view: plan.view(),
             plan,
+            light: self.light,
+            ray_steps: self.ray_steps,
             extras,
-            frame: blank(plan, &passes, extras),
+            frame: Frame::blank(plan, extras),
             parents: None,
             hits: Vec::new(),
         };
@@ -87,21 +98,16 @@ impl Task for Render<'_> {
                 Pass::March(level) => run.march(at, level, &mut bands)?,
                 Pass::Trace => run.trace(&mut bands)?,
                 Pass::Color => run.color(&mut bands)?,
+                // Done before all others.
+                Pass::Prepare(_) => continue,
             };
             let figures = &mut run.frame.passes[at];
-            let cells = match pass {
-                Pass::March(level) => level.cells(plan.size),
-                _ => plan.size,
-            };
-            figures.cells = u64::from(cells[0]) * u64::from(cells[1]);
             figures.wall_ms = start.elapsed().as_secs_f64() * 1e3;
-            if extras.count && pass != Pass::Color {
+            if extras.count && pass.marches() {
                 figures.evaluations = Some(work.0);
                 figures.iterations = Some(work.1);
             }
         }
-        let timed = run.frame.passes.iter().filter(|p| p.marches());
-        run.frame.march_ms = timed.map(|p| p.wall_ms).sum();
         Ok(run.frame)
     }
 }
@@ -111,6 +117,8 @@ struct Run<'a, S> {
     solid: &'a S,
     view: View,
     plan: &'a Plan,
+    light: Light,
+    ray_steps: u32,
     extras: Extras,
     frame: Frame,
     parents: Option<Proofs>,
@@ -155,7 +163,7 @@ impl<S: Solid> Run<'_, S> {
 
     fn trace(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
-        let limit = self.plan.ray_steps();
+        let limit = self.ray_steps;
         let one = |pixel| {
             let parent = parent_of(parents, pixel);
             let mut work = Work::default();
@@ -186,14 +194,14 @@ impl<S: Solid> Run<'_, S> {
 
     fn color(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
         let (solid, view, hits) = (self.solid, &self.view, &self.hits);
-        let light = self.plan.light();
+        let light = &self.light;
         let width = self.plan.size[0] as usize;
         let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
         let states = &self.frame.state;
         let one = |pixel: [u32; 2]| {
             let at = pixel[1] as usize * width + pixel[0] as usize;
             let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
-            color::color(solid, &light, &view.view_ray(pixel), &hits[at], state)
+            color::color(solid, light, &view.view_ray(pixel), &hits[at], state)
         };
         let undecided = &mut self.frame.undecided;
         bands.over(self.plan.size, one, |i, pixel| {
@@ -272,12 +280,21 @@ impl Bands<'_> {
 }
 
 /// Traces every so many pixels of a plan without cones: index, distance and state.
-pub fn sample(plan: &Plan, every: usize) -> Vec<(usize, f64, State)> {
-    plan.scene().run(Sample { plan, every })
+///
+/// # Errors
+/// A named file cannot be read or does not fit.
+pub fn sample(
+    plan: &Plan,
+    assets: &Assets,
+    every: usize,
+) -> Result<Vec<(usize, f64, State)>, RenderError> {
+    let limit = plan.ray_steps(assets);
+    Ok(plan.solid(assets)?.run(Sample { plan, limit, every }))
 }
 
 struct Sample<'a> {
     plan: &'a Plan,
+    limit: u32,
     every: usize,
 }
 
@@ -286,7 +303,6 @@ impl Task for Sample<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
-        let limit = self.plan.ray_steps();
         let width = view.size[0] as usize;
         let pixels = width * view.size[1] as usize;
         (0..pixels.div_ceil(self.every))
@@ -295,7 +311,7 @@ impl Task for Sample<'_> {
                 let i = n * self.every;
                 let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
                 let work = &mut Work::default();
-                let (hit, state) = trace::trace(solid, &ray, 0.0, limit, work);
+                let (hit, state) = trace::trace(solid, &ray, 0.0, self.limit, work);
                 (i, hit.t, state)
             })
             .collect()
@@ -306,21 +322,22 @@ impl Task for Sample<'_> {
 mod tests {
     use super::*;
     use crate::formula::{Formula, balls::Balls};
-    use crate::plan::Subject;
 
     #[test]
     fn a_render_is_cancelled_within_a_pass() {
-        let mut plan = Plan::new(Subject::Distance {
-            shape: Formula::Balls(Balls::default()),
-            iterations: None,
-        });
+        let mut plan = Plan::new(Formula::Balls(Balls::default()));
         plan.size = [2 * BAND_CELLS as u32, 96];
         plan.march.coarsest = 2;
         let mut told = Vec::new();
-        let ended = render(&plan, Extras::default(), &mut |p: &Progress| {
-            told.push((p.pass.clone(), p.done));
-            p.pass != "trace"
-        });
+        let ended = render(
+            &plan,
+            &Assets::default(),
+            Extras::default(),
+            &mut |p: &Progress| {
+                told.push((p.pass.clone(), p.done));
+                p.pass != "trace"
+            },
+        );
         assert!(matches!(ended, Err(RenderError::Cancelled)));
         let (pass, done) = told.last().expect("told");
         assert_eq!(pass, "trace");

@@ -10,6 +10,7 @@ use glam::{DVec3, DVec4, Vec4};
 use crate::base::key::{Fault, Key, Number};
 use crate::base::shader::Module;
 use crate::formula::contract::{Bounds, DistanceEstimate};
+use crate::keys;
 use crate::wgsl;
 
 /// The solids as WGSL reads them.
@@ -81,22 +82,13 @@ impl DistanceEstimate for Balls {
     }
 
     fn keys(&mut self) -> Vec<Key<'_>> {
-        vec![
-            Key::new(
-                "rod_radius",
-                Number(&mut self.rod_radius, 1e-6, 0.5),
-                "radius of the rod",
-            ),
-            Key::new(
-                "box_size",
-                Number(&mut self.box_size, 1e-3, 1.2),
-                "half edge of the larger box",
-            ),
-            Key::new(
-                "ball_radius",
-                Number(&mut self.ball_radius, 1e-3, 2.5),
-                "radius of the largest ball",
-            ),
+        keys![
+            "rod_radius" = Number(&mut self.rod_radius, 1e-6, 0.5),
+                "radius of the rod";
+            "box_size" = Number(&mut self.box_size, 1e-3, 1.2),
+                "half edge of the larger box";
+            "ball_radius" = Number(&mut self.ball_radius, 1e-3, 2.5),
+                "radius of the largest ball";
         ]
     }
 

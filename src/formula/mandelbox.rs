@@ -13,6 +13,7 @@ use crate::base::key::{AutoNumber, Fault, Key, Number, Switch, Triple, Word};
 use crate::base::shader::Module;
 use crate::formula::contract::{Bounds, DistanceEstimate};
 use crate::formula::rotation::Rotation;
+use crate::keys;
 use crate::wgsl;
 
 /// 2 sqrt(3): a box fold moves a point by at most this times the fold limit.
@@ -143,55 +144,25 @@ impl DistanceEstimate for Mandelbox {
     }
 
     fn keys(&mut self) -> Vec<Key<'_>> {
-        vec![
-            Key::new(
-                "scale",
-                Number(&mut self.scale, -100.0, 100.0),
-                "factor after the folds; its size must exceed 1",
-            ),
-            Key::new(
-                "min_radius",
-                Number(&mut self.min_radius, 1e-6, 1e3),
-                "inner radius of the ball fold",
-            ),
-            Key::new(
-                "fixed_radius",
-                Number(&mut self.fixed_radius, 1e-6, 1e3),
-                "outer radius of the ball fold",
-            ),
-            Key::new(
-                "fold_limit",
-                Number(&mut self.fold_limit, 1e-3, 1e3),
-                "half edge of the box fold",
-            ),
-            Key::new(
-                "rotation",
-                Triple(&mut self.rotation, -360.0, 360.0),
-                "degrees about x, y, z between folds and scale",
-            ),
-            Key::new(
-                "julia",
-                Switch(&mut self.julia),
-                "add a constant instead of the starting point",
-            ),
-            Key::new(
-                "julia_constant",
-                Triple(&mut self.julia_constant, -1e3, 1e3),
-                "that constant",
-            ),
-            Key::new(
-                "estimate",
-                Word(
-                    &mut self.estimate,
-                    &[("proven", Estimate::Proven), ("classic", Estimate::Classic)],
-                ),
-                "which distance estimate",
-            ),
-            Key::new(
-                "lipschitz",
-                AutoNumber(&mut self.lipschitz, 0.05, 100.0),
-                "steps divide by it; auto is the formula's own",
-            ),
+        keys![
+            "scale" = Number(&mut self.scale, -100.0, 100.0),
+                "factor after the folds; its size must exceed 1";
+            "min_radius" = Number(&mut self.min_radius, 1e-6, 1e3),
+                "inner radius of the ball fold";
+            "fixed_radius" = Number(&mut self.fixed_radius, 1e-6, 1e3),
+                "outer radius of the ball fold";
+            "fold_limit" = Number(&mut self.fold_limit, 1e-3, 1e3),
+                "half edge of the box fold";
+            "rotation" = Triple(&mut self.rotation, -360.0, 360.0),
+                "degrees about x, y, z between folds and scale";
+            "julia" = Switch(&mut self.julia),
+                "add a constant instead of the starting point";
+            "julia_constant" = Triple(&mut self.julia_constant, -1e3, 1e3),
+                "that constant";
+            "estimate" = Word(&mut self.estimate, &[("proven", Estimate::Proven), ("classic", Estimate::Classic)]),
+                "which distance estimate";
+            "lipschitz" = AutoNumber(&mut self.lipschitz, 0.05, 100.0),
+                "steps divide by it; auto is the formula's own";
         ]
     }
 

@@ -16,21 +16,22 @@ pub struct Buffer<T> {
     kind: PhantomData<T>,
 }
 
+/// A buffer of so many bytes, cleared to zero.
+fn create(device: &Device, name: &str, size: u64, usage: BufferUsages) -> wgpu::Buffer {
+    device.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(name),
+        size,
+        usage: usage | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
 impl<T: Pod> Buffer<T> {
-    /// An uninitialised buffer (wgpu clears it to zero).
+    /// A buffer of zeros.
     pub fn new(device: &Device, name: &str, len: usize) -> Self {
         let len = len.max(1);
-        let raw = device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(name),
-            size: bytes_for::<T>(len),
-            usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        Self {
-            raw,
-            len,
-            kind: PhantomData,
-        }
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+        Self::over(create(device, name, bytes_for::<T>(len), usage), len)
     }
 
     /// The first `len` values of a buffer made elsewhere.
@@ -51,20 +52,12 @@ impl<T: Pod> Buffer<T> {
     /// Copies the first `count` values back, waiting for the device.
     pub fn read(&self, device: &Device, count: usize) -> Result<Vec<T>, DeviceError> {
         let size = bytes_for::<T>(count.min(self.len));
-        let staging = device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("staging"),
-            size,
-            usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let staging = create(device, "staging", size, BufferUsages::MAP_READ);
         let mut encoder = device.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&self.raw, 0, &staging, 0, size);
         device.queue.submit([encoder.finish()]);
-        map(
-            device,
-            &staging,
-            std::mem::size_of::<T>() * count.min(self.len),
-        )
+        let bytes = std::mem::size_of::<T>() * count.min(self.len);
+        map(device, &staging, bytes)
     }
 }
 
@@ -79,10 +72,7 @@ pub fn map<T: Pod>(
     staging.map_async(wgpu::MapMode::Read, .., |_| {});
     device.wait()?;
     let view = staging.get_mapped_range(..);
-    let view = view.map_err(|e| DeviceError::Lost {
-        name: device.info.name.clone(),
-        why: e.to_string(),
-    })?;
+    let view = view.map_err(|e| device.lost(e.to_string()))?;
     Ok(bytemuck::pod_collect_to_vec(&view[..bytes]))
 }
 
@@ -94,12 +84,8 @@ fn bytes_for<T>(len: usize) -> u64 {
 
 /// A buffer of parameters: the same for a whole dispatch, read as storage.
 pub fn uniform(device: &Device, name: &str, bytes: &[u8]) -> wgpu::Buffer {
-    let raw = device.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(name),
-        size: (bytes.len() as u64).next_multiple_of(16),
-        usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
+    let size = (bytes.len() as u64).next_multiple_of(16);
+    let raw = create(device, name, size, BufferUsages::STORAGE);
     device.queue.write_buffer(&raw, 0, bytes);
     raw
 }

@@ -8,8 +8,8 @@ use crate::gpu::buffer::Buffer;
 use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::error::RenderError;
 use crate::gpu::job::Job;
-use crate::picture::frame::{Frame, LevelLayer, PassFigures};
-use crate::plan::{Extras, Pass, Plan};
+use crate::picture::frame::Frame;
+use crate::plan::Pass;
 
 /// The buffers of one block, by the names of their variables; what each pass leaves is
 /// there a second time with the number of the pass.
@@ -158,45 +158,6 @@ impl Target {
             to[start..start + width].copy_from_slice(row);
         }
     }
-}
-
-/// A frame of the right sizes, with nothing in it yet.
-pub(crate) fn blank(plan: &Plan, passes: &[Pass], extras: Extras) -> Frame {
-    let area = plan.size[0] as usize * plan.size[1] as usize;
-    let mut frame = Frame {
-        size: plan.size,
-        depth: vec![f32::INFINITY; area],
-        state: vec![State::Unconverged as u8; area],
-        ..Frame::default()
-    };
-    if !extras.depth_only {
-        frame.radiance = vec![[0.0; 3]; area];
-    }
-    if extras.normals {
-        frame.normal = vec![[0.0; 3]; area];
-    }
-    if extras.count {
-        frame.work = vec![Work::default(); area];
-    }
-    for pass in passes {
-        frame.passes.push(PassFigures {
-            name: pass.name(),
-            ..PassFigures::default()
-        });
-        if let Pass::March(level) = pass {
-            let cells = level.cells(plan.size);
-            let count = cells[0] as usize * cells[1] as usize;
-            let kept = if extras.levels { count } else { 0 };
-            frame.levels.push(LevelLayer {
-                divisor: level.divisor,
-                cells,
-                front: vec![0.0; kept],
-                state: vec![0; kept],
-                work: vec![Work::default(); if extras.count { count } else { 0 }],
-            });
-        }
-    }
-    frame
 }
 
 fn read<T: bytemuck::Pod>(

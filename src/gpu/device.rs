@@ -71,7 +71,7 @@ pub enum Choice {
     /// Index of `conemarch devices`.
     Index(usize),
     /// Part of an adapter's name.
-    PatternSpec(String),
+    Name(String),
 }
 
 impl Choice {
@@ -86,7 +86,7 @@ impl Choice {
             "cpu" => Self::Cpu,
             other => match other.parse() {
                 Ok(index) => Self::Index(index),
-                Err(_) => Self::PatternSpec(other.to_string()),
+                Err(_) => Self::Name(other.to_string()),
             },
         })
     }
@@ -117,17 +117,12 @@ impl Adapters {
     }
 
     fn there_is(&self) -> String {
-        let mut names: Vec<String> = self
-            .list
-            .iter()
-            .enumerate()
-            .map(|(i, a)| {
-                let info = a.get_info();
-                format!("{i} {} ({})", info.name, kind(&info))
-            })
-            .collect();
-        names.push("cpu (the executor in f64, always there)".into());
-        names.join(", ")
+        let name = |(i, a): (usize, &Adapter)| {
+            let info = a.get_info();
+            format!("{i} {} ({}), ", info.name, kind(&info))
+        };
+        let names: String = self.list.iter().enumerate().map(name).collect();
+        names + "cpu (the executor in f64, always there)"
     }
 
     /// All adapters with the reason to take them where none is asked for: hardware first, the
@@ -176,42 +171,45 @@ impl Adapters {
     }
 
     /// The adapter that a choice means, with the reason; `None` for the CPU executor.
+    ///
+    /// # Errors
+    /// No adapter fits.
     pub fn choose(&self, choice: &Choice) -> Result<Option<(&Adapter, String)>, DeviceError> {
-        let infos: Vec<AdapterInfo> = self.list.iter().map(Adapter::get_info).collect();
-        let best = |wanted: fn(&AdapterInfo) -> bool| {
-            let mut fit = self.in_order().into_iter().map(|(a, _)| a);
-            let found = fit.find(|a| wanted(&a.get_info()))?;
-            self.list.iter().position(|a| std::ptr::eq(a, found))
+        let first = |fits: &dyn Fn(&AdapterInfo) -> bool| {
+            let mut all = self.in_order().into_iter().map(|(adapter, _)| adapter);
+            all.find(|a| fits(&a.get_info()))
         };
-        let hardware: fn(&AdapterInfo) -> bool = |i| i.device_type != DeviceType::Cpu;
-        let software: fn(&AdapterInfo) -> bool = |i| i.device_type == DeviceType::Cpu;
-        let (found, reason, asked) = match choice {
+        let (found, asked) = match choice {
             Choice::Cpu => return Ok(None),
             Choice::Auto => {
                 let first = self.in_order().into_iter().next();
                 return Ok(first.map(|(adapter, why)| (adapter, why.to_string())));
             }
-            Choice::Hardware => (best(hardware), "as asked", "hardware adapter"),
-            Choice::Software => (best(software), "as asked", "software adapter"),
-            Choice::Index(i) => (Some(*i).filter(|i| *i < infos.len()), "as asked", ""),
-            Choice::PatternSpec(part) => {
-                let part = part.to_lowercase();
-                let fit = |i: &AdapterInfo| i.name.to_lowercase().contains(&part);
-                (infos.iter().position(fit), "as asked", "")
+            Choice::Hardware => {
+                let found = first(&|i| i.device_type != DeviceType::Cpu);
+                (found, "hardware adapter".into())
+            }
+            Choice::Software => {
+                let found = first(&|i| i.device_type == DeviceType::Cpu);
+                (found, "software adapter".into())
+            }
+            Choice::Index(i) => (self.list.get(*i), format!("adapter {i}")),
+            Choice::Name(part) => {
+                let fits = |a: &&Adapter| {
+                    let name = a.get_info().name.to_lowercase();
+                    name.contains(&part.to_lowercase())
+                };
+                (
+                    self.list.iter().find(fits),
+                    format!("adapter called `{part}`"),
+                )
             }
         };
-        let asked = match choice {
-            Choice::Index(i) => format!("adapter {i}"),
-            Choice::PatternSpec(part) => format!("adapter called `{part}`"),
-            _ => asked.to_string(),
-        };
-        match found {
-            Some(i) => Ok(Some((&self.list[i], reason.to_string()))),
-            None => Err(DeviceError::NoMatch {
-                choice: asked,
-                there_is: self.there_is(),
-            }),
-        }
+        let found = found.map(|adapter| Some((adapter, "as asked".to_string())));
+        found.ok_or_else(|| DeviceError::NoMatch {
+            choice: asked,
+            there_is: self.there_is(),
+        })
     }
 }
 
@@ -240,6 +238,13 @@ pub struct Device {
 }
 
 impl Device {
+    /// Fills a buffer with zeros.
+    pub fn clear(&self, buffer: &wgpu::Buffer) {
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.clear_buffer(buffer, 0, None);
+        self.queue.submit([encoder.finish()]);
+    }
+
     /// Opens an adapter with its own limits, timestamps and f64 where it has them, for
     /// programs that bind up to so many storage buffers.
     ///
@@ -272,23 +277,12 @@ impl Device {
             required_limits,
             ..Default::default()
         };
-        let (device, queue) =
-            pollster::block_on(adapter.request_device(&descriptor)).map_err(|e| {
-                DeviceError::Open {
-                    name: info.name.clone(),
-                    why: e.to_string(),
-                }
-            })?;
+        let opened = pollster::block_on(adapter.request_device(&descriptor));
+        let (device, queue) = opened.map_err(|e| DeviceError::Open {
+            name: info.name.clone(),
+            why: e.to_string(),
+        })?;
         let trouble = Arc::new(Mutex::new(None));
-        // A loss outweighs complaints, the first complaint the later ones.
-        let note = |trouble: &Arc<Mutex<Option<DeviceError>>>, error: DeviceError| {
-            if let Ok(mut slot) = trouble.lock() {
-                let loss = matches!(error, DeviceError::Lost { .. });
-                if loss || slot.is_none() {
-                    *slot = Some(error);
-                }
-            }
-        };
         let (slot, name) = (trouble.clone(), info.name.clone());
         device.set_device_lost_callback(move |reason, why| {
             let why = format!("{reason:?}: {why}").to_lowercase();
@@ -330,16 +324,24 @@ impl Device {
             timeout: Some(Duration::from_secs(120)),
         });
         self.trouble()?;
-        polled.map(|_| ()).map_err(|e| DeviceError::Lost {
+        polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
+    }
+
+    pub(super) fn lost(&self, why: impl Into<String>) -> DeviceError {
+        DeviceError::Lost {
             name: self.info.name.clone(),
-            why: e.to_string(),
-        })
+            why: why.into(),
+        }
     }
 
     /// The first loss or complaint so far. What a lost device complains of is the loss.
+    ///
+    /// # Errors
+    /// That loss or complaint.
     pub fn trouble(&self) -> Result<(), DeviceError> {
-        let known = self.noted()?;
-        let Some(error) = known else { return Ok(()) };
+        let Some(error) = self.noted()? else {
+            return Ok(());
+        };
         if matches!(error, DeviceError::Reported { .. }) {
             // A loss is told only when the device is polled; its answer is in the note.
             let _ = self.device.poll(wgpu::PollType::Poll);
@@ -351,13 +353,18 @@ impl Device {
     }
 
     fn noted(&self) -> Result<Option<DeviceError>, DeviceError> {
-        match self.trouble.lock() {
-            Ok(slot) => Ok(slot.clone()),
-            // A poisoned note means that a callback died: treat it as a loss.
-            Err(_) => Err(DeviceError::Lost {
-                name: self.info.name.clone(),
-                why: "its error report was interrupted".into(),
-            }),
-        }
+        // A poisoned note means that a callback died: treat it as a loss.
+        let slot = self.trouble.lock();
+        let slot = slot.map_err(|_| self.lost("its error report was interrupted"))?;
+        Ok(slot.clone())
+    }
+}
+
+/// Notes an error of a device. A loss outweighs complaints, the first complaint the later ones.
+fn note(slot: &Mutex<Option<DeviceError>>, error: DeviceError) {
+    if let Ok(mut slot) = slot.lock()
+        && (matches!(error, DeviceError::Lost { .. }) || slot.is_none())
+    {
+        *slot = Some(error);
     }
 }

@@ -1,13 +1,14 @@
-//! Why there is no frame.
+//! Why a device has no result.
 
 use thiserror::Error;
 
+use crate::base::units::{bytes_available, bytes_needed};
 use crate::gpu::device::DeviceError;
 use crate::gpu::kernel::KernelError;
 use crate::heightfield::conemap::generate::generator::GenerateError;
 use crate::heightfield::tracer::settings::PrepareError;
 
-/// Why there is no frame.
+/// Why there is no frame, or no cone map.
 #[derive(Debug, Error)]
 pub enum RenderError {
     /// The device failed.
@@ -19,17 +20,17 @@ pub enum RenderError {
     /// What the scene needs could not be made.
     #[error(transparent)]
     Prepare(PrepareError),
-    /// Something that the scene brings has no room in a buffer of the device.
+    /// A buffer is larger than the device allows.
     #[error(
-        "the device `{device}` binds at most {most} bytes at once, and `{what}` of the scene needs {needed}; {}, another --device, or --device cpu would do",
-        smaller(.what)
+        "the device `{device}` binds at most {} at once, and `{what}` needs {}; try {}, another --device, or --device cpu",
+        bytes_available(*.most), bytes_needed(*.needed), smaller(.what)
     )]
     TooLarge {
         /// Its name.
         device: String,
-        /// What is too large.
-        what: &'static str,
-        /// Its bytes.
+        /// The buffer.
+        what: String,
+        /// Bytes that it needs.
         needed: u64,
         /// Bytes that the device allows.
         most: u64,
@@ -49,23 +50,79 @@ pub enum RenderError {
         /// How many.
         cells: usize,
     },
+    /// The device ended a dispatch of a cone map that never began.
+    #[error(
+        "the device `{0}` made no progress on a cone map and reported no error; try another --device, or --device cpu"
+    )]
+    Stuck(String),
 }
 
 impl From<PrepareError> for RenderError {
     fn from(error: PrepareError) -> Self {
         match error {
             PrepareError::Generate(GenerateError::Cancelled) => Self::Cancelled,
-            PrepareError::Generate(GenerateError::Device(e)) => Self::Device(e),
-            PrepareError::Generate(GenerateError::Kernel(e)) => Self::Kernel(e),
+            PrepareError::Generate(GenerateError::Device(e)) => match e.downcast::<Self>() {
+                Ok(own) => *own,
+                Err(e) => Self::Prepare(GenerateError::Device(e).into()),
+            },
             other => Self::Prepare(other),
         }
     }
 }
 
-/// What would be smaller in a buffer of the scene.
+impl From<RenderError> for GenerateError {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Cancelled => Self::Cancelled,
+            error => Self::Device(error.into()),
+        }
+    }
+}
+
+/// Checks that a device which binds at most so many bytes has room for a buffer.
+///
+/// # Errors
+/// It does not.
+pub(crate) fn check_room(
+    device: &str,
+    what: &str,
+    needed: u64,
+    most: u64,
+) -> Result<(), RenderError> {
+    if needed <= most {
+        return Ok(());
+    }
+    Err(RenderError::TooLarge {
+        device: device.into(),
+        what: what.into(),
+        needed,
+        most,
+    })
+}
+
+/// What would make a buffer smaller.
 fn smaller(what: &str) -> &'static str {
     match what {
         "texels" => "a smaller scene.texture",
         _ => "a smaller height map",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_device_has_no_room_for_is_told() {
+        const MOST: u64 = 1 << 27;
+        // Half the cones of four sides over 4096 x 4096 samples fit to the byte.
+        assert!(check_room("d", "ratios", 4096 * 4096 * 2 * 4, MOST).is_ok());
+        let said = check_room("d", "maxima", MOST + 4, MOST)
+            .expect_err("no room")
+            .to_string();
+        assert_eq!(
+            said,
+            "the device `d` binds at most 128 MiB at once, and `maxima` needs 128.1 MiB; try a smaller height map, another --device, or --device cpu"
+        );
     }
 }

@@ -1,16 +1,21 @@
 //! The numbers of one pass over one block.
 
+use crate::pass::look::Light;
 use crate::pass::march::LevelUniform;
 use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Pass, Plan};
-use crate::scene::Scene;
+use crate::scene::AnySolid;
 
 /// What a block is rendered from.
 pub struct Job<'a> {
     /// What to render.
     pub plan: &'a Plan,
     /// Its scene, made ready.
-    pub scene: &'a Scene,
+    pub scene: &'a AnySolid,
+    /// Its light.
+    pub light: Light,
+    /// Steps that a ray may do.
+    pub ray_steps: u32,
     /// What it yields.
     pub extras: Extras,
     /// The pixels of this job.
@@ -61,11 +66,11 @@ impl Job<'_> {
             }
             Pass::Trace => Setup {
                 cells: self.block.size,
-                limit: self.plan.ray_steps(),
+                limit: self.ray_steps,
                 parent_width: parent_width(1),
                 level: None,
             },
-            Pass::Color => Setup {
+            Pass::Color | Pass::Prepare(_) => Setup {
                 cells: self.block.size,
                 limit: 1,
                 parent_width: 0,

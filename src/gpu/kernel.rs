@@ -3,6 +3,8 @@
 //! The layouts are read from the WGSL itself, so that a binding is said in one place,
 //! and resources are bound by the name of the variable, so that none can be swapped.
 
+use std::rc::Rc;
+
 use thiserror::Error;
 use wgpu::naga::{self, AddressSpace, StorageAccess};
 
@@ -40,8 +42,26 @@ struct Binding {
     group: u32,
     index: u32,
     name: String,
-    uniform: bool,
     read_only: bool,
+}
+
+/// The compiled programs of a device. Each is compiled once.
+#[derive(Default)]
+pub struct Kernels(Vec<(Program, Rc<Kernel>)>);
+
+impl Kernels {
+    /// The kernel of a program, compiled now if it is new.
+    ///
+    /// # Errors
+    /// The text is wrong, or the driver refuses it.
+    pub fn get(&mut self, device: &Device, program: &Program) -> Result<Rc<Kernel>, KernelError> {
+        if let Some((_, kernel)) = self.0.iter().find(|(p, _)| p == program) {
+            return Ok(kernel.clone());
+        }
+        let kernel = Rc::new(Kernel::new(device, program)?);
+        self.0.push((program.clone(), kernel.clone()));
+        Ok(kernel)
+    }
 }
 
 /// A compiled program.
@@ -57,62 +77,45 @@ pub struct Kernel {
 impl Kernel {
     /// Validates and compiles a program.
     pub fn new(device: &Device, program: &Program) -> Result<Self, KernelError> {
+        let gpu = &device.device;
         let mut capabilities = naga::valid::Capabilities::default();
-        if device
-            .device
-            .features()
-            .contains(wgpu::Features::SHADER_F64)
-        {
+        if gpu.features().contains(wgpu::Features::SHADER_F64) {
             capabilities |= naga::valid::Capabilities::FLOAT64;
         }
         let (module, _) = program.validate(capabilities)?;
         let bindings = bindings_of(&module);
         let strides = strides_of(&module);
-        let scope = device
-            .device
-            .push_error_scope(wgpu::ErrorFilter::Validation);
+        let scope = gpu.push_error_scope(wgpu::ErrorFilter::Validation);
+        let label = Some(program.entry);
         let groups = bindings.iter().map(|b| b.group + 1).max().unwrap_or(0);
-        let layouts: Vec<_> = (0..groups)
-            .map(|group| {
-                let entries: Vec<_> = bindings
-                    .iter()
-                    .filter(|b| b.group == group)
-                    .map(layout_entry)
-                    .collect();
-                let descriptor = wgpu::BindGroupLayoutDescriptor {
-                    label: Some(program.entry),
-                    entries: &entries,
-                };
-                device.device.create_bind_group_layout(&descriptor)
-            })
-            .collect();
+        let layout_of = |group| {
+            let of_group = bindings.iter().filter(|b| b.group == group);
+            let entries: Vec<_> = of_group.map(layout_entry).collect();
+            let entries = &entries;
+            gpu.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries })
+        };
+        let layouts: Vec<_> = (0..groups).map(layout_of).collect();
         let refs: Vec<_> = layouts.iter().map(Some).collect();
-        let layout = device
-            .device
-            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some(program.entry),
-                bind_group_layouts: &refs,
-                immediate_size: 0,
-            });
-        let shader = device
-            .device
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(program.entry),
-                source: wgpu::ShaderSource::Wgsl(program.source().into()),
-            });
-        let pipeline = device
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(program.entry),
-                layout: Some(&layout),
-                module: &shader,
-                entry_point: Some(program.entry),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &program.constants(),
-                    ..Default::default()
-                },
-                cache: None,
-            });
+        let layout = gpu.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label,
+            bind_group_layouts: &refs,
+            immediate_size: 0,
+        });
+        let shader = gpu.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label,
+            source: wgpu::ShaderSource::Wgsl(program.source().into()),
+        });
+        let pipeline = gpu.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label,
+            layout: Some(&layout),
+            module: &shader,
+            entry_point: label,
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &program.constants(),
+                ..Default::default()
+            },
+            cache: None,
+        });
         if let Some(error) = pollster::block_on(scope.pop()) {
             return Err(KernelError::Refused {
                 device: device.info.name.clone(),
@@ -163,6 +166,27 @@ impl Kernel {
         Ok(groups)
     }
 
+    /// Runs so many workgroups over buffers by the names of their variables. The device
+    /// reports its failures when results are read.
+    ///
+    /// # Errors
+    /// A variable of the program is not among the buffers.
+    pub fn run(
+        &self,
+        device: &Device,
+        bound: &[(&str, &wgpu::Buffer)],
+        groups: [u32; 2],
+    ) -> Result<(), KernelError> {
+        let named = |name: &str| bound.iter().find(|b| b.0 == name).map(|b| b.1);
+        let bind = self.bind(device, named)?;
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        self.dispatch(&mut pass, &bind, groups);
+        drop(pass);
+        device.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+
     /// Encodes one dispatch of so many workgroups.
     pub fn dispatch(
         &self,
@@ -181,7 +205,6 @@ impl Kernel {
 fn bindings_of(module: &naga::Module) -> Vec<Binding> {
     let of = |(_, v): (_, &naga::GlobalVariable)| {
         let at = v.binding?;
-        let uniform = v.space == AddressSpace::Uniform;
         let read_only = match v.space {
             AddressSpace::Storage { access } => !access.contains(StorageAccess::STORE),
             _ => true,
@@ -190,7 +213,6 @@ fn bindings_of(module: &naga::Module) -> Vec<Binding> {
             group: at.group,
             index: at.binding,
             name: v.name.clone().unwrap_or_default(),
-            uniform,
             read_only,
         })
     };
@@ -206,12 +228,9 @@ fn strides_of(module: &naga::Module) -> Vec<(String, u32)> {
 }
 
 fn layout_entry(b: &Binding) -> wgpu::BindGroupLayoutEntry {
-    let ty = if b.uniform {
-        wgpu::BufferBindingType::Uniform
-    } else {
-        wgpu::BufferBindingType::Storage {
-            read_only: b.read_only,
-        }
+    // Parameters are storage too: see [`crate::gpu::device::STORAGE_BUFFERS`].
+    let ty = wgpu::BufferBindingType::Storage {
+        read_only: b.read_only,
     };
     wgpu::BindGroupLayoutEntry {
         binding: b.index,

@@ -15,19 +15,21 @@ use crate::base::shader::Program;
 use crate::gpu::buffer::{Buffer, uniform};
 use crate::gpu::conemap::generate::Maker;
 use crate::gpu::device::Device;
-use crate::gpu::kernel::{Kernel, KernelError};
-use crate::heightfield::conemap::generate::generator::Generator;
-use crate::heightfield::tracer::settings::Make;
+use crate::gpu::kernel::{Kernel, KernelError, Kernels};
+use crate::pass::look::Light;
+use crate::pass::prepare::prepare;
+use crate::pass::progress::{Progress, Watch};
 use crate::pass::queue::{COUNT_AT, Turn};
-use crate::picture::frame::{Frame, PassFigures};
+use crate::pass::{Before, outputs, program};
+use crate::picture::frame::Frame;
 use crate::plan::pyramid::Block;
-use crate::plan::{Extras, PREPARE, Pass, Plan, Preparation};
-use crate::scene::Scene;
+use crate::plan::{Extras, Pass, Plan};
+use crate::scene::{AnySolid, Assets};
 
-pub(crate) use super::collect::blank;
 use super::collect::{Bound, UNWRITTEN, collect};
 use super::dispatch::{Dispatcher, Filled, clear_count};
 pub use super::error::RenderError;
+use super::error::check_room;
 use super::job::{Job, Setup};
 
 /// How the work is cut. It never changes a picture.
@@ -53,49 +55,6 @@ impl Default for Cutting {
     }
 }
 
-/// Where a render stands.
-#[derive(Clone, Debug)]
-pub struct Progress {
-    /// The pass that has just come to an end, or on.
-    pub pass: String,
-    /// Share of passes over blocks that are done.
-    pub done: f64,
-}
-
-/// Before the first pass, when so much of what the scene needs is made.
-pub(crate) fn preparing(share: f64) -> Progress {
-    Progress {
-        pass: format!("cones {:.0} %", 100.0 * share),
-        done: 0.0,
-    }
-}
-
-/// Makes what a plan needs beforehand; what that took, map by map. One that is kept from an
-/// earlier picture takes nothing.
-pub(crate) fn prepare(plan: &Plan, make: Make<'_>) -> Result<Vec<PassFigures>, RenderError> {
-    let mut taken = Vec::new();
-    plan.prepare(&mut |generator, heights, patches, options| {
-        let start = Instant::now();
-        let made = make(generator, heights, patches, options);
-        taken.push((generator, start.elapsed().as_secs_f64() * 1e3));
-        made
-    })?;
-    let figures = |made: Preparation| {
-        let of = |(by, _): &&(Generator, f64)| *by == made.generator;
-        PassFigures {
-            name: PREPARE.into(),
-            cells: made.places.map(u64::from).iter().product(),
-            wall_ms: taken.iter().find(of).map_or(0.0, |(_, ms)| *ms),
-            ..PassFigures::default()
-        }
-    };
-    Ok(plan.preparations().into_iter().map(figures).collect())
-}
-
-/// Told after every pass over a block (on the CPU, a band of rows); `false` cancels the
-/// render.
-pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> bool;
-
 /// Steps of the longest dispatch: with a block of a million pixels still well under
 /// the time after which drivers give a device up.
 const MOST_STEPS_AT_ONCE: u32 = 256;
@@ -107,22 +66,9 @@ const MOST_STEPS_AT_ONCE: u32 = 256;
 const MOST_ROUNDS_AT_ONCE: u32 = 60_000;
 
 /// Steps of the longest dispatch over a scene.
-fn most_steps(scene: &Scene) -> u32 {
+fn most_steps(scene: &AnySolid) -> u32 {
     let rounds = scene.twin().rounds().saturating_add(1);
     (MOST_ROUNDS_AT_ONCE / rounds).clamp(1, MOST_STEPS_AT_ONCE)
-}
-
-/// Whether a device that binds so many bytes at most has room for what a scene brings.
-fn has_room(device: &str, what: &'static str, needed: u64, most: u64) -> Result<(), RenderError> {
-    if needed <= most {
-        return Ok(());
-    }
-    Err(RenderError::TooLarge {
-        device: device.into(),
-        what,
-        needed,
-        most,
-    })
 }
 
 /// Renders plans on one device.
@@ -131,7 +77,7 @@ pub struct Renderer {
     pub device: Device,
     /// How work is cut.
     pub cutting: Cutting,
-    kernels: Vec<(Program, Rc<Kernel>)>,
+    kernels: Kernels,
     pool: HashMap<String, (u64, Rc<wgpu::Buffer>)>,
     dispatcher: Dispatcher,
 }
@@ -143,19 +89,14 @@ impl Renderer {
             dispatcher: Dispatcher::new(&device),
             device,
             cutting: Cutting::default(),
-            kernels: Vec::new(),
+            kernels: Kernels::default(),
             pool: HashMap::new(),
         }
     }
 
     /// The compiled kernel of a program.
     pub fn kernel(&mut self, program: &Program) -> Result<Rc<Kernel>, KernelError> {
-        if let Some((_, kernel)) = self.kernels.iter().find(|(p, _)| p == program) {
-            return Ok(kernel.clone());
-        }
-        let kernel = Rc::new(Kernel::new(&self.device, program)?);
-        self.kernels.push((program.clone(), kernel.clone()));
-        Ok(kernel)
+        self.kernels.get(&self.device, program)
     }
 
     /// A storage buffer of a name that is kept between calls while its size fits.
@@ -172,34 +113,41 @@ impl Renderer {
         raw
     }
 
-    /// Renders a plan that passes [`Plan::check`].
+    /// Renders a plan that passes [`Plan::check`]. The assets keep what is loaded and made for it.
     pub fn render(
         &mut self,
         plan: &Plan,
+        assets: &Assets,
         extras: Extras,
         watch: Watch<'_>,
     ) -> Result<Frame, RenderError> {
         let plan = &*plan.lean(extras);
         let mut maker = Maker::new(&self.device);
-        let prepared = prepare(plan, &mut |generator, heights, patches, options| {
-            let mut told = |share: f64| watch(&preparing(share));
-            maker.generate(generator, heights, patches, options, &mut told)
-        })?;
-        let scene = plan.scene();
-        let passes = plan.passes_for(extras);
+        let maker = &mut |generator,
+                          heights: &_,
+                          patches,
+                          options: &_,
+                          told: &mut dyn FnMut(f64) -> bool| {
+            maker.generate(generator, heights, patches, options, told)
+        };
+        let prepared = prepare(plan, assets, maker, watch)?;
+        let scene = plan.solid(assets)?;
+        let passes = plan.passes(extras);
         // Compile everything first, so that no time below contains compilation.
         let mut kernels = Vec::new();
         for &pass in &passes {
-            kernels.push(self.kernel(&plan.program(&scene, pass, extras))?);
+            kernels.push(self.kernel(&program(plan, &scene, pass, extras))?);
         }
         let blocks = Block::cut(plan.size, self.cutting.block, plan.pyramid().coarsest());
-        let mut frame = blank(plan, &passes, extras);
+        let mut frame = Frame::blank(plan, extras);
         let steps = (blocks.len() * passes.len()) as f64;
         let mut done = 0.0;
         for block in &blocks {
             let job = Job {
                 plan,
                 scene: &scene,
+                light: Light::of(plan, assets),
+                ray_steps: plan.ray_steps(assets),
                 extras,
                 block: *block,
             };
@@ -218,13 +166,7 @@ impl Renderer {
             }
             collect(&self.device, &job, &passes, &bound, &mut frame)?;
         }
-        frame.march_ms = frame
-            .passes
-            .iter()
-            .filter(|p| p.marches())
-            .map(|p| p.wall_ms)
-            .sum();
-        frame.lead(prepared);
+        frame.finish(prepared);
         Ok(frame)
     }
 
@@ -233,11 +175,11 @@ impl Renderer {
         let mut bound = Bound::new();
         let most = self.device.most_bound();
         for (name, bytes) in job.scene.twin().uniforms() {
-            has_room(&self.device.info.name, name, bytes.len() as u64, most)?;
+            check_room(&self.device.info.name, name, bytes.len() as u64, most)?;
             bound.insert(name.into(), Rc::new(uniform(&self.device, name, &bytes)));
         }
         let view = job.plan.view().uniform(job.block.origin, job.block.size);
-        let look = job.plan.light().uniform();
+        let look = job.light.uniform();
         for (name, bytes) in [
             ("view_parameters", bytes_of(&view)),
             ("look_parameters", bytes_of(&look)),
@@ -259,7 +201,7 @@ impl Renderer {
         frame: &mut Frame,
     ) -> Result<u32, RenderError> {
         let setup = job.setup(pass);
-        self.bind_pass(&setup, pass, at, kernel, bound, job.extras);
+        self.bind_pass(job, &setup, (at, pass), kernel, bound);
         let list = |cells: [u32; 2]| COUNT_AT + 4 + 4 * u64::from(cells[0]) * u64::from(cells[1]);
         // Two queues take turns: one is read while the other is filled.
         let queues = [0, 1].map(|i| self.storage(&format!("queue {i}"), list(setup.cells)));
@@ -316,98 +258,52 @@ impl Renderer {
             read = filled;
             filled = queues[usize::from(Rc::ptr_eq(&read, &queues[0]))].clone();
         }
-        figures.cells += u64::from(setup.cells[0]) * u64::from(setup.cells[1]);
         figures.wall_ms += start.elapsed().as_secs_f64() * 1e3;
         Ok(listed)
     }
 
-    /// Storage of a pass: its own channels, and its parent's under their parent names.
+    /// Storage of a pass: what it writes, by name and by name and number, and the fronts of
+    /// the pass before it.
     fn bind_pass(
         &mut self,
+        job: &Job<'_>,
         setup: &Setup,
-        pass: Pass,
-        at: usize,
+        (at, pass): (usize, Pass),
         kernel: &Kernel,
         bound: &mut Bound,
-        extras: Extras,
     ) {
         let cells = u64::from(setup.cells[0]) * u64::from(setup.cells[1]);
-        let front = if setup.parent_width > 0 {
-            self.storage(&format!("front {}", at - 1), 0)
-        } else {
-            self.storage("no front", 4)
+        let front = match setup.parent_width {
+            0 => self.storage("no front", 4),
+            _ => bound[&format!("front {}", at - 1)].clone(),
         };
         bound.insert("parent_front".into(), front);
         if let Some(level) = &setup.level {
             let raw = Rc::new(uniform(&self.device, "level", bytes_of(level)));
             bound.insert("level_parameters".into(), raw);
         }
-        if pass == Pass::Color {
-            let normals = if extras.normals { 16 * cells } else { 16 };
-            let radiance = self.storage("radiance", 16 * cells);
-            bound.insert("radiance".into(), radiance);
-            bound.insert("normals".into(), self.storage("normals", normals));
-            return;
+        let walk = u64::from(kernel.stride("walks").unwrap_or(4));
+        let marked = job.scene.twin().marks_hits();
+        for output in outputs(pass, job.extras, marked, walk) {
+            // Cone levels and rays hand their fronts on under one name.
+            let name = if output.name == "depth" {
+                "front"
+            } else {
+                output.name
+            };
+            let key = format!("{name} {at}");
+            let buffer = self.storage(&key, output.stride * cells);
+            match output.before {
+                Before::Anything => {}
+                Before::Zero => self.device.clear(&buffer),
+                Before::Unwritten => {
+                    let blank = vec![0xFF_u8; (output.stride * cells) as usize];
+                    debug_assert_eq!(UNWRITTEN.to_ne_bytes(), [0xFF; 4]);
+                    self.device.queue.write_buffer(&buffer, 0, &blank);
+                }
+            }
+            bound.insert(key, buffer.clone());
+            bound.insert(output.name.into(), buffer);
         }
-        let front = self.storage(&format!("front {at}"), 4 * cells);
-        let state = self.storage(&format!("state {at}"), 4 * cells);
-        let blank = vec![0xFF_u8; 4 * cells as usize];
-        debug_assert_eq!(UNWRITTEN.to_ne_bytes(), [0xFF; 4]);
-        self.device.queue.write_buffer(&state, 0, &blank);
-        let name = if pass == Pass::Trace {
-            "depth"
-        } else {
-            "front"
-        };
-        bound.insert(name.into(), front.clone());
-        bound.insert(format!("front {at}"), front);
-        bound.insert("state".into(), state.clone());
-        bound.insert(format!("state {at}"), state);
-        if pass == Pass::Trace {
-            let walks = u64::from(kernel.stride("walks").unwrap_or(4)) * cells;
-            bound.insert("walks".into(), self.storage("walks", walks));
-            let marked = self.scene_marks(kernel);
-            let marks = if marked { 12 * cells } else { 16 };
-            bound.insert("marks".into(), self.storage("marks", marks));
-        }
-        if extras.count {
-            let tally = self.storage(&format!("tally {at}"), 8 * cells);
-            let mut encoder = self
-                .device
-                .device
-                .create_command_encoder(&Default::default());
-            encoder.clear_buffer(&tally, 0, None);
-            self.device.queue.submit([encoder.finish()]);
-            bound.insert("tally".into(), tally.clone());
-            bound.insert(format!("tally {at}"), tally);
-        }
-    }
-
-    /// Whether the kernel's scene keeps marks of its hits.
-    fn scene_marks(&self, kernel: &Kernel) -> bool {
-        let of = |(program, k): &(Program, Rc<Kernel>)| {
-            let same = std::ptr::eq(&raw const **k, kernel);
-            same && program.constants().contains(&("HIT_CARRIES_MARK", 1.0))
-        };
-        self.kernels.iter().any(of)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_a_device_has_no_room_for_is_told() {
-        const MOST: u64 = 1 << 27;
-        // Half the cones of four sides over 4096 x 4096 samples fit to the byte.
-        assert!(has_room("d", "ratios", 4096 * 4096 * 2 * 4, MOST).is_ok());
-        let said = has_room("d", "maxima", MOST + 4, MOST)
-            .expect_err("no room")
-            .to_string();
-        assert_eq!(
-            said,
-            "the device `d` binds at most 134217728 bytes at once, and `maxima` of the scene needs 134217732; a smaller height map, another --device, or --device cpu would do"
-        );
     }
 }

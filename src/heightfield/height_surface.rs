@@ -1,10 +1,9 @@
-//! A relief: heights, what lies between them, how often they repeat, and the apexes of
-//! their cells as a pyramid. What every tracer reads.
+//! A height surface: heights, the patches between them, their tiles, and the pyramid of maxima
+//! over the cells. All tracers read it. Twin: `wgsl/heightfield/heights.wgsl`.
 //!
-//! The relief is a solid block: it fills `0 <= z <= surface` over the domain, which is
-//! `cells * tiles` cells large and starts at the origin. Outside the domain there is
-//! nothing, so that its four sides are walls and its underside is a floor.
-//! Twin: `wgsl/heightfield/heights.wgsl`. It does not know rays.
+//! The surface is the top of a solid block, which fills `0 <= z <= surface` over the domain. The
+//! domain has `cells * tiles` cells and starts at the origin. Outside of it there is nothing, so
+//! that its four sides are walls and its underside is a floor.
 
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
 use thiserror::Error;
@@ -12,24 +11,23 @@ use thiserror::Error;
 use crate::base::shader::Module;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::mips::rounded_down;
-use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::heights::{Heights, Patches, bilinear};
 use crate::heightfield::max_mip::MaxMip;
 use crate::wgsl;
 
-/// Most cells along an axis of the domain, all tiles together: up to there f32 places a
-/// point to 1/256 of a texel.
+/// Most cells along an axis of the domain. Up to there f32 resolves 1/256 of a texel.
 pub const MOST_CELLS: u32 = 65_536;
 
-/// Levels that a pyramid can have at most: 8192 cells halve 13 times.
+/// Most levels of a pyramid, rounded up: 8192 cells halve 13 times.
 pub const MOST_LEVELS: usize = 16;
 
-/// Why heights cannot be repeated so.
+/// Why heights cannot be tiled.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum HeightSurfaceError {
-    /// No tiles, or more cells than positions can name.
+    /// No tiles, or too many cells.
     #[error(
-        "{tiles} tiles of {cells} cells along axis {axis}: one tile or more, \
-         and {MOST_CELLS} cells at most"
+        "{tiles} tiles of {cells} cells along axis {axis} are out of range; there must be at \
+         least one tile and at most {MOST_CELLS} cells"
     )]
     Tiles {
         /// 0 for x, 1 for y.
@@ -39,13 +37,13 @@ pub enum HeightSurfaceError {
         /// Tiles asked for.
         tiles: u32,
     },
-    /// An axis that ends cannot repeat: its last cell does not fit its first, and cones
-    /// made without the neighbour know nothing of it.
-    #[error("axis {0} has several tiles but does not wrap")]
+    /// Several tiles along an axis that does not wrap: the last cell does not join the first,
+    /// and the cones do not know the neighbour.
+    #[error("axis {0} has several tiles but does not wrap; let it wrap, or use one tile")]
     Unwrapped(usize),
 }
 
-/// What the tracers read, as WGSL reads it.
+/// The uniform that all tracers read.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct ReliefUniform {
@@ -59,16 +57,15 @@ pub struct ReliefUniform {
     pub wrap: [u32; 2],
     /// Places of the cone map along each axis.
     pub places: [i32; 2],
-    /// Room that the walk's cones leave, in texels.
+    /// Offset of the walk's cones, in texels.
     pub offset: f32,
     /// Factor on cone steps.
     pub scale: f32,
     /// Levels of the pyramid of maxima.
     pub levels: u32,
-    /// Steps that a tracer has, 0 for as many as the caller allows.
+    /// See [`TracerParameters`].
     pub steps: u32,
-    /// Distance at which a tracer has half of its steps, or a texel is as wide as a pixel to
-    /// it; 0 for never.
+    /// See [`TracerParameters`].
     pub lod: f32,
     /// Rounds of refinement.
     pub rounds: u32,
@@ -76,21 +73,21 @@ pub struct ReliefUniform {
     pub starts: [u32; MOST_LEVELS],
 }
 
-/// The numbers of a tracer that the uniform carries for it.
+/// A tracer's numbers in the uniform.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Numbers {
-    /// Factor on cone steps.
+pub struct TracerParameters {
+    /// Factor on the steps that cones give.
     pub scale: f64,
-    /// Steps that it has, 0 for no limit of its own.
+    /// Steps that the tracer counts itself; 0 for no such limit.
     pub steps: u32,
-    /// Distance along the ray at which it has half as many, or a texel is as wide as a pixel;
-    /// 0 for never.
+    /// The distance along the ray at which it has half as many, or at which a texel is as wide
+    /// as a pixel; 0 for never.
     pub lod: f64,
     /// Rounds of refinement.
     pub rounds: u32,
 }
 
-impl Default for Numbers {
+impl Default for TracerParameters {
     fn default() -> Self {
         Self {
             scale: 1.0,
@@ -104,6 +101,8 @@ impl Default for Numbers {
 /// A node of the pyramid of maxima, over cells of the domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node {
+    /// Its level; 0 for a cell.
+    pub level: u32,
     /// Column and row in its level.
     pub place: [u32; 2],
     /// The highest point under it.
@@ -125,7 +124,7 @@ pub struct HeightSurface {
 }
 
 impl HeightSurface {
-    /// A block of `tiles` repetitions along each axis.
+    /// A surface of `tiles` repetitions along each axis.
     ///
     /// # Errors
     /// No tiles, too many, or several along an axis that does not wrap.
@@ -168,7 +167,7 @@ impl HeightSurface {
         self.cells
     }
 
-    /// Cells of all tiles along each axis: how far the block reaches, in texels.
+    /// Cells of all tiles along each axis: the size of the block in texels.
     pub fn domain(&self) -> [i32; 2] {
         self.domain
     }
@@ -178,7 +177,7 @@ impl HeightSurface {
         &self.maxima
     }
 
-    /// The cell of the first tile that a cell of the domain repeats.
+    /// The cell of the first tile that corresponds to a cell of the domain.
     pub fn tile_cell(&self, cell: [i32; 2]) -> [u32; 2] {
         [0, 1].map(|a| cell[a].max(0) as u32 % self.cells[a])
     }
@@ -189,14 +188,14 @@ impl HeightSurface {
         f64::from(self.maxima.levels[0].at(x, y))
     }
 
-    /// The node of a level that a cell of the domain lies under. Each tile begins nodes of
-    /// its own.
+    /// The node of a level over a cell of the domain. Each tile begins nodes of its own.
     pub fn node(&self, cell: [i32; 2], level: u32) -> Node {
         let local = self.tile_cell(cell);
         let place = local.map(|i| i >> level);
         let maximum = self.maxima.levels[level as usize].at(place[0], place[1]);
         let tile = [0, 1].map(|a| cell[a] - local[a] as i32);
         Node {
+            level,
             place,
             maximum: f64::from(maximum),
             low: [0, 1].map(|a| tile[a] + (place[a] << level) as i32),
@@ -215,32 +214,32 @@ impl HeightSurface {
 
     /// Height of the surface in a cell of the domain at (u, v) in 0..=1.
     pub fn height(&self, cell: [i32; 2], u: f64, v: f64) -> f64 {
-        let c = self.corners(cell);
-        let low = c[0] + u * (c[1] - c[0]);
-        let high = c[2] + u * (c[3] - c[2]);
-        low + v * (high - low)
+        bilinear(self.corners(cell), u, v)
     }
 
-    /// The number of a cell of the domain: of its tile's cell, row by row.
+    /// The number of a cell within its tile, row by row.
     pub fn number(&self, cell: [i32; 2]) -> u32 {
         let [x, y] = self.tile_cell(cell);
         y * self.cells[0] + x
     }
 
-    /// The WGSL that reads a relief, and what every tracer of one shares.
+    /// The WGSL modules of the surface, and those that all tracers share.
     pub fn modules(&self) -> Vec<Module> {
         let boxes = f64::from(u8::from(self.patches == Patches::Boxes));
         vec![
             wgsl!("heightfield/heights.wgsl", "RELIEF_BOXES" = boxes),
             wgsl!("heightfield/max_mip.wgsl"),
             wgsl!("heightfield/patch.wgsl"),
-            wgsl!("heightfield/tracer/course.wgsl"),
+            wgsl!("heightfield/tracer/grid.wgsl"),
         ]
     }
 
-    /// Bytes to bind by the names of the WGSL variables; tracers without a cone map give
-    /// none.
-    pub fn buffers(&self, map: Option<&ConeMap>, numbers: Numbers) -> Vec<(&'static str, Vec<u8>)> {
+    /// Bytes to bind, by the names of the WGSL variables, for a tracer with or without a map.
+    pub fn buffers(
+        &self,
+        map: Option<&ConeMap>,
+        tracer: TracerParameters,
+    ) -> Vec<(&'static str, Vec<u8>)> {
         let mut starts = [0; MOST_LEVELS];
         let mut maxima: Vec<f32> = Vec::new();
         for (start, level) in starts.iter_mut().zip(&self.maxima.levels) {
@@ -254,11 +253,11 @@ impl HeightSurface {
             wrap: self.heights.wrap().map(u32::from),
             places: map.map_or([1, 1], |m| m.size.map(|n| n as i32)),
             offset: map.map_or(0.0, |m| m.offset as f32),
-            scale: numbers.scale as f32,
+            scale: tracer.scale as f32,
             levels: self.maxima.levels.len() as u32,
-            steps: numbers.steps,
-            lod: numbers.lod as f32,
-            rounds: numbers.rounds,
+            steps: tracer.steps,
+            lod: tracer.lod as f32,
+            rounds: tracer.rounds,
             starts,
         };
         let ratios: Vec<f32> = map.map_or(vec![0.0], |m| {

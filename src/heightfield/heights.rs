@@ -1,20 +1,22 @@
 //! Heights on a grid, and the surface between them.
 //!
-//! Lengths along x and y are in texels, one square texel being 1; heights are in 0..=1
-//! and become lengths only in a scene, by the relief's depth. Sample (i, j) lies at
+//! Lengths along x and y are in texels; a texel is the distance of two samples. Heights are
+//! in 0..=1 and become lengths only in a scene, by its depth. Sample (i, j) lies at
 //! x = i, y = j. Each axis either ends at its last sample or wraps to its first.
 //! Twin: `wgsl/heightfield/heights.wgsl`.
 
 use glam::DVec2;
 use thiserror::Error;
 
-/// Why numbers are no height map.
+use crate::base::named::named_enum;
+
+/// Why numbers are not a height map.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum HeightsError {
-    /// An axis without samples, or with more than a map may have.
+    /// An axis has no samples, or more than a map may have.
     #[error("a height map of {0} x {1} samples: each axis has 1 to {MOST_SAMPLES}")]
     Size(u32, u32),
-    /// Another number of samples than the size says.
+    /// The number of samples is not that of the size.
     #[error("{found} heights for {wanted} samples")]
     Count {
         /// Samples of the size.
@@ -22,7 +24,7 @@ pub enum HeightsError {
         /// Numbers given.
         found: usize,
     },
-    /// A height that is no number, or outside 0..=1.
+    /// A height is not a number, or outside 0..=1.
     #[error("the height at column {x}, row {y} is {height}: heights are numbers from 0 to 1")]
     Height {
         /// Column.
@@ -38,21 +40,23 @@ pub enum HeightsError {
 /// are exact in f64, and positions in f32 keep a thousandth of a texel.
 pub const MOST_SAMPLES: u32 = 8192;
 
-/// What lies between the samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Patches {
-    /// The bilinear patch of four samples: cell (i, j) spans samples i..=i+1, j..=j+1.
-    #[default]
-    Bilinear,
-    /// A box as high as one sample: cell (i, j) spans positions i..=i+1, j..=j+1.
-    Boxes,
+named_enum! {
+    /// What lies between the samples.
+    #[derive(Default)]
+    pub enum Patches {
+        /// The bilinear patch of four samples: cell (i, j) spans samples i..=i+1, j..=j+1.
+        #[default]
+        Bilinear = "bilinear",
+        /// A box as high as one sample: cell (i, j) spans positions i..=i+1, j..=j+1.
+        Boxes = "boxes",
+    }
 }
 
 impl Patches {
-    /// The word for it in presets and files.
-    pub fn name(self) -> &'static str {
+    /// The surface in words.
+    pub fn surface(self) -> &'static str {
         match self {
-            Self::Bilinear => "bilinear",
+            Self::Bilinear => "bilinear patches",
             Self::Boxes => "boxes",
         }
     }
@@ -144,6 +148,21 @@ impl Heights {
         c[0].max(c[1]).max(c[2]).max(c[3])
     }
 
+    /// The places of a grid of cones, with their heights row by row: all cells with their
+    /// apexes, or all samples.
+    pub fn places(&self, cells: Option<Patches>) -> ([u32; 2], Vec<f32>) {
+        let heights = match cells {
+            Some(patches) => self.apexes(patches),
+            None => self.data.clone(),
+        };
+        (self.places_along(cells), heights)
+    }
+
+    /// Places along each axis: cells, or samples.
+    pub fn places_along(&self, cells: Option<Patches>) -> [u32; 2] {
+        cells.map_or(self.size, |patches| self.cells(patches))
+    }
+
     /// Apexes of all cells, row by row.
     pub fn apexes(&self, patches: Patches) -> Vec<f32> {
         let [w, h] = self.cells(patches);
@@ -158,15 +177,24 @@ impl Heights {
     pub fn height(&self, patches: Patches, p: DVec2) -> f64 {
         let cell = p.floor();
         let f = p - cell;
-        let c = self.corners(patches, cell.x as i64, cell.y as i64);
-        let low = c[0] + f.x * (c[1] - c[0]);
-        let high = c[2] + f.x * (c[3] - c[2]);
-        low + f.y * (high - low)
+        bilinear(
+            self.corners(patches, cell.x as i64, cell.y as i64),
+            f.x,
+            f.y,
+        )
     }
 }
 
-/// The place of an index on an axis with so many: beyond the ends the last one, or where it
-/// wraps the one that comes round.
+/// Bilinear interpolation at (u, v) between values at (0, 0), (1, 0), (0, 1), (1, 1).
+pub fn bilinear(corners: [f64; 4], u: f64, v: f64) -> f64 {
+    let [a, b, c, d] = corners;
+    let low = a + u * (b - a);
+    let high = c + u * (d - c);
+    low + v * (high - low)
+}
+
+/// The place of an index on an axis with so many places: beyond the ends the last one, or
+/// where the axis wraps the one that comes round.
 pub fn brought_in(i: i64, count: u32, wraps: bool) -> u32 {
     let n = i64::from(count);
     let i = if wraps {
@@ -177,7 +205,7 @@ pub fn brought_in(i: i64, count: u32, wraps: bool) -> u32 {
     i as u32
 }
 
-/// What [`Heights::cells`] gives for heights of a size and wrapping.
+/// As [`Heights::cells`], for heights of a size and wrapping.
 pub fn cells(size: [u32; 2], wrap: [bool; 2], patches: Patches) -> [u32; 2] {
     [0, 1].map(|a| {
         if patches == Patches::Boxes || wrap[a] {
@@ -188,7 +216,18 @@ pub fn cells(size: [u32; 2], wrap: [bool; 2], patches: Patches) -> [u32; 2] {
     })
 }
 
-/// One axis as distances see it.
+/// Which axes wrap as a word: `none`, `x`, `y` or `xy`.
+pub fn wrap_name(wrap: [bool; 2]) -> &'static str {
+    ["none", "x", "y", "xy"][usize::from(wrap[0]) + 2 * usize::from(wrap[1])]
+}
+
+/// The axes that a word of [`wrap_name`] means.
+pub fn wrap_named(word: &str) -> Option<[bool; 2]> {
+    let all = [[false, false], [true, false], [false, true], [true, true]];
+    all.into_iter().find(|wrap| wrap_name(*wrap) == word)
+}
+
+/// One axis of a grid of places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axis {
     /// Places on it.
@@ -198,18 +237,15 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Steps from a place to the nearest of the places `low..=high`, going round where
-    /// that is shorter. 0 if it is one of them.
-    pub fn gap(self, from: u32, low: u32, high: u32) -> u32 {
-        let ahead = low.saturating_sub(from);
-        let back = from.saturating_sub(high);
-        let direct = ahead.max(back);
-        if !self.wrap || direct == 0 {
-            return direct;
-        }
-        // One way round: on past the end to `low`, or back past the start to `high`.
-        let round_up = low + self.count - from;
-        let round_down = from + self.count - high;
-        direct.min(round_up).min(round_down)
+    /// Steps from a place to the nearest of the places `low..=high`, which may lie beyond the
+    /// grid: across the border where that is shorter. 0 if it is one of them.
+    pub fn gap(self, from: u32, [low, high]: [i64; 2]) -> u32 {
+        let (from, n) = (i64::from(from), i64::from(self.count));
+        let to = |from: i64| (low - from).max(from - high).max(0);
+        let steps = match self.wrap {
+            true => to(from).min(to(from + n)).min(to(from - n)),
+            false => to(from),
+        };
+        steps as u32
     }
 }

@@ -1,6 +1,6 @@
 //! Heightfields: height maps, maxima, cone maps and what traces them.
 
-pub mod cache;
+pub mod assets;
 pub mod conemap;
 pub mod height_surface;
 pub mod heights;

@@ -1,29 +1,27 @@
-//! What colours a relief: its height, how wide the cones of a map are, or a picture.
-//! Twins: `wgsl/heightfield/paint.wgsl`, `paint_height.wgsl`.
+//! The colours of a height surface: by its height, by the width of a map's cones, or of a
+//! picture. Twins: `wgsl/heightfield/paint.wgsl`, `paint_height.wgsl`.
 
 use std::sync::Arc;
 
 use crate::base::shader::Module;
+use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::generator::Generator;
-use crate::heightfield::conemap::{ConeMap, MapKind};
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::texture::Texture;
 use crate::wgsl;
 
-/// What a preset may paint a relief by. `brute` is missing: its map is that of `exact`.
-pub const PAINTS: &[(&str, Option<Generator>)] = &[
-    ("height", None),
-    ("naive", Some(Generator::Naive)),
-    ("improved", Some(Generator::Improved)),
-    ("center", Some(Generator::Center)),
-    ("exact", Some(Generator::Exact)),
-    ("quad", Some(Generator::Quad)),
-    ("relaxed-search", Some(Generator::RelaxedSearch)),
-    ("relaxed-exact", Some(Generator::RelaxedExact)),
-    ("walk", Some(Generator::Walk)),
-    ("walk-relaxed", Some(Generator::WalkRelaxed)),
-];
+/// What may pick the hue. `brute` is missing because its map is that of `exact`.
+pub const PAINTS: &[(&str, Option<Generator>)] = &{
+    // `brute` is the first generator.
+    let mut paints = [("height", None); Generator::ALL.len()];
+    let mut i = 1;
+    while i < paints.len() {
+        paints[i] = (Generator::ALL[i].name(), Some(Generator::ALL[i]));
+        i += 1;
+    }
+    paints
+};
 
 /// A number from 0 to 1 for each place of a cone map.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,8 +32,8 @@ pub struct Paint {
 }
 
 impl Paint {
-    /// The roots of a map's ratios, of four cones of their mean; 1 is a cone that is as wide
-    /// as the map is long over the whole height, or wider.
+    /// The square roots of a map's ratios, or of the mean of four cones. 1 is a cone that widens
+    /// by the length of the map over the whole height, or by more.
     pub fn new(map: &ConeMap) -> Self {
         let places = map.size[0] as usize * map.size[1] as usize;
         let channels = map.ratios.len() / places;
@@ -46,21 +44,21 @@ impl Paint {
         };
         Self {
             size: map.size,
-            over_cells: matches!(map.kind, MapKind::Walk | MapKind::WalkRelaxed),
+            over_cells: map.kind.over_cells(),
             values: map.ratios.chunks(channels).map(value).collect(),
         }
     }
 
-    /// The number at (u, v) in 0..=1 of a cell of the domain: its own, or that of the sample
-    /// which is nearest.
-    pub fn at(&self, relief: &HeightSurface, cell: [i32; 2], uv: [f64; 2]) -> f64 {
+    /// The number at (u, v) in 0..=1 of a cell of the domain: that of the cell, or of the nearest
+    /// sample.
+    pub fn at(&self, surface: &HeightSurface, cell: [i32; 2], uv: [f64; 2]) -> f64 {
         if self.over_cells {
-            return f64::from(self.values[relief.number(cell) as usize]);
+            return f64::from(self.values[surface.number(cell) as usize]);
         }
-        let own = relief.tile_cell(cell);
+        let own = surface.tile_cell(cell);
         // A box has one sample, a patch one in each corner.
-        let near = |a: usize| u32::from(relief.patches() == Patches::Bilinear && uv[a] >= 0.5);
-        let [x, y] = [0, 1].map(|a| relief.heights().index(a, i64::from(own[a] + near(a))));
+        let near = |a: usize| u32::from(surface.patches() == Patches::Bilinear && uv[a] >= 0.5);
+        let [x, y] = [0, 1].map(|a| surface.heights().index(a, i64::from(own[a] + near(a))));
         f64::from(self.values[(y * self.size[0] + x) as usize])
     }
 
@@ -70,19 +68,19 @@ impl Paint {
     }
 }
 
-/// What colours a relief.
+/// What colours a height surface.
 #[derive(Clone, Debug)]
 pub enum Colors {
-    /// Its height picks the hue.
+    /// The height picks the hue.
     Height,
-    /// Cones pick it.
+    /// The width of cones picks the hue.
     Cones(Arc<Paint>),
-    /// A picture has them.
+    /// A picture gives the colours.
     Texture(Arc<Texture>),
 }
 
 impl Colors {
-    /// The module to join.
+    /// The WGSL module.
     pub fn module(&self) -> Module {
         match self {
             Self::Height => wgsl!("heightfield/paint_height.wgsl"),

@@ -1,10 +1,10 @@
-//! Where a ray meets the bilinear patch of a cell, in f64.
+//! The first crossing of a ray and the bilinear patch of a cell.
 //! Twin: `wgsl/heightfield/patch.wgsl`.
 //!
-//! Over a cell the surface is `h(u, v) = a + b u + c v + d u v`. Along a ray, (u, v, z)
-//! are linear in s, so `z - h` is a quadratic in s: its first root in the part of the ray
-//! over the cell is the hit. Roots are computed without cancellation, and the ends are
-//! tested by sign, so that a crossing is never lost between two cells.
+//! Over a cell the surface is `h(u, v) = a + b u + c v + d u v`. Along a ray u, v and z are linear
+//! in s, so `z - h` is a quadratic in s. Its first root over the cell is the hit. Roots are
+//! computed without cancellation, and the signs at both ends are tested, so that no crossing is
+//! lost between two cells.
 
 /// A ray in the coordinates of one cell: u and v are 0..=1 over it, z is a height.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,7 @@ pub fn patch_hit(corners: [f64; 4], ray: CellRay, from: f64, to: f64) -> Option<
     if disc >= 0.0 {
         let root = disc.sqrt();
         let s = if q1 <= 0.0 {
-            // Both forms are free of cancellation: q1 and -root have one sign.
+            // Free of cancellation: q1 and -root have the same sign.
             2.0 * q0 / (root - q1)
         } else if q2 < 0.0 {
             (-q1 - root) / (2.0 * q2)
@@ -47,6 +47,6 @@ pub fn patch_hit(corners: [f64; 4], ray: CellRay, from: f64, to: f64) -> Option<
             return Some(from + s);
         }
     }
-    // The sign at the end decides where rounding has hidden the root.
+    // If rounding hides the root, the sign at the end decides.
     (end <= 0.0).then_some(to)
 }

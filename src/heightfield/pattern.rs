@@ -1,67 +1,40 @@
-//! Heights by name: made from a formula and a seed, for presets, benchmarks and tests.
+//! Built-in height maps, made from a pattern's name and a seed, for presets, benchmarks and
+//! tests.
 //!
 //! All are periodic, so that they may wrap, and reach from 0 to 1. The same name, size,
-//! seed and power give the same heights on every machine up to the rounding of its
+//! seed and power give the same heights on every machine, up to the rounding of its
 //! `sin`, `cos` and `exp`.
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-/// Formulas of height fields.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Pattern {
-    /// Fractional Brownian motion by spectral synthesis: power falls as a power of the
-    /// wave number.
-    Fbm,
-    /// Ridges: where fractional Brownian motion changes sign.
-    Ridges,
-    /// Single samples of 0.4 to 1 over low noise, one in fifty.
-    Spikes,
-    /// Sixteen blocks along each axis, as far as there are samples, high and low.
-    Checker,
-    /// A sum of four sines.
-    Sine,
-    /// White noise: every sample on its own.
-    Noise,
-    /// Rounded stones, closely set: cells of the nearest of scattered points (Worley
-    /// 1996), with a rough skin.
-    Stones,
-    /// Bricks in eight rows of four, with mortar between them.
-    Bricks,
+use crate::base::named::named_enum;
+
+named_enum! {
+    /// The patterns.
+    pub enum Pattern {
+        /// Fractional Brownian motion by spectral synthesis: power falls as a power of the
+        /// wave number.
+        Fbm = "fbm",
+        /// Ridges: where fractional Brownian motion changes sign.
+        Ridges = "ridges",
+        /// Single samples of 0.4 to 1 over low noise, one in fifty.
+        Spikes = "spikes",
+        /// Sixteen blocks along each axis, as far as there are samples, high and low.
+        Checker = "checker",
+        /// A sum of four sines.
+        Sine = "sine",
+        /// White noise: every sample is independent.
+        Noise = "noise",
+        /// Rounded stones, closely set: cells of the nearest of scattered points (Worley
+        /// 1996), with a rough skin.
+        Stones = "stones",
+        /// Bricks in eight rows of four, with mortar between them.
+        Bricks = "bricks",
+    }
 }
 
 impl Pattern {
-    /// Every field.
-    pub const ALL: [Self; 8] = [
-        Self::Fbm,
-        Self::Ridges,
-        Self::Spikes,
-        Self::Checker,
-        Self::Sine,
-        Self::Noise,
-        Self::Stones,
-        Self::Bricks,
-    ];
-
-    /// The word that chooses it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fbm => "fbm",
-            Self::Ridges => "ridges",
-            Self::Spikes => "spikes",
-            Self::Checker => "checker",
-            Self::Sine => "sine",
-            Self::Noise => "noise",
-            Self::Stones => "stones",
-            Self::Bricks => "bricks",
-        }
-    }
-
-    /// The field of a name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|f| f.name() == name)
-    }
-
     /// Heights of `size` samples, row by row, each in 0..=1. `power` is the exponent by
     /// which the power of `Fbm` and `Ridges`, and of the skin of `Stones` and `Bricks`, falls
     /// with the wave number: 2.6 for rough terrain, more for smoother.
@@ -120,7 +93,7 @@ impl Pattern {
     }
 }
 
-/// Brings the lowest to 0 and the highest to 1; a constant field to 0.
+/// Scales heights so that the lowest is 0 and the highest is 1. A constant map becomes 0.
 fn stretched(raw: &[f64]) -> Vec<f32> {
     let low = raw.iter().copied().fold(f64::INFINITY, f64::min);
     let high = raw.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -168,7 +141,7 @@ const BRICKS: [usize; 2] = [4, 8];
 /// Height of a rough skin, of the whole.
 const SKIN: f64 = 0.05;
 
-/// Adds a skin of a mean height of nothing.
+/// Adds a rough skin whose mean height is 0.
 fn rough(mut heights: Vec<f64>, skin: &[f64]) -> Vec<f64> {
     let largest = skin.iter().fold(1e-30_f64, |m, s| m.max(s.abs()));
     for (z, s) in heights.iter_mut().zip(skin) {

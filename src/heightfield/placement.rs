@@ -1,18 +1,17 @@
-//! A relief's place in the world: texels and heights to lengths and back.
+//! The place of a block in the world, and the conversion between world and local units.
 //!
-//! The block that holds the relief stands on a base rectangle. Local coordinates are
-//! those of the height map: x and y in texels from the block's corner, z = 0 at the base
-//! and 1 at the top. Distances along a ray stay those of the world: the local axis of a
-//! ray is its world axis seen in local units, and is not of length 1.
+//! The block stands on a base rectangle. Local coordinates are those of the height map: x and y
+//! in texels from the block's corner, z = 0 at the base and 1 at the top. The parameter of a ray
+//! stays the distance in the world, so that the local axis of a ray is not of length 1.
 
 use glam::{DMat3, DVec2, DVec3, EulerRot};
 
 /// Where a block stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// World to local directions, lengths left as they are.
+    /// Turns world directions to local ones.
     turn: DMat3,
-    /// The corner of the base at local zero, in the world.
+    /// The world position of the corner that is the local origin.
     corner: DVec3,
     /// Length of a texel.
     pub texel: f64,
@@ -23,8 +22,8 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// A block of so many texels whose longer side is `width`, with the middle of its
-    /// base at `centre`, turned by angles in degrees about x, then y, then z.
+    /// A block of `sides` texels whose longer side is `width` long. The middle of its base is at
+    /// `centre`, and it is turned by angles in degrees about x, then y, then z.
     pub fn new(sides: DVec2, width: f64, depth: f64, centre: DVec3, angles: DVec3) -> Self {
         let a = angles * (std::f64::consts::PI / 180.0);
         let out = DMat3::from_euler(EulerRot::ZYX, a.z, a.y, a.x);
@@ -59,7 +58,7 @@ impl Placement {
         self.turn.transpose() * up.normalize()
     }
 
-    /// A direction of the block's sides, in the world.
+    /// The world direction of a local one, with the same length.
     pub fn side(&self, local: DVec3) -> DVec3 {
         self.turn.transpose() * local
     }
@@ -74,8 +73,7 @@ impl Placement {
         ]
     }
 
-    /// Distance from a local position to the block, in the world's length; negative
-    /// inside.
+    /// Distance in the world from a local position to the block; negative inside.
     pub fn distance(&self, local: DVec3) -> f64 {
         let half = 0.5 * self.sides.extend(1.0);
         let o = ((local - half).abs() - half) * self.units();

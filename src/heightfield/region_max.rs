@@ -1,5 +1,5 @@
-//! The highest surface under a region: what coarse cones and empty balls are tested
-//! against. A pyramid of maxima over the cells' apexes answers with a few look-ups.
+//! The highest point of the surface under a region. Coarse cones and empty balls are tested
+//! against it. The pyramid of maxima answers with a few look-ups.
 //! Twin: `wgsl/heightfield/region_max.wgsl`.
 
 use glam::DVec2;
@@ -13,29 +13,29 @@ pub fn module() -> Module {
     wgsl!("heightfield/region_max.wgsl")
 }
 
-/// The largest apex of the cells that meet the rectangle `low..=high`, in texels; -1
-/// where it lies outside the block.
-pub fn region_max(relief: &HeightSurface, low: DVec2, high: DVec2) -> f64 {
-    let sides = DVec2::from_array(relief.domain().map(f64::from));
+/// The largest apex of the cells that meet the rectangle `low..=high`, in texels; -1 if the
+/// rectangle lies outside the block.
+pub fn region_max(surface: &HeightSurface, low: DVec2, high: DVec2) -> f64 {
+    let sides = DVec2::from_array(surface.domain().map(f64::from));
     if low.cmpgt(sides).any() || high.cmplt(DVec2::ZERO).any() {
         return -1.0;
     }
-    let cells = relief.cells();
+    let cells = surface.cells();
     let last = sides - DVec2::ONE;
     let first = low.floor().clamp(DVec2::ZERO, last);
     let end = high.floor().clamp(DVec2::ZERO, last);
-    let x = parts(first.x as u32, end.x as u32, cells[0]);
-    let y = parts(first.y as u32, end.y as u32, cells[1]);
+    let x = region_runs(first.x as u32, end.x as u32, cells[0]);
+    let y = region_runs(first.y as u32, end.y as u32, cells[1]);
     let mut top = 0.0_f32;
     for [x0, x1] in x {
         for [y0, y1] in y {
-            // The level at which the run is at most two nodes wide and high.
+            // The finest level at which the run is at most two nodes wide and high.
             let (mut level, mut nodes) = (0, [x0, x1, y0, y1]);
             while nodes[1] - nodes[0] > 1 || nodes[3] - nodes[2] > 1 {
                 level += 1;
                 nodes = nodes.map(|n| n / 2);
             }
-            let of = &relief.maxima().levels[level];
+            let of = &surface.maxima().levels[level];
             let [x0, x1, y0, y1] = nodes;
             top = top.max(of.at(x0, y0)).max(of.at(x1, y0));
             top = top.max(of.at(x0, y1)).max(of.at(x1, y1));
@@ -44,9 +44,9 @@ pub fn region_max(relief: &HeightSurface, low: DVec2, high: DVec2) -> f64 {
     f64::from(top)
 }
 
-/// The cells `first..=end` of an axis of tiles, within one tile of `count` cells: two
-/// runs, which are the same one unless the cells lie across a seam.
-fn parts(first: u32, end: u32, count: u32) -> [[u32; 2]; 2] {
+/// The cells `first..=end` of a tiled axis as cells of one tile of `count` cells: two runs, which
+/// are equal unless the cells lie across a seam.
+fn region_runs(first: u32, end: u32, count: u32) -> [[u32; 2]; 2] {
     if end - first + 1 >= count {
         return [[0, count - 1]; 2];
     }
@@ -64,14 +64,14 @@ mod tests {
     use crate::heightfield::heights::{Heights, Patches};
     use crate::heightfield::pattern::Pattern;
 
-    /// By looking at every cell of every tile.
-    fn exhaustive(relief: &HeightSurface, low: DVec2, high: DVec2) -> f64 {
-        let [w, h] = relief.domain();
+    /// The answer from every cell of every tile.
+    fn exhaustive(surface: &HeightSurface, low: DVec2, high: DVec2) -> f64 {
+        let [w, h] = surface.domain();
         let mut top = -1.0_f64;
         for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
             let at = DVec2::new(f64::from(x), f64::from(y));
             if at.cmple(high).all() && (at + DVec2::ONE).cmpge(low).all() {
-                top = top.max(relief.apex([x, y]));
+                top = top.max(surface.apex([x, y]));
             }
         }
         top
@@ -84,20 +84,20 @@ mod tests {
             let wrap = tiles.map(|t| t > 1);
             let data = Pattern::Noise.heights(size, 3, 2.6);
             let heights = Heights::new(size, wrap, data).expect("heights");
-            let relief = HeightSurface::new(heights, Patches::Bilinear, tiles).expect("a relief");
-            let sides = DVec2::from_array(relief.domain().map(f64::from));
+            let surface = HeightSurface::new(heights, Patches::Bilinear, tiles).expect("a surface");
+            let sides = DVec2::from_array(surface.domain().map(f64::from));
             for i in 0..4000 {
                 // Low-discrepancy rectangles, some of them outside.
                 let r = |k: f64| (f64::from(i) * k).fract();
                 let low = DVec2::new(r(0.618_034), r(0.414_214)) * (sides + 2.0) - 1.0;
                 let high = low + DVec2::new(r(0.732_051), r(0.236_068)) * r(0.302_776) * sides;
-                let exact = exhaustive(&relief, low, high);
-                let found = region_max(&relief, low, high);
+                let exact = exhaustive(&surface, low, high);
+                let found = region_max(&surface, low, high);
                 assert!(found >= exact, "{low} {high}: {found} < {exact}");
                 seen += i32::from(found == exact);
             }
         }
-        // A bound that is never met would pass above: most are.
+        // A bound that is far too high would pass above, so most must be equal.
         assert!(seen > 6000, "{seen}");
     }
 }

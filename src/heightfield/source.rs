@@ -113,6 +113,6 @@ impl Source {
             normalize: self.normalize,
             size: None,
         };
-        load(&self.argument(), &options).map_err(|e| Fault::new("scene.field", e.to_string()))
+        load(self.argument(), &options).map_err(|e| Fault::new("scene.field", e.to_string()))
     }
 }

@@ -1,80 +1,69 @@
-//! A picture that colours a relief. Twin: `wgsl/heightfield/texture.wgsl`.
+//! A picture that colours a height surface. Twin: `wgsl/heightfield/texture.wgsl`.
 //!
-//! It is stretched over the whole map, once to each tile, whatever its own size: a picture as
-//! large as the map has a texel for each sample, whose middle lies on it. A map that ends does
-//! so at its last samples, and the outer halves of their texels are not seen. Texels are sRGB
-//! of 8 bits and become linear before they are interpolated. Far away none are averaged: render
-//! larger and scale down.
+//! The picture is stretched over the whole map, once for each tile, whatever its own size. If it
+//! is as large as the map, the middle of each texel lies on a sample. A map that does not wrap
+//! ends at its last samples, so that the outer halves of their texels are not visible. Texels are
+//! sRGB of 8 bits, and become linear before they are interpolated. Distant texels are not
+//! averaged; render larger and scale down instead.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use glam::DVec3;
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 
 use crate::base::shader::Module;
 use crate::base::srgb::linear;
 use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::heights::{Patches, brought_in};
-use crate::heightfield::raster::open::{Format, open};
-use crate::heightfield::raster::png;
+use crate::heightfield::heights::{MOST_SAMPLES, Patches, brought_in};
+use crate::heightfield::raster::open::{check_size, open};
 use crate::wgsl;
 
-/// A picture over a relief.
+/// A picture over a height surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     size: [u32; 2],
     /// Red, green and blue of 8 bits, row by row.
     texels: Vec<[u8; 3]>,
-    /// Whether alpha was left out.
+    /// Whether the file has transparent texels.
     transparent: bool,
 }
 
 impl Texture {
-    /// Reads a PNG, grey or colour, of 8 or 16 bits.
+    /// Reads a PNG, JPEG or WebP. Numbers are taken as they stand: neither a colour profile nor
+    /// an orientation is applied, and 16 bits are rounded to 8.
     ///
     /// # Errors
-    /// In words, with the file's name: it is none, broken, or too large.
+    /// The file cannot be read, is no such picture, is broken, or is too large. The text has the
+    /// file's name.
     pub fn read(path: &Path) -> Result<Self, String> {
-        let picture = || {
-            let opened = open(path)?;
-            if opened.format != Format::Png {
-                return Err("is no PNG, which colours are read from; save it as one".into());
-            }
-            png::read(opened.file, 3, "")
-        };
-        let pixels = picture().map_err(|why: String| format!("{}: {why}", path.display()))?;
-        let most = u32::from(pixels.most);
-        let eight = |n: u16| ((u32::from(n) * 255 + most / 2) / most) as u8;
-        let texel = |own: &[u16]| match *own {
-            [r, g, b] => [r, g, b].map(eight),
-            // Grey, with or without alpha.
-            _ => [eight(own[0]); 3],
-        };
+        let image = decode(path).map_err(|why| format!("{}: {why}", path.display()))?;
+        let transparent =
+            image.color().has_alpha() && image.to_rgba16().pixels().any(|p| p.0[3] != u16::MAX);
+        let image = image.into_rgb8();
         Ok(Self {
-            size: pixels.size,
-            texels: pixels
-                .numbers
-                .chunks_exact(pixels.kept)
-                .map(texel)
-                .collect(),
-            transparent: !pixels.is_opaque,
+            size: image.dimensions().into(),
+            texels: image.pixels().map(|p| p.0).collect(),
+            transparent,
         })
     }
 
-    /// What was left out of the file, if anybody might wonder.
+    /// What was left out of the file, if there is anything to tell.
     pub fn note(&self) -> Option<&'static str> {
-        self.transparent
-            .then_some("is transparent in places: alpha is left out, and what it hides counts")
+        self.transparent.then_some(
+            "is transparent in places; its alpha is ignored, and the colours under it show",
+        )
     }
 
     /// Linear red, green and blue at (u, v) in 0..=1 of a cell of the domain.
-    pub fn at(&self, relief: &HeightSurface, cell: [i32; 2], uv: [f64; 2]) -> DVec3 {
-        let own = relief.tile_cell(cell);
-        let heights = relief.heights();
+    pub fn at(&self, surface: &HeightSurface, cell: [i32; 2], uv: [f64; 2]) -> DVec3 {
+        let own = surface.tile_cell(cell);
+        let heights = surface.heights();
         let place = |a: usize| {
             let (n, round) = (heights.size()[a], heights.wrap()[a]);
-            // A sample is the middle of its texel: a box is one, and so is the one cell of an
-            // axis with a single sample.
-            let is_one = relief.patches() == Patches::Boxes || n == 1 && !round;
+            // A sample is the middle of its texel. A box is a sample, and so is the only cell of
+            // an axis with one sample.
+            let is_one = surface.patches() == Patches::Boxes || n == 1 && !round;
             let middle = if is_one { 0.0 } else { 0.5 };
             let share = (f64::from(own[a]) + uv[a] + middle) / f64::from(n);
             share * f64::from(self.size[a]) - 0.5
@@ -93,16 +82,41 @@ impl Texture {
         low.lerp(texel(0, 1).lerp(texel(1, 1), fx), fy)
     }
 
-    /// The module to join.
+    /// The WGSL module.
     pub fn module() -> Module {
         wgsl!("heightfield/texture.wgsl")
     }
 
-    /// Bytes to bind: columns, rows, and texels with red in the low byte.
+    /// Bytes to bind: columns, rows, then texels with red in the low byte.
     pub fn buffer(&self) -> (&'static str, Vec<u8>) {
         let texel = |[r, g, b]: &[u8; 3]| u32::from_le_bytes([*r, *g, *b, 255]);
         let numbers = self.size.into_iter().chain(self.texels.iter().map(texel));
         let numbers: Vec<u32> = numbers.collect();
         ("texels", bytemuck::cast_slice(&numbers).to_vec())
     }
+}
+
+/// The picture in a file.
+fn decode(path: &Path) -> Result<DynamicImage, String> {
+    let opened = open(path)?;
+    let mut reader = ImageReader::new(opened.file);
+    // The size is checked below.
+    reader.no_limits();
+    let reader = reader.with_guessed_format().map_err(|e| e.to_string())?;
+    let name = match reader.format() {
+        Some(ImageFormat::Png) => "PNG",
+        Some(ImageFormat::Jpeg) => "JPEG",
+        Some(ImageFormat::WebP) => "WebP",
+        _ => return Err("is no PNG, JPEG or WebP; save it as one of these".into()),
+    };
+    let broken = |e: ImageError| match e {
+        ImageError::IoError(e) if e.kind() == ErrorKind::UnexpectedEof => {
+            format!("is a {name} that ends before its end; fetch or save it again")
+        }
+        e => format!("is a broken {name}: {e}; fetch or save it again"),
+    };
+    let decoder = reader.into_decoder().map_err(broken)?;
+    let (width, height) = decoder.dimensions();
+    check_size(width.into(), height.into(), MOST_SAMPLES)?;
+    DynamicImage::from_decoder(decoder).map_err(broken)
 }

@@ -13,10 +13,12 @@ use rayon::prelude::*;
 
 use crate::base::view::{View, footprint};
 use crate::base::work::{State, Work};
+use crate::gpu::RenderError;
 use crate::pass::march::{Ended, march};
 use crate::pass::trace::trace;
 use crate::plan::Plan;
 use crate::plan::march::Mode;
+use crate::scene::Assets;
 use crate::scene::{Solid, Task};
 
 /// Factor on the estimate's steps for the probes' own truth.
@@ -85,13 +87,16 @@ impl Calibration {
 
 /// Proposes settings that lose at most the share `budget` of pixels, from so many rays,
 /// and counts what they lose on as many others.
-/// `None` if `going` says to stop.
+///
+/// # Errors
+/// [`RenderError::Cancelled`] if `going` says to stop; a named file cannot be read.
 pub fn calibrate(
     plan: &Plan,
+    assets: &Assets,
     budget: f64,
     rays: usize,
     going: &dyn Fn() -> bool,
-) -> Option<Calibration> {
+) -> Result<Calibration, RenderError> {
     let mut truth = plan.clone();
     truth.march.mode = Mode::Truth;
     truth.march.stride = Some(STRIDE);
@@ -100,21 +105,30 @@ pub fn calibrate(
     let pixels = spread(plan.size, 2 * rays);
     // In parts, so that one can stop in between.
     for part in pixels.chunks(256) {
-        probes.extend(truth.scene().run(Follow {
+        probes.extend(truth.solid(assets)?.run(Follow {
             plan: &truth,
+            limit: truth.ray_steps(assets),
             pixels: part,
         }));
         if !going() {
-            return None;
+            return Err(RenderError::Cancelled);
         }
     }
     let others = probes.split_off(rays.min(probes.len()));
-    let (slope, slack) = plan.scene().run(Slopes {
+    let (slope, slack) = plan.solid(assets)?.run(Slopes {
         plan,
         probes: &probes,
     });
-    let count = |plan: &Plan, probes: &[Probe]| plan.scene().run(Lost { plan, probes });
-    let lost = |plan: &Plan| at_most(count(plan, &probes), probes.len());
+    let count = |plan: &Plan, probes: &[Probe]| {
+        let limit = plan.ray_steps(assets);
+        let lost = Lost {
+            plan,
+            limit,
+            probes,
+        };
+        Ok::<_, RenderError>(plan.solid(assets)?.run(lost))
+    };
+    let lost = |plan: &Plan| Ok::<_, RenderError>(at_most(count(plan, &probes)?, probes.len()));
     let mut best = plan.clone();
     best.march.mode = Mode::Calibrated;
     best.march.fudge = vec![1.0];
@@ -122,15 +136,15 @@ pub fn calibrate(
     for shell in SHELLS {
         best.march.shell = shell;
         if !going() {
-            return None;
+            return Err(RenderError::Cancelled);
         }
-        if lost(&best) <= 0.5 * budget {
+        if lost(&best)? <= 0.5 * budget {
             break;
         }
     }
     let levels = best.pyramid().levels.len();
     let mut fudge = vec![1.0; levels];
-    let exact = lost(&best);
+    let exact = lost(&best)?;
     for level in 0..levels {
         let share = (level + 1) as f64 / levels as f64;
         let allowed = exact + (budget - exact).max(0.0) * share;
@@ -138,18 +152,18 @@ pub fn calibrate(
             fudge[level] = f;
             best.march.fudge.clone_from(&fudge);
             if !going() {
-                return None;
+                return Err(RenderError::Cancelled);
             }
-            if lost(&best) <= allowed {
+            if lost(&best)? <= allowed {
                 break;
             }
             fudge[level] = 1.0;
         }
     }
     best.march.fudge = if fudge.is_empty() { vec![1.0] } else { fudge };
-    let held = lost(&best) <= budget;
-    let lost = count(&best, &others);
-    Some(Calibration {
+    let held = lost(&best)? <= budget;
+    let lost = count(&best, &others)?;
+    Ok(Calibration {
         slope,
         slack,
         // A slope under 1 was only not met by these rays.
@@ -173,6 +187,7 @@ fn spread(size: [u32; 2], count: usize) -> Vec<[u32; 2]> {
 
 struct Follow<'a> {
     plan: &'a Plan,
+    limit: u32,
     pixels: &'a [[u32; 2]],
 }
 
@@ -181,7 +196,7 @@ impl Task for Follow<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
-        let limit = self.plan.ray_steps();
+        let limit = self.limit;
         let one = |&pixel: &[u32; 2]| {
             let ray = view.view_ray(pixel);
             let (hit, state) = trace(solid, &ray, 0.0, limit, &mut Work::default());
@@ -207,7 +222,7 @@ impl Task for Slopes<'_> {
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
         // Radii are the estimate over what the preset divides by already.
-        let own = self.plan.lipschitz();
+        let own = self.plan.scene.lipschitz();
         let one = |probe: &Probe| {
             let ray = view.view_ray(probe.pixel);
             let hit = probe.hit?;
@@ -233,6 +248,7 @@ impl Task for Slopes<'_> {
 /// Share of probes that a plan loses: shown too deep, as sky, or not finished.
 struct Lost<'a> {
     plan: &'a Plan,
+    limit: u32,
     probes: &'a [Probe],
 }
 
@@ -242,7 +258,7 @@ impl Task for Lost<'_> {
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
         let levels = self.plan.pyramid().levels;
-        let limit = self.plan.ray_steps();
+        let limit = self.limit;
         let one = |probe: &&Probe| {
             let Some(hit) = probe.hit else { return false };
             let Some(front) = front(solid, &view, &levels, probe.pixel) else {
@@ -282,13 +298,9 @@ fn front<S: Solid>(
 mod tests {
     use super::*;
     use crate::formula::{Formula, balls::Balls, mandelbox::Mandelbox};
-    use crate::plan::Subject;
 
     fn plan(shape: Formula) -> Plan {
-        let mut plan = Plan::new(Subject::Distance {
-            shape,
-            iterations: None,
-        });
+        let mut plan = Plan::new(shape);
         plan.camera.eye = glam::DVec3::new(3.0, 2.5, -9.0);
         plan.size = [160, 90];
         plan
@@ -297,7 +309,7 @@ mod tests {
     #[test]
     fn an_exact_field_has_slope_one_and_takes_full_cones() {
         let plan = plan(Formula::Balls(Balls::default()));
-        let found = calibrate(&plan, 0.0, 2000, &|| true).expect("not stopped");
+        let found = calibrate(&plan, &Assets::default(), 0.0, 2000, &|| true).expect("not stopped");
         assert!(
             found.slope <= 1.0 + 1e-9 && found.slope > 0.9,
             "{}",
@@ -310,7 +322,7 @@ mod tests {
         // Narrow cones do lose pixels of an exact field; the finest may be narrow, since a
         // cone through pixel centres is wider than the four rays in it.
         assert!(found.fudge[0] > 0.5, "{:?}", found.fudge);
-        assert!(calibrate(&plan, 0.0, 2000, &|| false).is_none());
+        assert!(calibrate(&plan, &Assets::default(), 0.0, 2000, &|| false).is_err());
     }
 
     #[test]
@@ -320,7 +332,7 @@ mod tests {
                 scale,
                 ..Mandelbox::default()
             });
-            calibrate(&plan(shape), 0.01, 1500, &|| true).expect("not stopped")
+            calibrate(&plan(shape), &Assets::default(), 0.01, 1500, &|| true).expect("not stopped")
         };
         // Cones can be told thinner than they are where the estimate understates the
         // distance, as it does at scale 2 and hardly at -1.5.

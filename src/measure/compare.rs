@@ -17,6 +17,7 @@ use crate::base::view::{Beam, View, footprint};
 use crate::base::work::State;
 use crate::picture::frame::Frame;
 use crate::plan::Plan;
+use crate::scene::AnySolid;
 use crate::scene::{Solid, Task};
 
 /// How far one frame's depth is from another's. Shares are of all pixels.
@@ -67,7 +68,8 @@ pub fn errors(frame: &Frame, reference: &Frame, view: &View) -> Vec<f64> {
 }
 
 /// Compares a frame with a reference of the same plan, its modes and steps apart.
-pub fn compare(frame: &Frame, reference: &Frame, plan: &Plan) -> Report {
+/// `solid` is the plan's scene.
+pub fn compare(frame: &Frame, reference: &Frame, plan: &Plan, solid: &AnySolid) -> Report {
     let view = &plan.view();
     let hit = State::Hit as u8;
     let sky = State::Sky as u8;
@@ -103,7 +105,7 @@ pub fn compare(frame: &Frame, reference: &Frame, plan: &Plan) -> Report {
     }
     depths.sort_by(f64::total_cmp);
     report.depth_error = [0.5, 0.95, 0.99, 1.0].map(|q| quantile(&depths, q));
-    report.start_violations = plan.scene().run(Violations {
+    report.start_violations = solid.run(Violations {
         frame,
         reference,
         plan,
@@ -149,7 +151,7 @@ impl Task for Violations<'_> {
         let (plan, reference) = (self.plan, self.reference);
         let view = plan.view();
         let width = self.frame.size[0] as usize;
-        let least = (CLEAR * plan.march.shell).max(LEAST_CLEAR) / plan.lipschitz();
+        let least = (CLEAR * plan.march.shell).max(LEAST_CLEAR) / plan.scene.lipschitz();
         // Where each ray comes to the surface, as far as a front could ask.
         let met = |ray: &Beam, hit: f64, front: f64| {
             let mut t = hit;
@@ -190,13 +192,22 @@ impl Task for Violations<'_> {
 mod tests {
     use super::*;
     use crate::picture::frame::LevelLayer;
-    use crate::plan::Subject;
+    use crate::scene::Assets;
     use crate::scene::slab::SlabSettings;
     use glam::DVec3;
 
+    fn solid(plan: &Plan) -> AnySolid {
+        plan.solid(&Assets::default()).expect("it names no file")
+    }
+
+    fn rendered(plan: &Plan) -> Frame {
+        let assets = Assets::default();
+        crate::cpu::render(plan, &assets, Default::default(), &mut |_| true).expect("rendered")
+    }
+
     /// A plan of so many pixels in a row.
     fn row(pixels: u32) -> Plan {
-        let mut plan = Plan::new(Subject::Slab(SlabSettings::default()));
+        let mut plan = Plan::new(SlabSettings::default());
         plan.size = [pixels, 1];
         plan
     }
@@ -218,10 +229,7 @@ mod tests {
     /// The unit ball at the origin, among others, seen from six lengths away.
     fn ball(size: [u32; 2]) -> Plan {
         use crate::formula::{Formula, balls::Balls};
-        let mut plan = Plan::new(Subject::Distance {
-            shape: Formula::Balls(Balls::default()),
-            iterations: None,
-        });
+        let mut plan = Plan::new(Formula::Balls(Balls::default()));
         plan.camera.eye = DVec3::new(0.0, -6.0, 0.3);
         plan.camera.target = DVec3::ZERO;
         plan.size = size;
@@ -237,8 +245,7 @@ mod tests {
         for (detail, shell) in [(1.0, 0.45), (3.0, 0.45), (1.0, 0.0), (0.5, 0.9)] {
             plan.march.detail = detail;
             plan.march.shell = shell;
-            let mut reference =
-                crate::cpu::render(&plan, Default::default(), &mut |_| true).expect("rendered");
+            let mut reference = rendered(&plan);
             // The last two pixels are no hits.
             reference.state[6] = State::Sky as u8;
             reference.state[7] = State::Unconverged as u8;
@@ -253,7 +260,7 @@ mod tests {
                 (top + (n - shell) * threshold) as f32
             });
             let frame = with_fronts(&reference, front.collect());
-            let report = compare(&frame, &reference, &plan);
+            let report = compare(&frame, &reference, &plan, &solid(&plan));
             assert_eq!(report.start_violations, [(1, 3)], "{detail} {shell}");
         }
     }
@@ -275,8 +282,7 @@ mod tests {
             };
             pixels.min_by(|a, b| miss(*a).abs().total_cmp(&miss(*b).abs()))
         };
-        let reference =
-            crate::cpu::render(&plan, Default::default(), &mut |_| true).expect("rendered");
+        let reference = rendered(&plan);
         let width = plan.size[0] as usize;
         for (share, wrong) in [(0.75, 0), (-2.0, 1)] {
             let p = past(share).expect("a picture has pixels");
@@ -285,7 +291,12 @@ mod tests {
             // Half a length on: far behind the skin.
             let mut front = vec![0.0; reference.depth.len()];
             front[i] = reference.depth[i] + 0.5;
-            let report = compare(&with_fronts(&reference, front), &reference, &plan);
+            let report = compare(
+                &with_fronts(&reference, front),
+                &reference,
+                &plan,
+                &solid(&plan),
+            );
             assert_eq!(report.start_violations, [(1, wrong)], "{share}");
         }
     }
@@ -310,7 +321,7 @@ mod tests {
         }
         one.extend([State::Hit, State::Sky, State::Sky, State::Hit].map(|s| (s, 5.0)));
         two.extend([State::Sky, State::Hit, State::Sky, State::Unconverged].map(|s| (s, 5.0)));
-        let report = compare(&frame(&two), &frame(&one), &plan);
+        let report = compare(&frame(&two), &frame(&one), &plan, &solid(&plan));
         let pixels = |share: f64| (share * 11.0).round() as u32;
         assert_eq!(pixels(report.behind), 2);
         assert_eq!(pixels(report.behind8), 1);

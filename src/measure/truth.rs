@@ -12,12 +12,14 @@ use sha2::{Digest, Sha256};
 
 use crate::base::work::State;
 use crate::cpu;
-use crate::gpu::render::{RenderError, Watch};
+use crate::gpu::RenderError;
+use crate::pass::progress::Watch;
 use crate::picture::frame::Frame;
 use crate::picture::{self, Place};
 use crate::plan::march::{Marching, Mode};
-use crate::plan::{Extras, Plan, Subject};
+use crate::plan::{Extras, Plan};
 use crate::preset;
+use crate::scene::Assets;
 
 /// The reference frame of a plan, and how sure it is.
 #[derive(Clone, Debug)]
@@ -42,8 +44,8 @@ const LEAST_STRIDE: f64 = 1.0 / 160.0;
 /// is spent has one value, so that all ways of spending it are held to the same truth.
 fn asked(plan: &Plan) -> Plan {
     let mut asked = plan.clone();
-    if let Subject::Heightfield(shape) = &mut asked.subject {
-        *shape = shape.exact();
+    if let Some(exact) = plan.scene.exact() {
+        asked.scene = exact;
     }
     asked.march = Marching {
         mode: Mode::Truth,
@@ -60,18 +62,18 @@ fn asked(plan: &Plan) -> Plan {
 /// a small factor times the estimate, halved from 0.1 until the picture stands.
 ///
 /// # Errors
-/// Only [`RenderError::Cancelled`], when `watch` returns `false`.
-pub fn truth(plan: &Plan, watch: Watch<'_>) -> Result<Truth, RenderError> {
+/// [`RenderError::Cancelled`], when `watch` returns `false`; a named file cannot be read.
+pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, RenderError> {
     let mut plan = asked(plan);
     let view = plan.view();
     let width = plan.size[0] as usize;
     let mut stride = 0.1;
     loop {
         plan.march.stride = Some(stride);
-        let frame = cpu::render(&plan, Extras::default(), watch)?;
+        let frame = cpu::render(&plan, assets, Extras::default(), watch)?;
         let mut finer = plan.clone();
         finer.march.stride = Some(0.5 * stride);
-        let sample = cpu::sample(&finer, SAMPLE);
+        let sample = cpu::sample(&finer, assets, SAMPLE)?;
         let mut moved = 0;
         for &(i, t, state) in &sample {
             let before = f64::from(frame.depth[i]);
@@ -124,24 +126,24 @@ impl Cache {
         })
     }
 
-    fn file(&self, plan: &Plan) -> PathBuf {
+    fn file(&self, plan: &Plan, assets: &Assets) -> PathBuf {
         let mut hash = Sha256::new();
         hash.update(self.program);
         hash.update(preset::write(&asked(plan)));
-        hash.update(plan.contents());
+        hash.update(plan.scene.contents(assets));
         let name: String = hash.finalize().iter().map(|b| format!("{b:02x}")).collect();
         self.folder.join(format!("truth-{name}"))
     }
 
     /// The kept truth of a plan, if there is one and it is whole.
-    pub fn find(&self, plan: &Plan) -> Option<Truth> {
-        unpack(&fs::read(self.file(plan)).ok()?, plan.size)
+    pub fn find(&self, plan: &Plan, assets: &Assets) -> Option<Truth> {
+        unpack(&fs::read(self.file(plan, assets)).ok()?, plan.size)
     }
 
     /// Keeps a truth. A cache that cannot be written is no reason to fail.
-    pub fn keep(&self, plan: &Plan, truth: &Truth) {
+    pub fn keep(&self, plan: &Plan, assets: &Assets, truth: &Truth) {
         let write = || {
-            let mut place = Place::prepare(&self.file(plan))?;
+            let mut place = Place::prepare(&self.file(plan, assets))?;
             place.write_all(&pack(truth))?;
             picture::commit(vec![place])
         };
@@ -170,18 +172,19 @@ impl Cache {
 /// The truth of a plan, from the cache or rendered now and kept; whether it was there.
 ///
 /// # Errors
-/// Only [`RenderError::Cancelled`], when `watch` returns `false`.
+/// [`RenderError::Cancelled`], when `watch` returns `false`; a named file cannot be read.
 pub fn cached(
     cache: Option<&Cache>,
     plan: &Plan,
+    assets: &Assets,
     watch: Watch<'_>,
 ) -> Result<(Truth, bool), RenderError> {
-    if let Some(found) = cache.and_then(|c| c.find(plan)) {
+    if let Some(found) = cache.and_then(|c| c.find(plan, assets)) {
         return Ok((found, true));
     }
-    let made = truth(plan, watch)?;
+    let made = truth(plan, assets, watch)?;
     if let Some(cache) = cache {
-        cache.keep(plan, &made);
+        cache.keep(plan, assets, &made);
     }
     Ok((made, false))
 }
@@ -234,13 +237,11 @@ mod tests {
     use super::*;
     use crate::formula::{Formula, balls::Balls};
     use crate::heightfield::settings::HeightfieldSettings;
-    use crate::plan::Subject;
+    use crate::heightfield::tracer::TracerKind;
+    use crate::scene::Scene;
 
     fn plan() -> Plan {
-        let mut plan = Plan::new(Subject::Distance {
-            shape: Formula::Balls(Balls::default()),
-            iterations: None,
-        });
+        let mut plan = Plan::new(Formula::Balls(Balls::default()));
         plan.size = [20, 15];
         plan
     }
@@ -256,27 +257,28 @@ mod tests {
             fs::write(&file, cast_slice::<f32, u8>(&heights)).expect("can be written");
             let mut shape = HeightfieldSettings::default();
             shape.source.field = file.to_string_lossy().into_owned();
-            let mut plan = Plan::new(Subject::Heightfield(shape));
+            let mut plan = Plan::new(shape);
             plan.size = [20, 15];
             plan
         };
         let slope: [f32; 12] = std::array::from_fn(|i| i as f32 / 12.0);
         let first = plan(slope);
-        let (_, before) = cached(Some(&cache), &first, &mut |_| true).expect("made");
-        assert!(!before && cache.find(&plan(slope)).is_some());
+        let (_, before) =
+            cached(Some(&cache), &first, &Assets::default(), &mut |_| true).expect("made");
+        assert!(!before && cache.find(&plan(slope), &Assets::default()).is_some());
         // By whom rays are traced does not matter.
         let mut other = plan(slope);
-        let Subject::Heightfield(shape) = &mut other.subject else {
+        let Scene::Heightfield(shape) = &mut other.scene else {
             unreachable!("made above");
         };
-        shape.tracing.tracer = "csm-fixed";
-        assert!(cache.find(&other).is_some());
+        shape.tracing.tracer = TracerKind::CsmFixed;
+        assert!(cache.find(&other, &Assets::default()).is_some());
         // One height of the file does, with the same text of the plan.
         let mut bent = slope;
         bent[5] += 1e-6;
         let second = plan(bent);
         assert_eq!(preset::write(&first), preset::write(&second));
-        assert!(cache.find(&second).is_none());
+        assert!(cache.find(&second, &Assets::default()).is_none());
         fs::remove_dir_all(&folder).expect("made above");
     }
 
@@ -284,8 +286,10 @@ mod tests {
     fn a_kept_truth_is_found_for_its_own_plan_only() {
         let folder = std::env::temp_dir().join(format!("conemarch-truths-{}", std::process::id()));
         let cache = Cache::at(folder.clone()).expect("this program can be read");
-        let (made, before) = cached(Some(&cache), &plan(), &mut |_| true).expect("made");
-        let (found, after) = cached(Some(&cache), &plan(), &mut |_| true).expect("found");
+        let (made, before) =
+            cached(Some(&cache), &plan(), &Assets::default(), &mut |_| true).expect("made");
+        let (found, after) =
+            cached(Some(&cache), &plan(), &Assets::default(), &mut |_| true).expect("found");
         assert!(!before && after);
         assert!(made.stride <= 0.1 && made.moved < CONVERGED);
         assert_eq!(found.frame.depth, made.frame.depth);
@@ -295,7 +299,7 @@ mod tests {
         // How the work is spent does not matter, what is asked for does.
         let mut other = plan();
         other.march.shell = 0.7;
-        assert!(cache.find(&other).is_some());
+        assert!(cache.find(&other, &Assets::default()).is_some());
         let changes: [fn(&mut Plan); 4] = [
             |p| p.march.detail = 2.0,
             |p| p.size = [15, 20],
@@ -305,19 +309,19 @@ mod tests {
         for change in changes {
             let mut other = plan();
             change(&mut other);
-            assert!(cache.find(&other).is_none());
+            assert!(cache.find(&other, &Assets::default()).is_none());
         }
         let mut rebuilt = cache.clone();
         rebuilt.program[7] ^= 1;
-        assert!(rebuilt.find(&plan()).is_none());
+        assert!(rebuilt.find(&plan(), &Assets::default()).is_none());
         // A file that was cut, or changed in one bit, is not believed.
-        let file = cache.file(&plan());
+        let file = cache.file(&plan(), &Assets::default());
         let whole = fs::read(&file).expect("kept");
         let mut changed = whole.clone();
         changed[40] ^= 1;
         for wrong in [&whole[..whole.len() - 1], &changed[..], &[]] {
             fs::write(&file, wrong).expect("can be written");
-            assert!(cache.find(&plan()).is_none());
+            assert!(cache.find(&plan(), &Assets::default()).is_none());
         }
         fs::remove_dir_all(folder).expect("can be removed");
     }

@@ -39,20 +39,14 @@ pub fn shade<S: Solid>(
         light.pigment_color(surface.pigment)
     };
     let facing = n.dot(light.light);
-    let key = if facing > 0.0 && light.shadowed {
+    // What faces away is dark without asking: it needs no shadow ray.
+    let key = if facing > 0.0 {
         shadow::shadow(solid, light, q, n, grain)
     } else {
-        Shadow {
-            open: 1.0,
-            decided: true,
-        }
+        Shadow::NONE
     };
     let lit = facing.max(0.0) * key.open;
-    let open = if light.occlusion_strength > 0.0 {
-        occlusion::occlusion(solid, light, q, n, grain)
-    } else {
-        1.0
-    };
+    let open = occlusion::occlusion(solid, light, q, n, grain);
     let up = 0.5 + 0.5 * n.dot(light.world_up);
     let ambient = (0.45 * light.sky_low).lerp(light.sky_high, up) * light.fill;
     // Light thrown back by lit neighbours: warm, from below and behind.
@@ -87,9 +81,7 @@ pub fn color<S: Solid>(solid: &S, light: &Light, ray: &Beam, hit: &Hit, state: S
     let surface = solid.surface(ray, hit);
     let grain = footprint(ray, hit.t);
     let (mut c, decided) = shade(solid, light, ray, ray.at(hit.t), &surface, grain);
-    if light.fog > 0.0 {
-        c = fog::fog(light, c, ray.axis, hit.t);
-    }
+    c = fog::fog(light, c, ray.axis, hit.t);
     if light.flag && (state == State::Unconverged || !decided) {
         c = DVec3::new(1.0, 0.0, 1.0);
     }

@@ -9,7 +9,10 @@ use glam::{DVec3, Vec3, Vec4};
 
 use crate::base::shader::Module;
 use crate::base::srgb::linear;
-use crate::plan::look::{Look, MOST_SHADOW_STEPS, MOST_STOPS, SHADOW_STEPS};
+use crate::pass::LookFeature;
+use crate::plan::Plan;
+use crate::plan::look::{Look, MOST_STOPS, SHADOW_STEPS};
+use crate::scene::{Assets, MOST_SHADOW_STEPS};
 use crate::wgsl;
 
 /// The look as WGSL reads it.
@@ -94,12 +97,9 @@ pub struct Light {
     pub stops: usize,
     /// How often the palette is run through.
     pub palette_cycles: f64,
-    /// Factor before tone.
-    pub exposure: f64,
     /// Paint unconverged pixels.
     pub flag: bool,
-    /// Whether the light casts shadows.
-    pub shadowed: bool,
+    on: Vec<LookFeature>,
 }
 
 impl Light {
@@ -131,10 +131,26 @@ impl Light {
             palette,
             stops: look.palette.len().clamp(1, MOST_STOPS),
             palette_cycles: look.palette_cycles,
-            exposure: look.exposure.exp2(),
             flag: look.flag_unconverged,
-            shadowed: look.shadow,
+            on: LookFeature::ALL
+                .iter()
+                .copied()
+                .filter(|f| f.is_on(look))
+                .collect(),
         }
+    }
+
+    /// The light of a plan.
+    pub fn of(plan: &Plan, assets: &Assets) -> Self {
+        let camera = &plan.camera;
+        let distance = (camera.target - camera.eye).length();
+        let up = camera.up.try_normalize().unwrap_or(DVec3::Z);
+        Self::new(&plan.look, up, distance, plan.scene.most_steps(assets))
+    }
+
+    /// Whether the look has a feature.
+    pub fn has(&self, feature: LookFeature) -> bool {
+        self.on.contains(&feature)
     }
 
     /// The values that WGSL gets.
@@ -185,14 +201,14 @@ impl Light {
     pub fn pigment_color(&self, pigment: DVec3) -> DVec3 {
         self.palette_at(pigment.x) * (0.55 + 0.45 * pigment.y) * (0.85 + 0.3 * pigment.z)
     }
+}
 
-    /// Radiance as it is shown, 0..1, still linear: exposure, then a rational fit of
-    /// the ACES curve (Narkowicz 2015).
-    pub fn tone(&self, c: DVec3) -> DVec3 {
-        let x = c.max(DVec3::ZERO) * self.exposure;
-        let one = x * (x * 2.51 + 0.03) / (x * (x * 2.43 + 0.59) + 0.14);
-        one.clamp(DVec3::ZERO, DVec3::ONE)
-    }
+/// Radiance as it is shown, 0..1, still linear: a factor of exposure, then a rational fit of
+/// the ACES curve (Narkowicz 2015).
+pub fn tone(exposure: f64, c: DVec3) -> DVec3 {
+    let x = c.max(DVec3::ZERO) * exposure;
+    let one = x * (x * 2.51 + 0.03) / (x * (x * 2.43 + 0.59) + 0.14);
+    one.clamp(DVec3::ZERO, DVec3::ONE)
 }
 
 /// Hermite interpolation between two edges, as WGSL's.
@@ -207,8 +223,7 @@ mod tests {
 
     #[test]
     fn tone_keeps_black_black_and_never_exceeds_white() {
-        let light = Light::new(&Look::default(), DVec3::Z, 1.0, None);
-        assert_eq!(light.tone(DVec3::ZERO), DVec3::ZERO);
-        assert_eq!(light.tone(DVec3::splat(1e9)), DVec3::ONE);
+        assert_eq!(tone(1.0, DVec3::ZERO), DVec3::ZERO);
+        assert_eq!(tone(1.0, DVec3::splat(1e9)), DVec3::ONE);
     }
 }

@@ -2,21 +2,11 @@
 
 use glam::DVec3;
 
-use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
+use crate::pass::LookFeature;
 use crate::pass::look::{Light, smoothstep};
 use crate::scene::{Solid, Step};
-use crate::wgsl;
-
-/// The module to join where shadows are cast, or not.
-pub fn module(on: bool) -> Module {
-    if on {
-        wgsl!("pass/shadow.wgsl")
-    } else {
-        wgsl!("pass/shadow_off.wgsl")
-    }
-}
 
 /// What a shadow's ray has found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +18,19 @@ pub struct Shadow {
     pub decided: bool,
 }
 
+impl Shadow {
+    /// Full light.
+    pub const NONE: Self = Self {
+        open: 1.0,
+        decided: true,
+    };
+}
+
 /// Follows a ray from a point to the light.
 pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain: f64) -> Shadow {
+    if !light.has(LookFeature::Shadow) {
+        return Shadow::NONE;
+    }
     let ray = Beam {
         // Start off the surface, or its own hit shell would shade it.
         origin: q + 4.0 * grain * normal,

@@ -1,14 +1,16 @@
 //! The result of a render: layers of one value per pixel, and the figures of each pass.
 
 use crate::base::view::View;
-use crate::base::work::Work;
+use crate::base::work::{State, Work};
+use crate::heightfield::assets::Preparation;
+use crate::plan::{Extras, Pass, Plan};
 use glam::DVec3;
 
 /// What one pass did.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct PassFigures {
-    /// `prepare`, `march 1/16`, `trace`, `color`.
-    pub name: String,
+    /// The pass.
+    pub pass: Pass,
     /// Cells or pixels; places of a cone map.
     pub cells: u64,
     /// Time on the device, where it can tell.
@@ -22,9 +24,16 @@ pub struct PassFigures {
 }
 
 impl PassFigures {
-    /// Whether the pass is one of march and trace, which times and counts are told of.
-    pub fn marches(&self) -> bool {
-        self.name == "trace" || self.name.starts_with("march ")
+    /// A pass that has taken no time yet, over so many pixels.
+    pub fn new(pass: Pass, pixels: [u32; 2]) -> Self {
+        Self {
+            pass,
+            cells: pass.cells(pixels).map(u64::from).iter().product(),
+            gpu_ms: None,
+            wall_ms: 0.0,
+            evaluations: None,
+            iterations: None,
+        }
     }
 }
 
@@ -72,9 +81,50 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Puts the figures of what was prepared before everything else.
-    pub(crate) fn lead(&mut self, prepared: Vec<PassFigures>) {
-        self.passes.splice(0..0, prepared);
+    /// A frame of the right sizes, with nothing in it yet.
+    pub fn blank(plan: &Plan, extras: Extras) -> Self {
+        let area = plan.size[0] as usize * plan.size[1] as usize;
+        let layer = |kept: bool, count: usize| if kept { count } else { 0 };
+        let mut frame = Self {
+            size: plan.size,
+            depth: vec![f32::INFINITY; area],
+            state: vec![State::Unconverged as u8; area],
+            radiance: vec![[0.0; 3]; layer(!extras.depth_only, area)],
+            normal: vec![[0.0; 3]; layer(extras.normals, area)],
+            work: vec![Work::default(); layer(extras.count, area)],
+            ..Self::default()
+        };
+        for pass in plan.passes(extras) {
+            frame.passes.push(PassFigures::new(pass, plan.size));
+            if let Pass::March(level) = pass {
+                let cells = level.cells(plan.size);
+                let count = cells[0] as usize * cells[1] as usize;
+                frame.levels.push(LevelLayer {
+                    divisor: level.divisor,
+                    cells,
+                    front: vec![0.0; layer(extras.levels, count)],
+                    state: vec![0; layer(extras.levels, count)],
+                    work: vec![Work::default(); layer(extras.count, count)],
+                });
+            }
+        }
+        frame
+    }
+
+    /// Adds up the time of march and trace, and puts what was prepared, with its
+    /// milliseconds, before all other passes.
+    pub fn finish(&mut self, prepared: Vec<(Preparation, f64)>) {
+        self.march_ms = self.marched().map(|p| p.wall_ms).sum();
+        let figures = prepared.into_iter().map(|(map, wall_ms)| PassFigures {
+            wall_ms,
+            ..PassFigures::new(Pass::Prepare(map), self.size)
+        });
+        self.passes.splice(0..0, figures);
+    }
+
+    /// The figures of march and trace.
+    pub fn marched(&self) -> impl Iterator<Item = &PassFigures> {
+        self.passes.iter().filter(|p| p.pass.marches())
     }
 
     /// Number of pixels in each state: sky, hit, unconverged.
@@ -89,7 +139,7 @@ impl Frame {
     /// Evaluations and iterations of march and trace per pixel, where counted.
     pub fn work_per_pixel(&self) -> Option<(f64, f64)> {
         let mut sum = (0, 0);
-        for pass in self.passes.iter().filter(|p| p.marches()) {
+        for pass in self.marched() {
             sum.0 += pass.evaluations?;
             sum.1 += pass.iterations?;
         }

@@ -10,7 +10,7 @@ use crate::base::srgb::srgb;
 use crate::base::view::View;
 use crate::base::work::State;
 use crate::measure::compare::errors;
-use crate::pass::look::Light;
+use crate::pass::look::tone;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
 
@@ -61,7 +61,7 @@ impl Layer {
 pub struct Shades<'a> {
     layer: Layer,
     frame: &'a Frame,
-    light: Light,
+    exposure: f64,
     position: Vec<[f32; 3]>,
     steps: Vec<f32>,
     error: Vec<f64>,
@@ -99,7 +99,7 @@ impl<'a> Shades<'a> {
         let mut shades = Self {
             layer,
             frame,
-            light: plan.light(),
+            exposure: plan.look.exposure.exp2(),
             position: Vec::new(),
             steps: Vec::new(),
             error: Vec::new(),
@@ -161,7 +161,7 @@ impl<'a> Shades<'a> {
     /// The display value of a pixel, counted row by row.
     pub fn at(&self, i: usize) -> DVec3 {
         match self.layer {
-            Layer::Color => srgb(self.light.tone(vector(self.frame.radiance[i]))),
+            Layer::Color => srgb(tone(self.exposure, vector(self.frame.radiance[i]))),
             Layer::Depth => {
                 let t = f64::from(self.frame.depth[i]);
                 if t.is_finite() {
@@ -251,14 +251,10 @@ fn percentile_99(values: &[f32]) -> f64 {
 mod tests {
     use super::*;
     use crate::formula::Formula;
-    use crate::plan::Subject;
 
     fn plan() -> Plan {
         let shape = Formula::all().remove(0);
-        let mut plan = Plan::new(Subject::Distance {
-            shape,
-            iterations: None,
-        });
+        let mut plan = Plan::new(shape);
         plan.size = [3, 1];
         plan
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::heightfield::conemap::file::{Form, MapError, MapFile, encode};
+use crate::heightfield::conemap::file::{MapError, MapFile, MapFormat, encode};
 use crate::picture::error::OutputError;
 use crate::picture::place::{Place, commit};
 use thiserror::Error;
@@ -18,12 +18,12 @@ pub enum WriteMapError {
     Output(#[from] OutputError),
 }
 
-/// Writes a map in a form. The file appears under its name when all of it is there.
+/// Writes a map in a format. The file appears under its name when all of it is there.
 ///
 /// # Errors
 /// The layout cannot hold the map, or the file cannot be written.
-pub fn write_map(path: &Path, file: &MapFile, form: &Form) -> Result<(), WriteMapError> {
-    let bytes = encode(file, form)?;
+pub fn write_map(path: &Path, file: &MapFile, format: &MapFormat) -> Result<(), WriteMapError> {
+    let bytes = encode(file, format)?;
     let mut place = Place::prepare(path)?;
     place.write_all(&bytes)?;
     commit(vec![place])?;

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::base::key::{Fault, Key, Number, Triple};
 use crate::base::view::View;
+use crate::keys;
 
 /// Where the camera stands and how it looks.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,23 +33,15 @@ impl Default for Camera {
 impl Camera {
     /// The keys of `[camera]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
-        vec![
-            Key::new("eye", Triple(&mut self.eye, -1e9, 1e9), "position"),
-            Key::new(
-                "target",
-                Triple(&mut self.target, -1e9, 1e9),
-                "point in the middle of the image",
-            ),
-            Key::new(
-                "up",
-                Triple(&mut self.up, -1e9, 1e9),
-                "direction that is up in the image",
-            ),
-            Key::new(
-                "fov",
-                Number(&mut self.fov, 1.0, 170.0),
-                "vertical field of view, degrees",
-            ),
+        keys![
+            "eye" = Triple(&mut self.eye, -1e9, 1e9),
+                "position";
+            "target" = Triple(&mut self.target, -1e9, 1e9),
+                "point in the middle of the image";
+            "up" = Triple(&mut self.up, -1e9, 1e9),
+                "direction that is up in the image";
+            "fov" = Number(&mut self.fov, 1.0, 170.0),
+                "vertical field of view, degrees";
         ]
     }
 

@@ -2,17 +2,14 @@
 
 use glam::DVec3;
 
+use crate::keys;
+
 use crate::base::key::{AutoCount, Fault, Key, List, Number, Switch, Triple};
+use crate::scene::MOST_SHADOW_STEPS;
 
 /// Steps that are enough for the rays of shadows among fractals, but for those that pass
 /// close over long slopes.
 pub const SHADOW_STEPS: u32 = 96;
-/// Most over heightfields. With the rounds of the loops in them they stay under the 65 535
-/// after which Mesa's software Vulkan ends loops.
-pub const MOST_SHADOW_STEPS: u32 = 2048;
-/// Most where each step has the iterations of a formula in it.
-pub const MOST_SHADOW_STEPS_OF_FORMULAS: u32 = 512;
-
 /// Most colours in a palette.
 pub const MOST_STOPS: usize = 8;
 
@@ -89,97 +86,59 @@ impl Default for Look {
 impl Look {
     /// The keys of `[look]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
-        vec![
-            Key::new(
-                "light",
-                Triple(&mut self.light, -1e6, 1e6),
-                "direction to the light",
-            ),
-            Key::new(
-                "light_color",
-                Triple(&mut self.light_color, 0.0, 1.0),
-                "its colour, sRGB",
-            ),
-            Key::new("key", Number(&mut self.key, 0.0, 100.0), "its strength"),
-            Key::new(
-                "fill",
-                Number(&mut self.fill, 0.0, 100.0),
-                "strength of the sky's light",
-            ),
-            Key::new(
-                "shadow",
-                Switch(&mut self.shadow),
-                "whether the light casts shadows",
-            ),
-            Key::new(
-                "light_size",
-                Number(&mut self.light_size, 0.05, 45.0),
-                "angular radius of the light, degrees",
-            ),
-            Key::new(
-                "shadow_steps",
-                AutoCount(&mut self.shadow_steps, 1, MOST_SHADOW_STEPS),
-                "steps that a shadow ray may do; auto is 96, over a heightfield as many more as one can take, up to 2048; at most 512 for a formula",
-            ),
-            Key::new(
-                "occlusion",
-                Number(&mut self.occlusion, 0.0, 2.0),
-                "strength of ambient occlusion, 0 for none",
-            ),
-            Key::new(
-                "occlusion_reach",
-                Number(&mut self.occlusion_reach, 1e-4, 1.0),
-                "how far occlusion looks, as a share of the distance from eye to target",
-            ),
-            Key::new(
-                "fog",
-                Number(&mut self.fog, 0.0, 20.0),
-                "extinction over the distance from eye to target, 0 for none",
-            ),
-            Key::new(
-                "gloss",
-                Number(&mut self.gloss, 0.0, 10.0),
-                "specular share",
-            ),
-            Key::new(
-                "sky_high",
-                Triple(&mut self.sky_high, 0.0, 1.0),
-                "sky overhead, sRGB",
-            ),
-            Key::new(
-                "sky_low",
-                Triple(&mut self.sky_low, 0.0, 1.0),
-                "sky below, sRGB",
-            ),
-            Key::new(
-                "palette",
-                List(&mut self.palette, 1..=MOST_STOPS, 0.0, 1.0),
-                "colours that the orbit's traps are looked up in, sRGB",
-            ),
-            Key::new(
-                "palette_cycles",
-                Number(&mut self.palette_cycles, 0.01, 100.0),
-                "how often the palette is run through",
-            ),
-            Key::new(
-                "exposure",
-                Number(&mut self.exposure, -20.0, 20.0),
-                "brightness in stops",
-            ),
-            Key::new(
-                "flag_unconverged",
-                Switch(&mut self.flag_unconverged),
-                "paint pixels that reached a limit in magenta; true for heightfields",
-            ),
+        keys![
+            "light" = Triple(&mut self.light, -1e6, 1e6),
+                "direction to the light";
+            "light_color" = Triple(&mut self.light_color, 0.0, 1.0),
+                "its colour, sRGB";
+            "key" = Number(&mut self.key, 0.0, 100.0),
+                "its strength";
+            "fill" = Number(&mut self.fill, 0.0, 100.0),
+                "strength of the sky's light";
+            "shadow" = Switch(&mut self.shadow),
+                "whether the light casts shadows";
+            "light_size" = Number(&mut self.light_size, 0.05, 45.0),
+                "angular radius of the light, degrees";
+            "shadow_steps" = AutoCount(&mut self.shadow_steps, 1, MOST_SHADOW_STEPS),
+                "steps that a shadow ray may do; auto is 96, over a heightfield as many more as one can take, up to 2048; at most 512 for a formula";
+            "occlusion" = Number(&mut self.occlusion, 0.0, 2.0),
+                "strength of ambient occlusion, 0 for none";
+            "occlusion_reach" = Number(&mut self.occlusion_reach, 1e-4, 1.0),
+                "how far occlusion looks, as a share of the distance from eye to target";
+            "fog" = Number(&mut self.fog, 0.0, 20.0),
+                "extinction over the distance from eye to target, 0 for none";
+            "gloss" = Number(&mut self.gloss, 0.0, 10.0),
+                "specular share";
+            "sky_high" = Triple(&mut self.sky_high, 0.0, 1.0),
+                "sky overhead, sRGB";
+            "sky_low" = Triple(&mut self.sky_low, 0.0, 1.0),
+                "sky below, sRGB";
+            "palette" = List(&mut self.palette, 1..=MOST_STOPS, 0.0, 1.0),
+                "colours that the orbit's traps are looked up in, sRGB";
+            "palette_cycles" = Number(&mut self.palette_cycles, 0.01, 100.0),
+                "how often the palette is run through";
+            "exposure" = Number(&mut self.exposure, -20.0, 20.0),
+                "brightness in stops";
+            "flag_unconverged" = Switch(&mut self.flag_unconverged),
+                "paint pixels that reached a limit in magenta; true for heightfields";
         ]
     }
 
-    /// Whether the light has a direction.
-    pub fn check(&self) -> Result<(), Fault> {
+    /// Checks that the light has a direction, and shadows no more steps than the scene
+    /// allows.
+    pub fn check(&self, most_shadow_steps: u32) -> Result<(), Fault> {
+        if self.shadow_steps.is_some_and(|n| n > most_shadow_steps) {
+            return Err(Fault::new(
+                "look.shadow_steps",
+                format!(
+                    "a shadow ray in this scene may take at most {most_shadow_steps} steps; use \"auto\""
+                ),
+            ));
+        }
         if self.light.length() < 1e-9 {
             return Err(Fault::new(
                 "look.light",
-                "the direction to the light must not be zero; [1, -1, 2] would do",
+                "the direction to the light must not be zero; try [1, -1, 2]",
             ));
         }
         Ok(())

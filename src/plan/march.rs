@@ -2,6 +2,7 @@
 
 use crate::base::cone::ConeRule;
 use crate::base::key::{AutoCount, AutoNumber, Count, Fault, Key, List, Number, Slot, Word};
+use crate::keys;
 use crate::plan::pyramid::Pyramid;
 use crate::scene::distance::{Relaxation, Stepping};
 use toml::Value;
@@ -112,18 +113,17 @@ impl Slot for RelaxationSlot<'_> {
             Relaxation::Factor(f) => Value::Float(*f),
         }
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
+    fn put(&mut self, value: &Value) -> Option<()> {
         *self.0 = match value.as_str() {
             Some("off") => Relaxation::Off,
             Some("auto") => Relaxation::Auto,
             _ => {
                 let mut f = 0.0;
-                let read = Number(&mut f, 1.0, 1.99).set(value);
-                read.map_err(|_| self.expects())?;
+                Number(&mut f, 1.0, 1.99).put(value)?;
                 Relaxation::Factor(f)
             }
         };
-        Ok(())
+        Some(())
     }
     fn expects(&self) -> String {
         "\"off\", \"auto\" or a factor from 1 to 1.99".into()
@@ -137,15 +137,11 @@ impl Slot for Divisor<'_> {
     fn get(&self) -> Value {
         Value::Integer(i64::from(*self.0))
     }
-    fn set(&mut self, value: &Value) -> Result<(), String> {
+    fn put(&mut self, value: &Value) -> Option<()> {
         let mut n = 0;
-        let read = Count(&mut n, 1, 64).set(value);
-        read.map_err(|_| self.expects())?;
-        if !n.is_power_of_two() {
-            return Err(self.expects());
-        }
-        *self.0 = n;
-        Ok(())
+        Count(&mut n, 1, 64).put(value)?;
+        *self.0 = Some(n).filter(|n| n.is_power_of_two())?;
+        Some(())
     }
     fn expects(&self) -> String {
         "a power of two: 1 (no cones), 2, 4, 8, 16, 32 or 64".into()
@@ -155,51 +151,25 @@ impl Slot for Divisor<'_> {
 impl Marching {
     /// The keys of `[march]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
-        vec![
-            Key::new("mode", Word(&mut self.mode, MODES), "how the work is spent"),
-            Key::new(
-                "coarsest",
-                Divisor(&mut self.coarsest),
-                "divisor of the first cone pass",
-            ),
-            Key::new(
-                "detail",
-                Number(&mut self.detail, 1e-3, 1e3),
-                "hit where the estimate is below this many footprints",
-            ),
-            Key::new(
-                "shell",
-                Number(&mut self.shell, 0.0, 0.99),
-                "share of that threshold that steps keep clear of: time against error",
-            ),
-            Key::new(
-                "relaxation",
-                RelaxationSlot(&mut self.relaxation),
-                "how rays stretch their steps",
-            ),
-            Key::new(
-                "fudge",
-                List(&mut self.fudge, 1..=6, 0.01, 1.0),
-                "factors on the cones' width in mode calibrated, coarse to fine, the last repeated",
-            ),
-            Key::new(
-                "steps",
-                AutoCount(&mut self.steps, 1, 1_000_000),
-                "steps per level and of a ray; auto is 256, and for rays over a heightfield as many as they can take",
-            ),
-            Key::new(
-                "stride",
-                AutoNumber(&mut self.stride, 1e-3, 1.0),
-                "factor on ray steps; auto is 1, and 0.1 for the truth",
-            ),
-            Key::new(
-                "clip",
-                Word(
-                    &mut self.clip,
-                    &[("auto", None), ("on", Some(true)), ("off", Some(false))],
-                ),
-                "start rays where they enter the bounds; auto: on after cones",
-            ),
+        keys![
+            "mode" = Word(&mut self.mode, MODES),
+                "how the work is spent";
+            "coarsest" = Divisor(&mut self.coarsest),
+                "divisor of the first cone pass";
+            "detail" = Number(&mut self.detail, 1e-3, 1e3),
+                "hit where the estimate is below this many footprints";
+            "shell" = Number(&mut self.shell, 0.0, 0.99),
+                "share of that threshold that steps keep clear of: time against error";
+            "relaxation" = RelaxationSlot(&mut self.relaxation),
+                "how rays stretch their steps";
+            "fudge" = List(&mut self.fudge, 1..=6, 0.01, 1.0),
+                "factors on the cones' width in mode calibrated, coarse to fine, the last repeated";
+            "steps" = AutoCount(&mut self.steps, 1, 1_000_000),
+                "steps per level and of a ray; auto is 256, and for rays over a heightfield as many as they can take";
+            "stride" = AutoNumber(&mut self.stride, 1e-3, 1.0),
+                "factor on ray steps; auto is 1, and 0.1 for the truth";
+            "clip" = Word(&mut self.clip, &[("auto", None), ("on", Some(true)), ("off", Some(false))]),
+                "start rays where they enter the bounds; auto: on after cones";
         ]
     }
 

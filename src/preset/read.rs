@@ -6,16 +6,17 @@ use toml::Value;
 
 use crate::base::key::{Fault, Key, Slot, Text};
 use crate::formula::Formula;
-use crate::plan::{Plan, Subject};
+use crate::plan::Plan;
 use crate::preset::document::{
     Entry, Override, SECTIONS, Said, brief, line_of, parse, unknown_section,
 };
 use crate::preset::error::{PresetError, place};
 use crate::preset::nearest::nearest;
+use crate::scene::Scene;
 
 /// Words for `scene.kind`.
 fn kinds() -> Vec<&'static str> {
-    let mut kinds: Vec<&str> = Subject::all().iter().map(|s| s.words().0).collect();
+    let mut kinds: Vec<&str> = Scene::all().iter().map(|s| s.kind()).collect();
     // One distance scene for each formula.
     kinds.dedup();
     kinds
@@ -45,19 +46,37 @@ pub fn read(text: &str, origin: &str) -> Result<Plan, PresetError> {
 /// # Errors
 /// As [`read`]; faults that only the overrides bring are theirs.
 pub fn read_with(text: &str, origin: &str, overrides: &[Override]) -> Result<Plan, PresetError> {
-    read_in(Path::new(""), text, origin, overrides)
+    Ok(read_in(Path::new(""), text, origin, overrides)?.plan)
+}
+
+/// A plan, and where each of its values was said.
+#[derive(Clone, Debug)]
+pub(super) struct Reading {
+    pub plan: Plan,
+    text: String,
+    origin: String,
+    entries: Vec<Entry>,
+}
+
+impl Reading {
+    /// A fault of the plan, at the place where its key was said.
+    pub fn blame(&self, fault: Fault) -> PresetError {
+        let reader = Reader {
+            text: &self.text,
+            origin: &self.origin,
+            folder: Path::new(""),
+        };
+        reader.fault(&mut self.plan.clone(), &self.entries, fault)
+    }
 }
 
 /// As [`read_with`]; files that the preset names are relative to a folder.
-///
-/// # Errors
-/// As [`read_with`].
-pub fn read_in(
+pub(super) fn read_in(
     folder: &Path,
     text: &str,
     origin: &str,
     overrides: &[Override],
-) -> Result<Plan, PresetError> {
+) -> Result<Reading, PresetError> {
     let reader = Reader {
         text,
         origin,
@@ -65,15 +84,21 @@ pub fn read_in(
     };
     let mut entries = parse(text, origin)?;
     let alone = reader.plan(&entries)?;
+    let reading = |plan, entries| Reading {
+        plan,
+        text: text.into(),
+        origin: origin.into(),
+        entries,
+    };
     if overrides.is_empty() {
-        return Ok(alone);
+        return Ok(reading(alone, entries));
     }
     let sets = overrides.iter().map(|o| o.entry.clone());
     let changed: Vec<Entry> = sets
         .clone()
         .filter(|e| e.section == "scene" && matches!(e.key.as_str(), "kind" | "formula"))
         .filter(|e| {
-            let (kind, formula) = alone.subject.words();
+            let (kind, formula) = (alone.scene.kind(), alone.scene.formula());
             let now = if e.key == "kind" { Some(kind) } else { formula };
             e.value.as_str() != now
         })
@@ -89,7 +114,7 @@ pub fn read_in(
         entries.retain(|e| e.section != "scene" || keeps(e));
     }
     entries.extend(sets);
-    reader.plan(&entries)
+    Ok(reading(reader.plan(&entries)?, entries))
 }
 
 /// Turns entries into a Plan, and knows how to call their places.
@@ -106,7 +131,7 @@ impl Reader<'_> {
                 return Err(self.at(entry, unknown_section(&entry.section)));
             }
         }
-        let mut plan = Plan::new(self.subject(entries)?);
+        let mut plan = Plan::new(self.scene(entries)?);
         for entry in entries {
             self.put(&mut plan, entry)?;
         }
@@ -115,8 +140,8 @@ impl Reader<'_> {
         Ok(plan)
     }
 
-    /// The subject that `scene.kind` and `scene.formula` choose.
-    fn subject(&self, entries: &[Entry]) -> Result<Subject, PresetError> {
+    /// The scene that `scene.kind` and `scene.formula` choose.
+    fn scene(&self, entries: &[Entry]) -> Result<Scene, PresetError> {
         let Some(kind) = last(entries, "kind") else {
             return Err(self.missing("scene.kind is missing; kind = \"distance\" with a formula would do, or kind = \"heightfield\""));
         };
@@ -128,15 +153,11 @@ impl Reader<'_> {
                 let why = format!("scene.formula is missing; it is one of {}", quoted(&names));
                 return Err(self.missing(&why));
             };
-            let shape = self.formula(formula)?;
-            return Ok(Subject::Distance {
-                shape,
-                iterations: None,
-            });
+            return Ok(self.formula(formula)?.into());
         }
-        let mut found = Subject::all().into_iter().find(|s| s.words().0 == word);
-        if let Some(Subject::Heightfield(shape)) = &mut found {
-            shape.source.folder = self.folder.to_path_buf();
+        let mut found = Scene::all().into_iter().find(|s| s.kind() == word);
+        if let Some(scene) = &mut found {
+            scene.set_folder(self.folder);
         }
         found.ok_or_else(|| self.value(kind, "there is no such kind of scene"))
     }
@@ -167,10 +188,10 @@ impl Reader<'_> {
             let set = Text(&mut plan.title).set(&entry.value);
             return set.map_err(|why| self.value(entry, &format!("must be {why}")));
         }
-        let (kind, formula) = plan.subject.words();
+        let (kind, formula) = (plan.scene.kind(), plan.scene.formula());
         if entry.section == "scene" {
             match (entry.key.as_str(), formula) {
-                // The last of each has chosen the subject; the others are checked, too.
+                // The last of each has chosen the scene; the others are checked, too.
                 ("kind", _) => return self.word(entry, &kinds()).map(|_| ()),
                 ("formula", Some(_)) => return self.formula(entry).map(|_| ()),
                 ("formula", None) => {

@@ -4,8 +4,9 @@
 use std::fmt::Write as _;
 
 use crate::base::key::{Key, Text};
-use crate::plan::{Plan, Subject};
+use crate::plan::Plan;
 use crate::preset::document::SECTIONS;
+use crate::scene::Scene;
 
 /// What stands above the tables.
 const HEAD: &str = "# Presets
@@ -34,12 +35,12 @@ pub fn reference() -> String {
     let top = vec![Key::new("title", Text(&mut title), "a line for people")];
     table(&mut text, "Above all sections", top);
     for section in SECTIONS {
-        for subject in Subject::all() {
-            let (kind, formula) = subject.words();
-            let mut plan = Plan::new(subject);
+        for scene in Scene::all() {
+            let (kind, formula) = (scene.kind(), scene.formula());
+            let mut plan = Plan::new(scene);
             let keys = plan.keys(section).unwrap_or_default();
             if section != "scene" {
-                // The same for every subject.
+                // The same for every scene.
                 table(&mut text, &format!("`[{section}]`"), keys);
                 break;
             }
@@ -87,8 +88,8 @@ mod tests {
     #[test]
     fn every_key_is_there_with_its_help_and_no_help_is_empty() {
         let text = reference();
-        for subject in Subject::all() {
-            let mut plan = Plan::new(subject);
+        for scene in Scene::all() {
+            let mut plan = Plan::new(scene);
             for section in SECTIONS {
                 for key in plan.keys(section).expect("a section") {
                     assert!(!key.help.is_empty(), "{section}.{}", key.name);
@@ -101,13 +102,13 @@ mod tests {
 
     #[test]
     fn the_limit_of_automatic_iterations_is_told() {
-        let mut subjects = Subject::all();
-        let keys = subjects[0].keys();
+        let mut scenes = Scene::all();
+        let keys = scenes[0].keys();
         let key = keys
             .iter()
             .find(|k| k.name == "iterations")
             .expect("a formula's key");
-        let most = crate::plan::MOST_ITERATIONS.to_string();
+        let most = crate::scene::distance::MOST_ITERATIONS.to_string();
         assert!(key.help.ends_with(&format!("up to {most}")), "{}", key.help);
     }
 }

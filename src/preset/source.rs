@@ -10,7 +10,8 @@ use crate::preset::builtin::{BUILTIN, builtin};
 use crate::preset::document::{Override, brief};
 use crate::preset::error::PresetError;
 use crate::preset::nearest::nearest;
-use crate::preset::read::{read_in, read_with};
+use crate::preset::read::{Reading, read_in};
+use crate::scene::Assets;
 
 /// Largest preset that is read: far more than any preset needs, and little enough to
 /// refuse a wrong file at once.
@@ -29,6 +30,27 @@ pub struct Preset {
     pub name: String,
     /// The plan.
     pub plan: Plan,
+    reading: Reading,
+}
+
+impl Preset {
+    fn of(name: String, reading: Reading) -> Self {
+        Self {
+            name,
+            plan: reading.plan.clone(),
+            reading,
+        }
+    }
+
+    /// Reads the files that the preset names, and keeps them in the assets.
+    ///
+    /// # Errors
+    /// A file cannot be read, holds something else or does not fit. The error names the line
+    /// of the preset, or the override.
+    pub fn load_assets(&self, assets: &Assets) -> Result<(), PresetError> {
+        let loaded = self.reading.plan.scene.load(assets);
+        loaded.map_err(|fault| self.reading.blame(fault))
+    }
 }
 
 /// The file that an argument of [`load`] names; none for a built-in preset.
@@ -44,10 +66,8 @@ pub fn file(argument: &str) -> Option<PathBuf> {
 pub fn load(argument: &str, overrides: &[Override]) -> Result<Preset, PresetError> {
     if let Some(text) = builtin(argument) {
         let origin = format!("built-in preset {argument}");
-        return Ok(Preset {
-            name: argument.into(),
-            plan: read_with(text, &origin, overrides)?,
-        });
+        let reading = read_in(Path::new(""), text, &origin, overrides)?;
+        return Ok(Preset::of(argument.into(), reading));
     }
     let path = Path::new(argument);
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
@@ -62,10 +82,8 @@ pub fn load(argument: &str, overrides: &[Override]) -> Result<Preset, PresetErro
     }
     let text = file_text(path)?;
     let name = path.file_stem().map(|s| s.to_string_lossy().into_owned());
-    Ok(Preset {
-        name: name.unwrap_or_else(|| "preset".into()),
-        plan: read_in(path.parent().unwrap_or(path), &text, argument, overrides)?,
-    })
+    let reading = read_in(path.parent().unwrap_or(path), &text, argument, overrides)?;
+    Ok(Preset::of(name.unwrap_or_else(|| "preset".into()), reading))
 }
 
 /// Built-in presets that may have been meant: the nearest, or those that begin alike.

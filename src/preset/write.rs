@@ -12,7 +12,7 @@ pub fn write(plan: &Plan) -> String {
     let mut plan = plan.clone();
     let mut text = String::new();
     line(&mut text, "title", &Value::String(plan.title.clone()));
-    let (kind, formula) = plan.subject.words();
+    let (kind, formula) = (plan.scene.kind(), plan.scene.formula());
     for section in SECTIONS {
         // Writing to a string cannot fail, here and below.
         let _ = writeln!(text, "\n[{section}]");

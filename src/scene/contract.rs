@@ -4,20 +4,8 @@ use glam::DVec3;
 
 use crate::base::shader::Module;
 use crate::base::view::Beam;
+pub use crate::base::work::Step;
 use crate::base::work::Work;
-
-/// What one step of a walk came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// Go on.
-    Moving,
-    /// The surface is met.
-    Hit,
-    /// Past the end: nothing there.
-    Out,
-    /// The scene's own limit is reached: not converged.
-    Spent,
-}
 
 /// What one step of a cone came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,4 +90,8 @@ pub trait Twin {
     fn describe(&self) -> String;
     /// Rounds of inner loops that one step may take: what a step costs at most.
     fn rounds(&self) -> u32;
+    /// Whether its hits carry an id and a place beside their distance.
+    fn marks_hits(&self) -> bool {
+        true
+    }
 }

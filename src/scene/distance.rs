@@ -12,11 +12,15 @@ use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3};
 
 use crate::base::cone::ConeRule;
+use crate::base::key::{AutoCount, Fault, Key};
 use crate::base::shader::Module;
 use crate::base::view::{Beam, footprint};
 use crate::base::work::Work;
 use crate::formula::{Bounds, Formula};
+use crate::heightfield::tracer::settings::PrepareError;
+use crate::keys;
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
+use crate::scene::{AnySolid, Assets, Scene, SceneSettings, Viewpoint};
 use crate::wgsl;
 
 /// A cone that gains less than this share of its ball leaves the rest to its four
@@ -95,8 +99,8 @@ impl Relaxation {
 /// A formula as it is marched: everything resolved to numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distance {
-    /// The shape.
-    pub shape: Formula,
+    /// The formula.
+    pub formula: Formula,
     /// Iteration limit.
     pub iterations: u32,
     /// Camera position.
@@ -118,7 +122,116 @@ pub struct Distance {
     far: f64,
 }
 
-/// Numbers that a [`Distance`] is made from, beside its shape.
+/// The settings of a distance scene: a formula and its iteration limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DistanceSettings {
+    /// The formula and its parameters.
+    pub formula: Formula,
+    /// Iteration limit; `None` follows the finest footprint.
+    pub iterations: Option<u32>,
+}
+
+/// Most iterations that a formula may run. `auto` stops following the footprint there.
+pub const MOST_ITERATIONS: u32 = 1000;
+/// Most steps of a shadow ray: each has the iterations of a formula in it, and Mesa's software
+/// Vulkan ends loops after 65 535 rounds.
+const DISTANCE_MOST_SHADOW_STEPS: u32 = 512;
+
+impl DistanceSettings {
+    /// Every formula with its defaults.
+    pub fn all() -> Vec<Self> {
+        Formula::all().into_iter().map(Self::from).collect()
+    }
+
+    /// The iteration limit: the given one, or the one that the finest footprint needs.
+    fn limit(&self, from: &Viewpoint) -> u32 {
+        // A quarter of the hit threshold: the skin of an unconverged estimate must not
+        // move the surface by what a comparison could see.
+        let eps = 0.25 * from.stepping.detail * self.finest_footprint(from);
+        let auto = || self.formula.iterations(eps).min(MOST_ITERATIONS);
+        self.iterations.unwrap_or_else(auto)
+    }
+
+    /// The smallest footprint that any hit can have: that of the nearest point that
+    /// could be hit, seen through the corner of the image.
+    fn finest_footprint(&self, from: &Viewpoint) -> f64 {
+        let bounds = self.formula.bounds();
+        let (raw, _) = self.formula.estimate(from.eye, MOST_ITERATIONS);
+        let clear = bounds
+            .distance(from.eye)
+            .max(raw / self.formula.lipschitz());
+        // A camera on the surface would ask for infinitely fine work.
+        let least = 1e-7 * bounds.farthest(from.eye);
+        from.grain * clear.max(least)
+    }
+}
+
+impl From<Formula> for DistanceSettings {
+    fn from(formula: Formula) -> Self {
+        Self {
+            formula,
+            iterations: None,
+        }
+    }
+}
+
+impl From<Formula> for Scene {
+    fn from(formula: Formula) -> Self {
+        DistanceSettings::from(formula).into()
+    }
+}
+
+impl SceneSettings for DistanceSettings {
+    fn kind(&self) -> &'static str {
+        "distance"
+    }
+
+    fn formula(&self) -> Option<&'static str> {
+        Some(self.formula.name())
+    }
+
+    fn keys(&mut self) -> Vec<Key<'_>> {
+        let mut keys = self.formula.keys();
+        keys.extend(keys![
+            "iterations" = AutoCount(&mut self.iterations, 1, MOST_ITERATIONS),
+                "iteration limit; auto follows the finest footprint, up to 1000";
+        ]);
+        keys
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        self.formula.check()
+    }
+
+    fn solid(&self, from: &Viewpoint, _: &Assets) -> Result<AnySolid, PrepareError> {
+        let formula = self.formula.clone();
+        let solid = Distance::new(formula, self.limit(from), from.eye, from.stepping);
+        Ok(AnySolid::Distance(solid))
+    }
+
+    fn lipschitz(&self) -> f64 {
+        self.formula.lipschitz()
+    }
+
+    fn most_shadow_steps(&self) -> u32 {
+        DISTANCE_MOST_SHADOW_STEPS
+    }
+
+    /// The estimate's noise in f32 is about 2e-8 of the size of the coordinates
+    /// (docs/method.md, 6), and those of an orbit are of the size of the bounds
+    /// wherever it starts; a footprint under a hundred times that is damaged.
+    fn precision_warning(&self, from: &Viewpoint) -> Option<String> {
+        let finest = self.finest_footprint(from);
+        let floor = 2e-6 * self.formula.bounds().half.max_element();
+        (finest < 0.99 * floor).then(|| {
+            format!(
+                "the finest footprint, {finest:.1e}, is under the f32 floor of about {floor:.0e}: details that near are noise. Move the camera away, or render with --device cpu"
+            )
+        })
+    }
+}
+
+/// Numbers that a [`Distance`] is made from, beside its formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stepping {
     /// See [`Distance::detail`].
@@ -136,9 +249,9 @@ pub struct Stepping {
 }
 
 impl Distance {
-    /// A shape seen from an eye.
-    pub fn new(shape: Formula, iterations: u32, eye: DVec3, stepping: Stepping) -> Self {
-        let bounds = shape.bounds();
+    /// A formula seen from an eye.
+    pub fn new(formula: Formula, iterations: u32, eye: DVec3, stepping: Stepping) -> Self {
+        let bounds = formula.bounds();
         Self {
             iterations,
             eye,
@@ -149,14 +262,14 @@ impl Distance {
             rule: stepping.rule,
             clip: stepping.clip,
             bounds,
-            lipschitz: shape.lipschitz(),
+            lipschitz: formula.lipschitz(),
             far: bounds.farthest(eye),
-            shape,
+            formula,
         }
     }
 
     fn estimate_at(&self, q: DVec3, work: &mut Work) -> f64 {
-        let (d, n) = self.shape.estimate(self.eye + q, self.iterations);
+        let (d, n) = self.formula.estimate(self.eye + q, self.iterations);
         work.evaluations += 1;
         work.iterations += n;
         d
@@ -209,6 +322,10 @@ impl Distance {
 }
 
 impl Twin for Distance {
+    fn marks_hits(&self) -> bool {
+        false
+    }
+
     fn modules(&self) -> Vec<Module> {
         let mut all = vec![
             wgsl!("base/real.wgsl"),
@@ -222,7 +339,7 @@ impl Twin for Distance {
                 "HIT_CARRIES_MARK" = 0.0
             ),
         ];
-        all.extend(self.shape.modules());
+        all.extend(self.formula.modules());
         all
     }
 
@@ -246,12 +363,12 @@ impl Twin for Distance {
             pad1: 0,
         };
         let mut all = vec![("distance_parameters", bytes_of(&scene).to_vec())];
-        all.extend(self.shape.uniforms(self.iterations));
+        all.extend(self.formula.uniforms(self.iterations));
         all
     }
 
     fn describe(&self) -> String {
-        let (name, n) = (self.shape.name(), self.iterations);
+        let (name, n) = (self.formula.name(), self.iterations);
         format!("{name}: {n} iterations, lipschitz {}", self.lipschitz)
     }
 
@@ -376,7 +493,7 @@ impl Solid for Distance {
             } else {
                 -ray.axis
             },
-            pigment: self.shape.trap(self.eye + q, self.iterations),
+            pigment: self.formula.trap(self.eye + q, self.iterations),
         }
     }
 

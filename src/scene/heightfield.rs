@@ -11,19 +11,24 @@ use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::base::cone::ConeRule;
+use crate::base::key::{Fault, Key};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
+use crate::heightfield::assets::{Assets, Preparation, Ready};
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::paint::Colors;
 use crate::heightfield::placement::Placement;
 use crate::heightfield::region_max::{self, region_max};
-use crate::heightfield::settings::Ready;
-use crate::heightfield::tracer::course::{FAR, FLAT};
-use crate::heightfield::tracer::{self, AnyTracer, LocalRay, Trace, TraceHit, Tracer};
+use crate::heightfield::settings::HeightfieldSettings;
+use crate::heightfield::tracer::grid::{FAR, FLAT};
+use crate::heightfield::tracer::settings::{Make, PrepareError};
+use crate::heightfield::tracer::{self, LocalRay, Trace, TraceHit, Tracer};
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
+use crate::scene::{AnySolid, MOST_SHADOW_STEPS, Scene, SceneSettings, Viewpoint};
 use crate::wgsl;
+use std::path::{Path, PathBuf};
 
 /// Halvings of the longest sweep, and doublings of the least ball: enough to come from
 /// a map of 8192 texels down to a quarter of one.
@@ -62,11 +67,87 @@ pub struct HeightfieldUniform {
     pub pad1: f32,
 }
 
+impl SceneSettings for HeightfieldSettings {
+    fn kind(&self) -> &'static str {
+        "heightfield"
+    }
+
+    fn keys(&mut self) -> Vec<Key<'_>> {
+        Self::keys(self)
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        Self::check(self)
+    }
+
+    fn solid(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
+        let ready = assets.ready(self, from.grain)?;
+        let solid = Heightfield::new(ready, from.eye, from.stepping.rule);
+        Ok(AnySolid::Heightfield(solid))
+    }
+
+    fn outline(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
+        let ready = assets.outline(self, from.grain)?;
+        let solid = Heightfield::new(ready, from.eye, from.stepping.rule);
+        Ok(AnySolid::Heightfield(solid))
+    }
+
+    fn most_shadow_steps(&self) -> u32 {
+        MOST_SHADOW_STEPS
+    }
+
+    /// The papers' tracers run out of their own steps; a fractal's pixels that run out are
+    /// next to what they would have met.
+    fn flags_unconverged(&self) -> bool {
+        true
+    }
+
+    fn exact(&self) -> Option<Scene> {
+        Some(Self::exact(self).into())
+    }
+
+    fn colorless(&self) -> Option<Scene> {
+        Some(Self::colorless(self).into())
+    }
+
+    fn set_folder(&mut self, folder: &Path) {
+        self.source.folder = folder.to_path_buf();
+    }
+
+    fn files(&self) -> Vec<(&'static str, PathBuf)> {
+        Self::files(self)
+    }
+
+    fn load(&self, assets: &Assets) -> Result<(), Fault> {
+        assets.load(self)
+    }
+
+    fn prepare(&self, assets: &Assets, make: Make<'_>) -> Result<(), PrepareError> {
+        assets.prepare(self, make)
+    }
+
+    fn preparations(&self, assets: &Assets) -> Vec<Preparation> {
+        assets.preparations(self)
+    }
+
+    fn notes(&self, assets: &Assets) -> Vec<String> {
+        assets.notes(self)
+    }
+
+    fn contents(&self, assets: &Assets) -> Vec<u8> {
+        assets.contents(self)
+    }
+
+    fn most_steps(&self, assets: &Assets) -> Option<u32> {
+        assets.most_steps(self)
+    }
+}
+
 /// A relief seen from an eye.
 #[derive(Clone, Debug)]
 pub struct Heightfield {
     relief: Arc<HeightSurface>,
-    tracer: AnyTracer,
+    tracer: Arc<dyn Tracer>,
     colors: Colors,
     name: &'static str,
     placed: Placement,
@@ -79,10 +160,10 @@ impl Heightfield {
     /// A heightfield seen from an eye.
     pub fn new(ready: Ready, eye: DVec3, rule: ConeRule) -> Self {
         let Ready {
-            relief,
+            surface: relief,
             tracer,
             colors,
-            placed,
+            placement: placed,
             name,
         } = ready;
         Self {
@@ -261,18 +342,13 @@ impl Solid for Heightfield {
         }
     }
 
-    fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Trace {
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Work) -> Trace {
         // The tracer ends it with the block.
-        self.tracer.begin(&self.local(ray), front, t_max, work)
+        self.tracer.begin(&self.local(ray), front, t_max)
     }
 
     fn walk_step(&self, ray: &Beam, walk: &mut Trace, work: &mut Work) -> Step {
-        match self.tracer.step(&self.local(ray), walk, work) {
-            tracer::Step::Moving => Step::Moving,
-            tracer::Step::Hit => Step::Hit,
-            tracer::Step::Out => Step::Out,
-            tracer::Step::Spent => Step::Spent,
-        }
+        self.tracer.step(&self.local(ray), walk, work)
     }
 
     fn walk_hit(&self, walk: &Trace) -> Hit {

@@ -10,7 +10,10 @@ use crate::base::key::{Fault, Key, Number, Triple};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
+use crate::heightfield::tracer::settings::PrepareError;
+use crate::keys;
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
+use crate::scene::{AnySolid, Assets, MOST_SHADOW_STEPS, SceneSettings, Viewpoint};
 use crate::wgsl;
 
 /// The slab as WGSL reads it.
@@ -35,7 +38,7 @@ pub struct SlabUniform {
     pub pad: f32,
 }
 
-/// Formula of a slab, centred on the origin.
+/// The settings of a slab, centred on the origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlabSettings {
     /// Direction of the planes' normal.
@@ -56,37 +59,40 @@ impl Default for SlabSettings {
     }
 }
 
-impl SlabSettings {
-    /// The keys that a slab reads in `[scene]`.
-    pub fn keys(&mut self) -> Vec<Key<'_>> {
-        vec![
-            Key::new(
-                "normal",
-                Triple(&mut self.normal, -1e6, 1e6),
-                "direction of the planes' normal",
-            ),
-            Key::new(
-                "half",
-                Number(&mut self.half, 1e-6, 1e6),
-                "half the thickness",
-            ),
-            Key::new(
-                "radius",
-                Number(&mut self.radius, 1e-6, 1e6),
-                "radius of the disc",
-            ),
+impl SceneSettings for SlabSettings {
+    fn kind(&self) -> &'static str {
+        "slab"
+    }
+
+    fn keys(&mut self) -> Vec<Key<'_>> {
+        keys![
+            "normal" = Triple(&mut self.normal, -1e6, 1e6), "direction of the planes' normal";
+            "half" = Number(&mut self.half, 1e-6, 1e6), "half the thickness";
+            "radius" = Number(&mut self.radius, 1e-6, 1e6), "radius of the disc";
         ]
     }
 
-    /// Whether the normal is a direction.
-    pub fn check(&self) -> Result<(), Fault> {
+    /// Checks that the normal is a direction.
+    fn check(&self) -> Result<(), Fault> {
         if self.normal.length() < 1e-9 {
             return Err(Fault::new(
                 "scene.normal",
-                "the normal must not be zero; [0, 0, 1] would do",
+                "the normal must not be zero; try [0, 0, 1]",
             ));
         }
         Ok(())
+    }
+
+    fn solid(&self, from: &Viewpoint, _: &Assets) -> Result<AnySolid, PrepareError> {
+        Ok(AnySolid::Slab(Slab::new(
+            self,
+            from.eye,
+            from.stepping.rule,
+        )))
+    }
+
+    fn most_shadow_steps(&self) -> u32 {
+        MOST_SHADOW_STEPS
     }
 }
 
@@ -104,7 +110,7 @@ pub struct Slab {
 }
 
 impl Slab {
-    /// A slab that passes [`SlabSettings::check`], seen from an eye.
+    /// A slab that passes [`SceneSettings::check`], seen from an eye.
     pub fn new(shape: &SlabSettings, eye: DVec3, rule: ConeRule) -> Self {
         let normal = shape.normal.normalize();
         let side = normal.any_orthonormal_vector();

@@ -1,4 +1,4 @@
-//! The adapter that tests render on: whatever `auto` takes, software Vulkan included.
+//! Renders plans, on the adapter that `auto` takes, software Vulkan included, and on the CPU.
 //!
 //! A test that needs an adapter and finds none fails with one sentence; it is never
 //! skipped.
@@ -9,14 +9,50 @@
 
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{LazyLock, Mutex};
+use std::time::{Duration, Instant};
 
+use conemarch::base::work::State;
 use conemarch::gpu::device::{Adapters, Choice, Device, STORAGE_BUFFERS};
 use conemarch::gpu::render::{Cutting, Renderer};
+use conemarch::pass::progress::Progress;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Assets;
+
+/// The states of pixels and cells, as frames hold them.
+pub const SKY: u8 = State::Sky as u8;
+/// See [`SKY`].
+pub const HIT: u8 = State::Hit as u8;
+/// See [`SKY`].
+pub const UNCONVERGED: u8 = State::Unconverged as u8;
+
+/// Every layer that there is.
+pub const EVERYTHING: Extras = Extras {
+    count: true,
+    normals: true,
+    levels: true,
+    depth_only: false,
+    time: false,
+};
+/// Fronts and states of every level, and no colour.
+pub const LEVELS: Extras = Extras {
+    count: false,
+    normals: false,
+    depth_only: true,
+    ..EVERYTHING
+};
+/// The same, with counts.
+pub const COUNTED: Extras = Extras {
+    count: true,
+    ..LEVELS
+};
+
+/// A render that takes longer than this hangs. The longest here takes some seconds on two
+/// slow cores.
+const PATIENCE: Duration = Duration::from_secs(120);
 
 /// What to do where there is no adapter.
-const NO_ADAPTER: &str = "this test needs a GPU adapter and finds none that opens; any will do, and `apt-get install mesa-vulkan-drivers` installs a software one";
+pub const NO_ADAPTER: &str = "this test needs a GPU adapter and finds none that opens; any will do, and `apt-get install mesa-vulkan-drivers` installs a software one";
 
 /// A fresh renderer, or the sentence.
 fn try_open() -> Result<Renderer, String> {
@@ -34,7 +70,7 @@ pub fn open() -> Renderer {
 
 type Task = Box<dyn FnOnce(&mut Renderer) + Send>;
 
-/// A thread that keeps one renderer for a whole test file, so that kernels are compiled
+/// A thread that keeps one renderer for a whole test crate, so that kernels are compiled
 /// once: a renderer stays on its thread, and every test runs on one of its own.
 static THREAD: LazyLock<Result<Mutex<Sender<Task>>, String>> = LazyLock::new(|| {
     let (send, tasks) = channel::<Task>();
@@ -52,7 +88,7 @@ static THREAD: LazyLock<Result<Mutex<Sender<Task>>, String>> = LazyLock::new(|| 
     opened.map(|()| Mutex::new(send))
 });
 
-/// Runs something on the file's renderer.
+/// Runs something on the crate's renderer.
 pub fn with<T: Send + 'static>(f: impl FnOnce(&mut Renderer) -> T + Send + 'static) -> T {
     let thread = THREAD.as_ref();
     let thread = thread.unwrap_or_else(|why| panic!("{NO_ADAPTER} ({why})"));
@@ -65,6 +101,12 @@ pub fn with<T: Send + 'static>(f: impl FnOnce(&mut Renderer) -> T + Send + 'stat
     result.recv().expect("the renderer's thread has panicked")
 }
 
+/// A watch that cancels what hangs.
+fn patient() -> impl FnMut(&Progress) -> bool {
+    let start = Instant::now();
+    move |_| start.elapsed() < PATIENCE
+}
+
 /// Renders a plan that must render.
 pub fn render(plan: &Plan, extras: Extras) -> Frame {
     render_cut(plan, extras, Cutting::default())
@@ -72,11 +114,22 @@ pub fn render(plan: &Plan, extras: Extras) -> Frame {
 
 /// Renders a plan that must render, the work cut in a way of its own.
 pub fn render_cut(plan: &Plan, extras: Extras, cutting: Cutting) -> Frame {
-    let plan = plan.clone();
+    let asked = plan.clone();
     plan.check().expect("a plan that can be rendered");
     let frame = with(move |renderer| {
         renderer.cutting = cutting;
-        renderer.render(&plan, extras, &mut |_| true)
+        renderer.render(&asked, &Assets::default(), extras, &mut patient())
     });
-    frame.unwrap_or_else(|e| panic!("the render fails: {e}"))
+    frame.unwrap_or_else(|e| panic!("the render fails: {e}, {plan:?}"))
+}
+
+/// Renders a plan that must render, on the CPU.
+pub fn on_cpu(plan: &Plan, extras: Extras) -> Frame {
+    let frame = conemarch::cpu::render(plan, &Assets::default(), extras, &mut patient());
+    frame.unwrap_or_else(|e| panic!("the render fails on the CPU: {e}, {plan:?}"))
+}
+
+/// A plan on the GPU and on the CPU, with every layer.
+pub fn both(plan: &Plan) -> [Frame; 2] {
+    [render(plan, EVERYTHING), on_cpu(plan, EVERYTHING)]
 }

@@ -81,12 +81,8 @@ impl Exact {
             Exact::Ball(c, r) => p.distance(c) - r,
             Exact::Cube(c, half) => {
                 let q = p - c;
-                let inside = q.clamp(DVec3::splat(-half), DVec3::splat(half));
-                if q == inside {
-                    q.abs().max_element() - half
-                } else {
-                    q.distance(inside)
-                }
+                let off = q.abs() - half;
+                off.max(DVec3::ZERO).length() + off.max_element().min(0.0)
             }
             Exact::Rod(c, half, r) => {
                 let q = p - c;
@@ -96,11 +92,7 @@ impl Exact {
             Exact::Disc(n, half, radius) => {
                 let z = p.dot(n).abs() - half;
                 let rho = p.cross(n).length() - radius;
-                if z <= 0.0 && rho <= 0.0 {
-                    z.max(rho)
-                } else {
-                    DVec2::new(z.max(0.0), rho.max(0.0)).length()
-                }
+                DVec2::new(z.max(0.0), rho.max(0.0)).length() + z.max(rho).min(0.0)
             }
         }
     }

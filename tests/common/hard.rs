@@ -1,17 +1,16 @@
 //! Plans that are hard on numbers: cameras too near, too far, inside and on folds, scales
 //! and radii at the ends of their ranges, lenses and sizes that nobody uses.
 
+use conemarch::formula::DistanceEstimate;
 use conemarch::formula::mandelbox::Mandelbox;
-use conemarch::formula::{DistanceEstimate, Formula};
-use conemarch::plan::camera::Camera;
+use conemarch::plan::Plan;
 use conemarch::plan::march::Mode;
-use conemarch::plan::{Plan, Subject};
-use conemarch::preset::load;
 use conemarch::scene::slab::SlabSettings;
 use glam::{DVec3, Vec3Swizzles};
 
+use super::plans::{boxed, camera, limit_iterations, mandelbox, mandelbox_of, sized};
 use super::random::Random;
-use super::solved::{balls, camera};
+use super::solved::{balls, slab};
 
 /// Pixels of a hard picture, where its size is not what is hard.
 pub const SIZE: [u32; 2] = [64, 48];
@@ -19,13 +18,17 @@ pub const SIZE: [u32; 2] = [64, 48];
 /// A hard plan and its name.
 pub type Case = (String, Plan);
 
+/// The distance that a Mandelbox's bounds reach.
+fn extent(m: &Mandelbox) -> f64 {
+    m.bounds().half.max_element().min(m.bounds().radius)
+}
+
 /// A Mandelbox twice: from outside, where its bounds fill the picture, and from the
 /// emptiest place within that a search finds.
-pub fn twice(name: &str, change: impl FnOnce(&mut Mandelbox)) -> [Case; 2] {
+fn twice(name: &str, change: impl FnOnce(&mut Mandelbox)) -> [Case; 2] {
     let mut m = Mandelbox::default();
     change(&mut m);
-    let bounds = m.bounds();
-    let far = bounds.half.max_element().min(bounds.radius);
+    let far = extent(&m);
     // An eye off every axis and fold.
     let outside = from(m.clone(), DVec3::new(1.13, -1.71, 1.22) * far, DVec3::ZERO);
     let mut random = Random::new(21);
@@ -35,48 +38,24 @@ pub fn twice(name: &str, change: impl FnOnce(&mut Mandelbox)) -> [Case; 2] {
     let eye = emptiest.expect("there are places");
     let mut inside = from(m, eye, eye.zxy());
     inside.camera.fov = 90.0;
-    [
-        (format!("{name}, outside"), outside),
-        (format!("{name}, inside"), inside),
-    ]
+    [("outside", outside), ("inside", inside)].map(|(from, plan)| (format!("{name}, {from}"), plan))
 }
 
 /// A Mandelbox seen from one point towards another.
-pub fn from(m: Mandelbox, eye: DVec3, target: DVec3) -> Plan {
-    let mut plan = Plan::new(Subject::Distance {
-        shape: Formula::Mandelbox(m),
-        iterations: None,
-    });
-    plan.camera = Camera {
-        fov: 48.5,
-        ..camera(eye.to_array(), target.to_array())
-    };
+pub fn from(m: Mandelbox, eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Plan {
+    let mut plan = Plan::new(boxed(m, None));
+    plan.camera = camera(eye, target);
     plan.size = SIZE;
     plan
 }
 
-fn scaled(scale: f64) -> Mandelbox {
-    Mandelbox {
-        scale,
-        ..Mandelbox::default()
-    }
-}
-
 /// The first point on the way from one point to another whose estimate, in f64 with more
 /// iterations than can matter, is the distance that is asked for, to a tenth.
-///
-/// # Panics
-/// Where the way meets no surface.
-pub fn before_surface(
-    shape: &dyn DistanceEstimate,
-    from: DVec3,
-    to: DVec3,
-    distance: f64,
-) -> DVec3 {
+fn before_surface(m: &Mandelbox, from: DVec3, to: DVec3, distance: f64) -> DVec3 {
     let axis = (to - from).normalize();
     let mut t = 0.0;
     for _ in 0..50_000 {
-        let (d, _) = shape.estimate(from + t * axis, 500);
+        let (d, _) = m.estimate(from + t * axis, 500);
         if d <= 1.1 * distance {
             assert!(d > 0.9 * distance, "{d} for {distance}");
             return from + t * axis;
@@ -86,50 +65,31 @@ pub fn before_surface(
     panic!("no surface from {from} to {to}");
 }
 
-/// Distances of a camera from the surface: 1e-1 to 1e-9.
-pub fn distances() -> impl Iterator<Item = (i32, f64)> {
-    (1..=9).map(|n| (n, 10.0_f64.powi(-n)))
-}
-
 /// Cameras ever nearer to the surface, looking on in the direction that led there.
 pub fn near() -> Vec<Case> {
-    let julia = Mandelbox {
-        julia: true,
-        julia_constant: DVec3::new(0.7, -0.4, 1.1),
-        ..scaled(2.0)
-    };
-    let rotated = Mandelbox {
-        rotation: DVec3::new(20.0, -35.0, 50.0),
-        ..scaled(2.0)
-    };
-    let large = Mandelbox {
-        min_radius: 500.0,
-        fixed_radius: 1000.0,
-        fold_limit: 1000.0,
-        ..scaled(2.0)
-    };
-    let shapes = [
-        ("scale 2", scaled(2.0)),
-        ("scale -1.5", scaled(-1.5)),
-        ("scale 3", scaled(3.0)),
-        ("scale 1.05", scaled(1.05)),
+    let mut julia = mandelbox(2.0);
+    (julia.julia, julia.julia_constant) = (true, DVec3::new(0.7, -0.4, 1.1));
+    let mut rotated = mandelbox(2.0);
+    rotated.rotation = DVec3::new(20.0, -35.0, 50.0);
+    let mut large = mandelbox(2.0);
+    (large.min_radius, large.fixed_radius, large.fold_limit) = (500.0, 1000.0, 1000.0);
+    let boxes = [
+        ("scale 2", mandelbox(2.0)),
+        ("scale -1.5", mandelbox(-1.5)),
+        ("scale 3", mandelbox(3.0)),
+        ("scale 1.05", mandelbox(1.05)),
         ("rotated", rotated),
         ("julia", julia),
         ("lengths times 1000", large),
     ];
     let mut all = Vec::new();
-    for (name, m) in shapes {
-        let bounds = m.bounds();
-        let far = bounds.half.max_element().min(bounds.radius);
-        let (eye, target) = (
-            DVec3::new(0.15, 0.3, -2.3) * far,
-            DVec3::new(0.12, 0.2, 0.1) * far,
-        );
-        for (n, distance) in distances() {
-            let at = before_surface(&m, eye, target, distance * m.fold_limit);
+    for (name, m) in boxes {
+        let eye = DVec3::new(0.15, 0.3, -2.3) * extent(&m);
+        let target = DVec3::new(0.12, 0.2, 0.1) * extent(&m);
+        for n in 1..=9 {
+            let at = before_surface(&m, eye, target, 10.0_f64.powi(-n) * m.fold_limit);
             let on = at + m.fold_limit * (target - eye).normalize();
-            let name = format!("{name}, 1e-{n} away");
-            all.push((name, from(m.clone(), at, on)));
+            all.push((format!("{name}, 1e-{n} away"), from(m.clone(), at, on)));
         }
     }
     all
@@ -139,45 +99,42 @@ pub fn near() -> Vec<Case> {
 pub fn eyes() -> Vec<Case> {
     let mut all = Vec::new();
     for scale in [2.0, -1.5] {
-        let m = scaled(scale);
-        let l = m.fold_limit;
-        let corner = m.bounds().half;
-        let places = [
-            ("at the origin", DVec3::ZERO, DVec3::X),
-            ("in the set", corner, DVec3::ZERO),
-            (
-                "on a fold plane",
-                DVec3::new(l, 0.3, -2.5 * l),
-                DVec3::new(l, 0.3, 0.0),
-            ),
-            (
-                "on three fold planes",
-                DVec3::new(l, l, l),
-                DVec3::new(0.2, 0.1, 3.0),
-            ),
-            (
-                "on the fixed sphere",
-                DVec3::new(0.0, 0.0, 1.0),
-                DVec3::new(0.3, 3.0, 1.2),
-            ),
-            ("on the bounds", DVec3::new(corner.x, 0.3, 0.2), DVec3::ZERO),
-        ];
-        for (name, eye, target) in places {
+        let m = mandelbox(scale);
+        let mut add = |name: &str, eye: DVec3, target: [f64; 3], change: fn(&mut Plan)| {
             let mut plan = from(m.clone(), eye, target);
-            plan.camera.up = DVec3::new(0.1, 1.0, 0.2);
+            change(&mut plan);
             all.push((format!("scale {scale}, {name}"), plan));
+        };
+        let (l, corner) = (m.fold_limit, m.bounds().half);
+        for (name, eye, target) in [
+            ("at the origin", [0.0; 3], [1.0, 0.0, 0.0]),
+            ("in the set", corner.to_array(), [0.0; 3]),
+            ("on a fold plane", [l, 0.3, -2.5 * l], [l, 0.3, 0.0]),
+            ("on three fold planes", [l, l, l], [0.2, 0.1, 3.0]),
+            ("on the fixed sphere", [0.0, 0.0, 1.0], [0.3, 3.0, 1.2]),
+            ("on the bounds", [corner.x, 0.3, 0.2], [0.0; 3]),
+        ] {
+            add(name, eye.into(), target, |p| {
+                p.camera.up = DVec3::new(0.1, 1.0, 0.2)
+            });
         }
         // One ray goes straight into the light, which half-way vectors do not survive.
-        let mut plan = from(m.clone(), DVec3::new(-4.0, 0.0, 0.0), DVec3::ZERO);
-        (plan.look.light, plan.size) = (DVec3::X, [65, 47]);
-        all.push((format!("scale {scale}, looking into the light"), plan));
+        add(
+            "looking into the light",
+            DVec3::new(-4.0, 0.0, 0.0),
+            [0.0; 3],
+            |p| {
+                (p.look.light, p.size) = (DVec3::X, [65, 47]);
+            },
+        );
         // Odd sizes, so that one ray goes through the middle, however small the set is there.
-        for (name, away, fov) in [("1e3", 1e3, 1.0), ("1e6", 1e6, 1.0), ("1e9", 1e9, 170.0)] {
-            let eye = DVec3::new(0.5, -0.7, 0.51) * away;
-            let mut plan = from(m.clone(), eye, DVec3::ZERO);
-            (plan.camera.fov, plan.size) = (fov, [65, 47]);
-            all.push((format!("scale {scale}, {name} away, fov {fov}"), plan));
-        }
+        let aside = DVec3::new(0.5, -0.7, 0.51);
+        let narrow: fn(&mut Plan) = |p| (p.camera.fov, p.size) = (1.0, [65, 47]);
+        add("1e3 away, fov 1", aside * 1e3, [0.0; 3], narrow);
+        add("1e6 away, fov 1", aside * 1e6, [0.0; 3], narrow);
+        add("1e9 away, fov 170", aside * 1e9, [0.0; 3], |p| {
+            (p.camera.fov, p.size) = (170.0, [65, 47]);
+        });
     }
     all
 }
@@ -188,18 +145,12 @@ pub fn grazing() -> Vec<Case> {
     for height in [1e-1, 1e-2, 1e-3, 1e-4, 0.0] {
         // Along the upper face of the large cube, whose centre is (-1.6, 1.0, -0.4).
         let z = -0.4 + 0.7 + height;
-        let camera_on = camera([-4.5, 1.2, z], [-1.6, 1.0, z]);
-        all.push((
-            format!("a cube's face, {height} above"),
-            balls(0.05, &camera_on, SIZE),
-        ));
-        let slab = SlabSettings::default();
-        let (u, _) = slab.normal.normalize().any_orthonormal_pair();
-        let up = slab.normal.normalize() * (slab.half + height);
-        let mut plan = balls(0.05, &camera_on, SIZE);
-        plan.camera.eye = up - 2.0 * slab.radius * u;
-        plan.camera.target = up;
-        plan.subject = Subject::Slab(slab);
+        let face = balls(0.05, &camera([-4.5, 1.2, z], [-1.6, 1.0, z]), SIZE);
+        all.push((format!("a cube's face, {height} above"), face));
+        let s = SlabSettings::default();
+        let (u, _) = s.normal.normalize().any_orthonormal_pair();
+        let up = s.normal.normalize() * (s.half + height);
+        let plan = slab(&camera(up - 2.0 * s.radius * u, up), SIZE);
         all.push((format!("a slab, {height} above"), plan));
     }
     all
@@ -207,14 +158,13 @@ pub fn grazing() -> Vec<Case> {
 
 /// A rod, thinner and thinner than a pixel.
 pub fn rods() -> Vec<Case> {
-    let radii = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+    let camera = camera([4.0, -6.0, 3.0], [0.4, -2.0, 0.3]);
     let one = |radius: f64| {
-        let camera = camera([4.0, -6.0, 3.0], [0.4, -2.0, 0.3]);
         let mut plan = balls(radius, &camera, SIZE);
         plan.camera.fov = 40.0;
         (format!("radius {radius}"), plan)
     };
-    radii.map(one).to_vec()
+    [1e-2, 1e-3, 1e-4, 1e-5, 1e-6].map(one).to_vec()
 }
 
 /// Scales from next to 1 to 10, both signs.
@@ -251,54 +201,52 @@ pub fn iterations() -> Vec<Case> {
     let mut all = Vec::new();
     for scale in [2.0, -1.5, 1.1] {
         for most in [1, 2, 5, 20, 100, 500] {
-            for (name, mut plan) in twice(&format!("scale {scale}, {most} iterations"), |m| {
+            let mut cases = twice(&format!("scale {scale}, {most} iterations"), |m| {
                 m.scale = scale
-            }) {
-                if let Subject::Distance { iterations, .. } = &mut plan.subject {
-                    *iterations = Some(most);
-                }
-                all.push((name, plan));
-            }
+            });
+            cases
+                .iter_mut()
+                .for_each(|(_, plan)| limit_iterations(plan, most));
+            all.extend(cases);
         }
     }
     // More rounds of loops in 256 steps than a software device does at once.
-    let m = Mandelbox {
-        rotation: DVec3::new(17.7, -86.5, -54.2),
-        ..scaled(-1.01)
-    };
+    let mut m = mandelbox(-1.01);
+    m.rotation = DVec3::new(17.7, -86.5, -54.2);
     let r = m.bounds().radius;
-    let mut long = from(
-        m,
-        DVec3::new(1.3, -0.5, 0.2) * r,
-        DVec3::new(-0.2, -0.15, 0.1) * r,
-    );
+    let (eye, target) = (DVec3::new(1.3, -0.5, 0.2), DVec3::new(-0.2, -0.15, 0.1));
+    let mut long = from(m, eye * r, target * r);
     (long.size, long.march.mode) = ([16, 12], Mode::Truth);
-    if let Subject::Distance { iterations, .. } = &mut long.subject {
-        *iterations = Some(1000);
-    }
+    limit_iterations(&mut long, 1000);
     all.push(("rotated, scale -1.01, 1000 iterations, truth".into(), long));
     all
 }
 
+/// Solids and a Mandelbox, both with a change.
+fn near_and_far(name: &str, change: impl Fn(&mut Plan)) -> [Case; 2] {
+    let solids = balls(0.05, &camera([4.0, -6.0, 3.0], [0.1, 0.2, 0.0]), SIZE);
+    let plans = [
+        ("solids", solids),
+        ("scale -1.5", sized("bench-outside", SIZE)),
+    ];
+    plans.map(|(what, mut plan)| {
+        change(&mut plan);
+        (format!("{what}, {name}"), plan)
+    })
+}
+
 /// Lenses from 1 to 170 degrees, on solids and on a Mandelbox.
 pub fn lenses() -> Vec<Case> {
-    let mut all = Vec::new();
-    for fov in [1.0, 5.0, 90.0, 150.0, 170.0] {
-        let mut plan = balls(0.05, &camera([4.0, -6.0, 3.0], [0.1, 0.2, 0.0]), SIZE);
-        plan.camera.fov = fov;
-        all.push((format!("solids, {fov} degrees"), plan));
-        let mut plan = load("bench-outside", &[]).expect("built in").plan;
-        plan.size = SIZE;
-        plan.camera.fov = fov;
-        all.push((format!("scale -1.5, {fov} degrees"), plan));
-    }
-    all
+    let of = |fov| near_and_far(&format!("{fov} degrees"), |p| p.camera.fov = fov);
+    [1.0, 5.0, 90.0, 150.0, 170.0]
+        .into_iter()
+        .flat_map(of)
+        .collect()
 }
 
 /// Sizes from one pixel to a line of 4096.
 pub fn sizes() -> Vec<Case> {
-    let mut all = Vec::new();
-    for size in [
+    let sizes = [
         [1, 1],
         [2, 1],
         [3, 2],
@@ -306,16 +254,9 @@ pub fn sizes() -> Vec<Case> {
         [1, 4096],
         [4096, 1],
         [65, 63],
-    ] {
-        let near = camera([4.0, -6.0, 3.0], [0.1, 0.2, 0.0]);
-        let [w, h] = size;
-        let mut plan = balls(0.05, &near, size);
-        all.push((format!("solids, {w}x{h}"), plan));
-        plan = load("bench-outside", &[]).expect("built in").plan;
-        plan.size = size;
-        all.push((format!("scale -1.5, {w}x{h}"), plan));
-    }
-    all
+    ];
+    let of = |size: [u32; 2]| near_and_far(&format!("{}x{}", size[0], size[1]), |p| p.size = size);
+    sizes.into_iter().flat_map(of).collect()
 }
 
 /// One step for every cell and ray, in every mode; and a few.
@@ -324,11 +265,9 @@ pub fn limits() -> Vec<Case> {
     for mode in [Mode::Safe, Mode::Ray, Mode::RayRelaxed] {
         for steps in [1, 2, 4] {
             for coarsest in [1, 16, 64] {
-                let mut plan = load("bench-outside", &[]).expect("built in").plan;
-                plan.size = SIZE;
-                plan.march.mode = mode;
+                let mut plan = sized("bench-outside", SIZE);
+                (plan.march.mode, plan.march.coarsest) = (mode, coarsest);
                 plan.march.steps = Some(steps);
-                plan.march.coarsest = coarsest;
                 let name = format!("{}, from 1/{coarsest}, {steps} steps", mode.name());
                 all.push((name, plan));
             }
@@ -337,40 +276,29 @@ pub fn limits() -> Vec<Case> {
     all
 }
 
-/// The bench views with their Lipschitz constant multiplied.
-fn sloped(factor: f64) -> Vec<Case> {
+/// The bench views with their Lipschitz constant multiplied: at 2 steps are half as long as
+/// they may be, at 0.5 twice.
+pub fn sloped(factor: f64) -> Vec<Case> {
     let one = |name: &str| {
-        let mut plan = load(&format!("bench-{name}"), &[]).expect("built in").plan;
-        plan.size = SIZE;
-        if let Subject::Distance {
-            shape: Formula::Mandelbox(m),
-            ..
-        } = &mut plan.subject
-        {
-            m.lipschitz = Some(factor * m.lipschitz());
-        }
-        (format!("bench-{name}"), plan)
+        let mut plan = sized(name, SIZE);
+        let m = mandelbox_of(&mut plan);
+        m.lipschitz = Some(factor * m.lipschitz());
+        (name.to_string(), plan)
     };
-    ["far", "graze", "inside", "outside", "thin"]
-        .map(one)
-        .to_vec()
-}
-
-/// Steps half as long as they may be.
-pub fn cautious() -> Vec<Case> {
-    sloped(2.0)
-}
-
-/// Steps twice as long as they may be.
-pub fn reckless() -> Vec<Case> {
-    sloped(0.5)
+    let names = [
+        "bench-far",
+        "bench-graze",
+        "bench-inside",
+        "bench-outside",
+        "bench-thin",
+    ];
+    names.map(one).to_vec()
 }
 
 /// The same plans with a shell that hardly lets a step into the hit threshold.
-pub fn shelled(cases: Vec<Case>) -> Vec<Case> {
-    let one = |(name, mut plan): Case| {
-        plan.march.shell = 0.9;
-        (name, plan)
-    };
-    cases.into_iter().map(one).collect()
+pub fn shelled(mut cases: Vec<Case>) -> Vec<Case> {
+    cases
+        .iter_mut()
+        .for_each(|(_, plan)| plan.march.shell = 0.9);
+    cases
 }

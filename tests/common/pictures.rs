@@ -22,6 +22,20 @@ pub fn png(size: [u32; 2], color: ColorType, depth: BitDepth, samples: &[u8]) ->
     bytes
 }
 
+/// A PNG with what stands in its head, and its samples.
+pub fn pixels(bytes: impl AsRef<[u8]>) -> (png::Info<'static>, Vec<u8>) {
+    let decoder = png::Decoder::new(Cursor::new(bytes));
+    let mut reader = decoder.read_info().expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+    reader.next_frame(&mut pixels).expect("pixels");
+    (reader.info().clone(), pixels)
+}
+
+/// An 8-bit grey PNG.
+pub fn grey(size: [u32; 2], samples: &[u8]) -> Vec<u8> {
+    png(size, ColorType::Grayscale, BitDepth::Eight, samples)
+}
+
 /// Numbers of 16 bits as a PNG has them.
 pub fn wide(samples: &[u16]) -> Vec<u8> {
     samples.iter().flat_map(|n| n.to_be_bytes()).collect()

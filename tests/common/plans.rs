@@ -1,170 +1,121 @@
-//! Every plan whose shaders can differ: presets, subjects with each key moved, all modes,
-//! and looks with and without their features.
-
-use std::collections::BTreeMap;
+//! How tests make plans, and ask them for what is behind them. Tests know the interface of
+//! plans and scenes only through this file and `adapter`.
 
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
-use conemarch::formula::mandelbox::{Estimate, Mandelbox};
-use conemarch::heightfield::conemap::generate;
-use conemarch::plan::march::MODES;
-use conemarch::plan::{Extras, Plan, Subject};
-use conemarch::preset::{BUILTIN, builtin, read};
+use conemarch::formula::mandelbox::Mandelbox;
+use conemarch::measure::compare::{Report, compare};
+use conemarch::pass;
+use conemarch::pass::look::Light;
+use conemarch::picture::frame::Frame;
+use conemarch::plan::camera::Camera;
+use conemarch::plan::{Extras, Pass, Plan};
+use conemarch::preset::{Override, load, read};
+use conemarch::scene::distance::{Distance, DistanceSettings};
+use conemarch::scene::{AnySolid, Assets, Scene};
 use glam::DVec3;
-use toml::Value;
 
-/// The plan of a built-in preset.
-pub fn preset(name: &str) -> Plan {
-    let text = builtin(name).expect("the preset is built in");
-    read(text, name).expect("a built-in preset reads")
+/// The plan of a built-in preset, with settings as `--set` takes them.
+pub fn preset(name: &str, settings: &[&str]) -> Plan {
+    let read = |text: &&str| Override::read(text).expect("section.key=value");
+    let settings: Vec<Override> = settings.iter().map(read).collect();
+    let preset = load(name, &settings);
+    preset.unwrap_or_else(|e| panic!("{name}: {e}")).plan
 }
 
-/// A subject for a shape.
-pub fn distance(shape: Formula) -> Subject {
-    let iterations = None;
-    Subject::Distance { shape, iterations }
+/// The plan of a built-in preset at another size.
+pub fn sized(name: &str, [w, h]: [u32; 2]) -> Plan {
+    preset(name, &[&format!("image.size=[{w}, {h}]")])
 }
 
-/// All values worth trying for a key: the other states of a switch, every word of a
-/// list of words, and a triple away from zero.
-fn values(now: &Value, expects: &str) -> Vec<Value> {
-    match now {
-        Value::Boolean(b) => vec![Value::Boolean(!b)],
-        Value::Array(list) if list.len() == 3 => {
-            vec![Value::Array([3.0, 5.0, 7.0].map(Value::Float).to_vec())]
-        }
-        Value::String(_) => {
-            let quoted = expects.split('"').skip(1).step_by(2);
-            quoted.map(|w| Value::String(w.into())).collect()
-        }
-        _ => Vec::new(),
+/// A scene, given by the keys of its section.
+pub fn scene(keys: &str) -> Scene {
+    let plan = read(&format!("[scene]\n{keys}\n"), "a scene");
+    plan.unwrap_or_else(|e| panic!("{keys}: {e}")).scene
+}
+
+/// A scene of a formula with its own iteration limit, or the automatic one.
+pub fn distance(formula: Formula, iterations: Option<u32>) -> Scene {
+    Scene::Distance(DistanceSettings {
+        formula,
+        iterations,
+    })
+}
+
+/// The same for a Mandelbox.
+pub fn boxed(m: Mandelbox, iterations: Option<u32>) -> Scene {
+    distance(Formula::Mandelbox(m), iterations)
+}
+
+/// A camera that looks at a point, +z up.
+pub fn camera(eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Camera {
+    Camera {
+        eye: eye.into(),
+        target: target.into(),
+        up: DVec3::Z,
+        fov: 48.5,
     }
 }
 
-/// The subject itself, and once more for each value of each of its keys that could
-/// choose a feature.
-fn with_each_key_moved(subject: &Subject) -> Vec<Subject> {
-    let mut all = vec![subject.clone()];
-    let count = subject.clone().keys().len();
-    for index in 0..count {
-        let mut copy = subject.clone();
-        let tried = {
-            let key = &copy.keys()[index];
-            values(&key.slot.get(), &key.slot.expects())
-        };
-        for value in tried {
-            let mut moved = subject.clone();
-            if moved.keys()[index].slot.set(&value).is_ok() {
-                all.push(moved);
-            }
-        }
+/// The Mandelbox of a scale.
+pub fn mandelbox(scale: f64) -> Mandelbox {
+    Mandelbox {
+        scale,
+        ..Mandelbox::default()
     }
-    all
 }
 
-/// Mandelboxes with every combination of rotation, Julia mode and estimate.
-fn mandelboxes() -> Vec<Mandelbox> {
-    let mut all = Vec::new();
-    for bits in 0..8_u32 {
-        all.push(Mandelbox {
-            rotation: f64::from(bits & 1) * DVec3::new(20.0, -35.0, 50.0),
-            julia: bits & 2 > 0,
-            julia_constant: DVec3::new(0.7, -0.4, 1.1),
-            estimate: if bits & 4 > 0 {
-                Estimate::Classic
-            } else {
-                Estimate::Proven
-            },
-            ..Mandelbox::default()
-        });
+/// The settings of a plan of a formula.
+fn settings(plan: &mut Plan) -> &mut DistanceSettings {
+    match &mut plan.scene {
+        Scene::Distance(settings) => settings,
+        _ => panic!("a plan of a formula"),
     }
-    all
 }
 
-/// Everything that can be in a picture, with its features.
-fn subjects() -> Vec<Subject> {
-    let mut all = Subject::all();
-    for subject in &mut all {
-        // Small: what is joined does not depend on how many samples there are.
-        if let Subject::Heightfield(shape) = subject {
-            shape.source.field = "fbm:16x16".into();
-        }
+/// The Mandelbox of a plan.
+pub fn mandelbox_of(plan: &mut Plan) -> &mut Mandelbox {
+    match &mut settings(plan).formula {
+        Formula::Mandelbox(m) => m,
+        _ => panic!("a plan of a Mandelbox"),
     }
-    let mut moved: Vec<Subject> = all.iter().flat_map(with_each_key_moved).collect();
-    let boxes = mandelboxes().into_iter();
-    moved.extend(boxes.map(|m| distance(Formula::Mandelbox(m))));
-    // Few iterations and many: what could overflow is guarded.
-    for shape in Formula::all() {
-        for count in [2, 1000] {
-            let iterations = Some(count);
-            let shape = shape.clone();
-            moved.push(Subject::Distance { shape, iterations });
-        }
-    }
-    moved
 }
 
-/// All plans: presets and subjects, in every mode and with every feature of the look. A
-/// heightfield has so many tracers that its modes and its looks are tried apart.
-fn plans() -> Vec<Plan> {
-    let presets = BUILTIN.iter().map(|(name, _)| preset(name));
-    let first: Vec<Plan> = presets
-        .chain(subjects().into_iter().map(Plan::new))
-        .collect();
-    let mut all = Vec::new();
-    for plan in &first {
-        for (_, mode) in MODES {
-            for look in 0..8 {
-                let apart = matches!(plan.subject, Subject::Heightfield(_));
-                if apart && look > 0 && *mode != plan.march.mode {
-                    continue;
-                }
-                let mut one = plan.clone();
-                one.march.mode = *mode;
-                one.look.shadow = look & 1 > 0;
-                one.look.occlusion = if look & 2 > 0 { 1.0 } else { 0.0 };
-                one.look.fog = if look & 4 > 0 { 0.5 } else { 0.0 };
-                all.push(one);
-            }
-        }
-    }
-    all
+/// Gives a plan of a formula its own iteration limit.
+pub fn limit_iterations(plan: &mut Plan, most: u32) {
+    settings(plan).iterations = Some(most);
 }
 
-/// All different programs of a plan's passes, with work counted or not and normals
-/// kept or not.
-pub fn programs_of(plan: &Plan) -> Vec<Program> {
-    let scene = plan.scene();
-    let mut all: Vec<Program> = Vec::new();
-    for pass in plan.passes() {
-        for bits in 0..4 {
-            let extras = Extras {
-                count: bits & 1 > 0,
-                normals: bits & 2 > 0,
-                ..Extras::default()
-            };
-            let program = plan.program(&scene, pass, extras);
-            if !all.contains(&program) {
-                all.push(program);
-            }
-        }
-    }
-    all
+/// The scene of a plan in numbers, ready to be asked.
+pub fn solid(plan: &Plan) -> AnySolid {
+    let solid = plan.solid(&Assets::default());
+    solid.unwrap_or_else(|e| panic!("{e}, {plan:?}"))
 }
 
-/// All different programs, each under its entry and listing: of plans, and of the
-/// generators of cone maps.
-pub fn every_program() -> BTreeMap<String, Program> {
-    let mut all = BTreeMap::new();
-    for program in generate::program::every_program() {
-        let listing = format!("{}\n{}", program.entry, program.describe());
-        all.entry(listing).or_insert(program);
+/// The same for a plan of a formula.
+pub fn distance_solid(plan: &Plan) -> Distance {
+    match solid(plan) {
+        AnySolid::Distance(scene) => scene,
+        _ => panic!("a plan of a formula"),
     }
-    for plan in plans() {
-        for program in programs_of(&plan) {
-            let listing = format!("{}\n{}", program.entry, program.describe());
-            all.entry(listing).or_insert(program);
-        }
-    }
-    all
+}
+
+/// The light of a plan.
+pub fn light(plan: &Plan) -> Light {
+    Light::of(plan, &Assets::default())
+}
+
+/// The report on a frame of a plan against a reference.
+pub fn compared(frame: &Frame, reference: &Frame, plan: &Plan) -> Report {
+    compare(frame, reference, plan, &solid(plan))
+}
+
+/// The program of a pass.
+pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Program {
+    pass::program(plan, solid, pass, extras)
+}
+
+/// What `--explain` prints.
+pub fn explain(plan: &Plan, extras: Extras) -> String {
+    pass::explain(plan, &Assets::default(), extras).expect("an explanation")
 }

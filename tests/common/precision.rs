@@ -7,45 +7,26 @@ use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::formula::{DistanceEstimate, Formula};
 use glam::DVec3;
 
-use super::probe::{Numbers, Probe, probe};
+use super::probe::{Numbers, Probe};
 use super::random::Random;
-use super::setups::{four, narrow, probe_of, shape_plan};
+use super::setups::{formula_probe, four, narrow};
 
 /// Points in each distance.
 const POINTS: usize = 300;
 
-/// A point, what was wanted of it, and what each arithmetic said.
+/// A point, and the relative errors of its estimate.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// The distance that the point was looked for at, as a power of ten.
     pub power: i32,
     /// Iterations until the orbit escaped.
     pub spent: u32,
-    /// f64 on the CPU, at the point.
-    pub wanted: f64,
-    /// f64 on the CPU, at the point as f32 holds it.
-    pub wanted_held: f64,
-    /// f32 on the adapter, at the point as f32 holds it.
-    pub single: f64,
-    /// f64 on the adapter, at the point.
-    pub double: Option<f64>,
-}
-
-impl Sample {
-    /// Relative error of f32 in computing, the point being one that it holds.
-    pub fn computed(&self) -> f64 {
-        (self.single - self.wanted_held).abs() / self.wanted_held.abs().max(f64::MIN_POSITIVE)
-    }
-
-    /// Relative error of f32 in all, the point's rounding included.
-    pub fn in_all(&self) -> f64 {
-        (self.single - self.wanted).abs() / self.wanted
-    }
-
-    /// Relative error of f64 on the adapter.
-    pub fn doubled(&self) -> Option<f64> {
-        Some((self.double? - self.wanted).abs() / self.wanted)
-    }
+    /// Error of f32 in computing: the point is the one that f32 holds.
+    pub computed: f64,
+    /// Error of f32 in all, the point's rounding included.
+    pub in_all: f64,
+    /// Error of f64 on the adapter, where it has that.
+    pub doubled: Option<f64>,
 }
 
 /// Points at 1e-1 to 1e-9 from the surface, by the estimate; with the iterations that a
@@ -88,8 +69,7 @@ fn two_f32(p: DVec3) -> DVec3 {
 
 /// A Mandelbox's estimate, asked in f32 or in f64.
 pub fn asker(m: &Mandelbox, double: bool) -> Probe {
-    let plan = shape_plan(Formula::Mandelbox(m.clone()), 60, DVec3::new(9.0, 0.0, 0.0));
-    let mut all = probe_of(&plan, probe!("precision"));
+    let mut all = formula_probe(Formula::Mandelbox(m.clone()), 60);
     if double {
         all.modules = Program::new("probe", all.modules).in_f64().modules;
     }
@@ -110,15 +90,16 @@ pub fn samples(m: &Mandelbox) -> Vec<Sample> {
     let singles = ask(false);
     let doubles = has_f64().then(|| ask(true));
     let sum = |a: &Numbers| f64::from(a[0][0]) + f64::from(a[0][1]);
+    let error = |got: f64, want: f64| (got - want).abs() / want.abs().max(f64::MIN_POSITIVE);
     let of = |(i, (power, p, most)): (usize, &(i32, DVec3, u32))| {
         let (wanted, spent) = m.estimate(*p, *most);
+        let single = sum(&singles[i]);
         Sample {
             power: *power,
             spent,
-            wanted,
-            wanted_held: m.estimate(p.map(narrow), *most).0,
-            single: sum(&singles[i]),
-            double: doubles.as_ref().map(|d| sum(&d[i])),
+            computed: error(single, m.estimate(p.map(narrow), *most).0),
+            in_all: error(single, wanted),
+            doubled: doubles.as_ref().map(|d| error(sum(&d[i]), wanted)),
         }
     };
     points.iter().enumerate().map(of).collect()
@@ -136,9 +117,10 @@ pub fn has_f64() -> bool {
 
 /// Median and 99 % of some numbers; NaN counts as infinite.
 pub fn quantiles(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
-    let mut all: Vec<f64> = numbers
-        .map(|x| if x.is_nan() { f64::INFINITY } else { x })
-        .collect();
+    let mut all: Vec<f64> = numbers.collect();
+    all.iter_mut()
+        .filter(|x| x.is_nan())
+        .for_each(|x| *x = f64::INFINITY);
     all.sort_by(f64::total_cmp);
     let last = all.len().saturating_sub(1);
     [0.5, 0.99].map(|q| all.get((q * last as f64) as usize).copied().unwrap_or(0.0))

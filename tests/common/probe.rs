@@ -88,15 +88,6 @@ pub struct Errors {
     pub p99: f64,
 }
 
-/// Errors that a check allows.
-#[derive(Clone, Copy, Debug)]
-pub struct Allowed {
-    /// Of the median.
-    pub median: f64,
-    /// Of all but one in a hundred.
-    pub p99: f64,
-}
-
 impl std::fmt::Display for Errors {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         write!(f, "median {:.1e} p99 {:.1e}", self.median, self.p99)
@@ -119,19 +110,4 @@ impl Errors {
             p99: all[all.len() * 99 / 100],
         }
     }
-
-    /// Whether the errors are within what is allowed.
-    pub fn within(&self, allowed: Allowed) -> bool {
-        self.median <= allowed.median && self.p99 <= allowed.p99
-    }
-}
-
-/// Asserts that a twin agrees, and that the same check finds it when it is moved.
-pub fn agree_unless_moved(name: &str, allowed: Allowed, own: Errors, moved: Errors) {
-    println!("{name}: {own}, moved {moved}");
-    assert!(own.within(allowed), "{name}: {own:?}, allowed {allowed:?}");
-    assert!(
-        !moved.within(allowed),
-        "{name}: the check does not see a twin that is moved: {moved:?}, allowed {allowed:?}"
-    );
 }

@@ -1,23 +1,14 @@
 //! Scenes whose picture is solved in closed form, and cameras to see them with.
 
+use conemarch::base::view::Beam;
 use conemarch::formula::{Formula, balls::Balls};
 use conemarch::picture::frame::Frame;
+use conemarch::plan::Plan;
 use conemarch::plan::camera::Camera;
-use conemarch::plan::{Plan, Subject};
-use conemarch::scene::slab::SlabSettings;
-use glam::DVec3;
+use conemarch::scene::Scene;
 
-use super::exact;
-
-/// A camera that looks at a point, +z up.
-pub fn camera(eye: [f64; 3], target: [f64; 3]) -> Camera {
-    Camera {
-        eye: eye.into(),
-        target: target.into(),
-        up: DVec3::Z,
-        fov: 48.5,
-    }
-}
+use super::exact::{self, Exact};
+use super::plans::{camera, distance, scene};
 
 /// From far, from near, eight thousandths off the largest ball and along it, inside the
 /// bounds between the solids, and straight along an axis.
@@ -33,13 +24,11 @@ pub fn cameras() -> [Camera; 5] {
 
 /// The default solids but for the rod, with an exact distance field and five levels.
 pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
-    let mut plan = Plan::new(Subject::Distance {
-        shape: Formula::Balls(Balls {
-            rod_radius,
-            ..Balls::default()
-        }),
-        iterations: None,
+    let formula = Formula::Balls(Balls {
+        rod_radius,
+        ..Balls::default()
     });
+    let mut plan = Plan::new(distance(formula, None));
     plan.camera = camera.clone();
     plan.march.coarsest = 32;
     // Rays that graze a ball creep for hundreds of steps; none is to end half-way.
@@ -51,31 +40,36 @@ pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
 /// A disc, solved in closed form by the scene itself.
 pub fn slab(camera: &Camera, size: [u32; 2]) -> Plan {
     let mut plan = balls(0.05, camera, size);
-    plan.subject = Subject::Slab(SlabSettings::default());
+    plan.scene = scene("kind = 'slab'");
     plan
 }
 
-/// Where a ray first meets the subject: solved, not marched.
-pub fn meet(subject: &Subject, eye: DVec3, axis: DVec3) -> f64 {
-    let solids = match subject {
-        Subject::Slab(s) => vec![exact::Exact::Disc(s.normal, s.half, s.radius)],
-        Subject::Distance { shape, .. } => match shape {
-            Formula::Balls(b) => exact::balls(b.rod_radius, b.box_size, b.ball_radius),
-            _ => panic!("only balls and slabs are solved here"),
+/// The solids of a plan in closed form, if that is known.
+pub fn solids(plan: &Plan) -> Option<Vec<Exact>> {
+    match &plan.scene {
+        Scene::Slab(s) => Some(vec![Exact::Disc(s.normal, s.half, s.radius)]),
+        Scene::Distance(settings) => match &settings.formula {
+            Formula::Balls(b) => Some(exact::balls(b.rod_radius, b.box_size, b.ball_radius)),
+            _ => None,
         },
-        Subject::Heightfield(_) => panic!("only balls and slabs are solved here"),
-    };
-    exact::first_hit(&solids, eye, axis)
+        _ => None,
+    }
 }
 
-/// The exact picture, and its distances in f64.
+/// The rays of all pixels, row by row.
+pub fn rays(plan: &Plan) -> impl Iterator<Item = Beam> {
+    let (view, [w, h]) = (plan.view(), plan.size);
+    (0..w * h).map(move |i| view.view_ray([i % w, i / w]))
+}
+
+/// The exact picture, and its distances in f64; infinity where nothing is met.
+///
+/// # Panics
+/// For plans of other scenes than balls and slabs.
 pub fn solved(plan: &Plan) -> (Frame, Vec<f64>) {
-    let view = plan.view();
-    let [w, h] = plan.size;
-    let pixels = (0..h).flat_map(|y| (0..w).map(move |x| [x, y]));
-    let t: Vec<f64> = pixels
-        .map(|p| meet(&plan.subject, view.eye, view.view_ray(p).axis))
-        .collect();
+    let solids = solids(plan).expect("balls or a slab");
+    let meet = |ray: Beam| exact::first_hit(&solids, plan.camera.eye, ray.axis);
+    let t: Vec<f64> = rays(plan).map(meet).collect();
     let frame = Frame {
         size: plan.size,
         depth: t.iter().map(|t| *t as f32).collect(),

@@ -1,9 +1,12 @@
-// A formula at a point: its estimate and its orbit traps.
+// A formula at a point: its orbit traps and its estimate. The point is given, and the
+// estimate told, as the sum of two f32, so that no digit of an f64 is lost on the way.
 
 fn answer(q: Numbers) -> Numbers {
     formula_load();
-    let p = real3(q.a.xyz);
+    let p = real3(q.a.xyz) + real3(q.b.xyz);
     let most = u32(q.a.w);
-    let e = f32(estimate(p, most));
-    return Numbers(vec4<f32>(e, 0.0, 0.0, 0.0), vec4<f32>(trap(p, most), 0.0), vec4<f32>(0.0));
+    let e = estimate(p, most);
+    let high = f32(e);
+    let low = f32(e - real(high));
+    return Numbers(vec4<f32>(high, low, 0.0, 0.0), vec4<f32>(trap(p, most), 0.0), vec4<f32>());
 }

@@ -1,4 +1,4 @@
-// A ray over a relief: origin and start, direction and end, and the steps that it may
+// A ray over a height surface: origin and start, direction and end, and the steps that it may
 // take in; where it ended, its state and what it met out.
 
 fn answer(q: Numbers) -> Numbers {
@@ -11,7 +11,7 @@ fn answer(q: Numbers) -> Numbers {
     let hit = trace_hit(trace);
     return Numbers(
         vec4<f32>(hit.t, f32(s), f32(hit.id & 0xffffu), f32(hit.id >> 16u)),
-        vec4<f32>(hit.uv, trace_gap(trace), 0.0),
+        vec4<f32>(hit.uv, 0.0, 0.0),
         vec4<f32>(0.0),
     );
 }

@@ -1,6 +1,6 @@
-// A relief: heights, what lies between them, how often they repeat. It fills
-// 0 <= z <= surface over a domain of `cells * tiles` cells, in texels and heights
-// (docs/method.md, 4). What a ray is, this file does not know.
+// A height surface: heights, the patches between them, and their tiles. The surface is the top of
+// a solid block, which fills 0 <= z <= surface over a domain of `cells * tiles` cells, in texels
+// and heights (docs/method.md, 4).
 
 struct ReliefUniform {
     samples: vec2<i32>,
@@ -10,13 +10,13 @@ struct ReliefUniform {
     wrap: vec2<u32>,
     /// Places of the cone map.
     places: vec2<i32>,
-    /// Room that the walk's cones leave, in texels.
+    /// Offset of the walk's cones, in texels.
     offset: f32,
     /// Factor on cone steps.
     scale: f32,
     levels: u32,
-    /// Steps that a tracer has, 0 for as many as the caller allows; the distance at which
-    /// it has half of them, or a texel is as wide as a pixel to it; rounds of refinement.
+    /// Steps that a tracer counts itself, 0 for no such limit; the distance at which it has half
+    /// of them, or at which a texel is as wide as a pixel, 0 for never; rounds of refinement.
     steps: u32,
     lod: f32,
     rounds: u32,
@@ -24,7 +24,7 @@ struct ReliefUniform {
     starts: array<vec4<u32>, 4>,
 }
 
-/// Boxes as high as one sample, in place of bilinear patches between four.
+/// Whether the patches are boxes as high as one sample, instead of bilinear between four samples.
 override RELIEF_BOXES: bool;
 
 @group(0) @binding(4) var<storage, read> relief_parameters: ReliefUniform;
@@ -37,14 +37,13 @@ fn relief_load() {
     relief = relief_parameters;
 }
 
-/// The cell of the first tile that a cell of the domain repeats. Only a ray in its first
-/// tile or beyond asks, so that nothing is negative.
+/// The cell of the first tile that corresponds to a cell of the domain.
 fn relief_tile_cell(cell: vec2<i32>) -> vec2<i32> {
     return max(cell, vec2<i32>(0)) % relief.cells;
 }
 
-/// The number of the sample that indices from 0 to the size name: the one past the last is
-/// the first again, or on an axis that ends the last.
+/// The number of a sample, for indices from 0 to the size. The one past the last is the first
+/// again, or on an axis that does not wrap the last.
 fn relief_place(at: vec2<i32>) -> i32 {
     let round = select(relief.samples - 1, vec2<i32>(0), relief.wrap == vec2<u32>(1u));
     let i = select(at, round, at >= relief.samples);
@@ -78,7 +77,7 @@ fn relief_height(cell: vec2<i32>, at: vec2<f32>) -> f32 {
     return low + at.y * (high - low);
 }
 
-/// The number of a cell: of its tile's cell, row by row.
+/// The number of a cell within its tile, row by row.
 fn relief_number(cell: vec2<i32>) -> u32 {
     let c = relief_tile_cell(cell);
     return u32(c.y * relief.cells.x + c.x);

@@ -1,12 +1,12 @@
-// A relief painted by a number for each place of a cone map: how wide its cones are.
+// The pigment of a height surface by the width of a map's cones: a number for each place.
 
-/// Whether the places are cells, in place of samples.
+/// Whether the places are cells instead of samples.
 override PAINT_OVER_CELLS: bool;
 
 @group(0) @binding(8) var<storage, read> paint: array<f32>;
 
-/// The pigment at a place in 0..1 of a cell of the domain, of a surface so high that faces
-/// up so much.
+/// The pigment at a place in 0..1 of a cell of the domain, for the surface's height there and the
+/// upward part of its normal.
 fn relief_paint(cell: vec2<i32>, at: vec2<f32>, height: f32, up: f32) -> vec3<f32> {
     // A box has one sample, a patch one in each corner.
     let near = select(vec2<i32>(at + 0.5), vec2<i32>(0), RELIEF_BOXES);

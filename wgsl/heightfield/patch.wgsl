@@ -1,10 +1,10 @@
-// Where a ray meets the bilinear patch of a cell. Along the ray the height above
+// The first crossing of a ray and the bilinear patch of a cell. Along the ray the height above
 // h(u, v) = a + b u + c v + d u v is a quadratic in s. Its first root is computed without
-// cancellation, and the sign at the end decides where rounding hides one.
+// cancellation. If rounding hides the root, the sign at the end decides.
 
 /// No hit: beyond every parameter.
 const PATCH_NONE = 1e30;
-/// A divisor below this share of what it divides would leave the range of f32.
+/// A divisor below this share of the dividend would leave the range of f32.
 const PATCH_SLIGHT = 1e-29;
 
 /// The smallest s in front..to at which the ray is on the patch or under it. `p` is (u, v, z)

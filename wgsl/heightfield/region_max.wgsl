@@ -1,10 +1,9 @@
-// The highest surface under a region: what coarse cones and empty balls are tested
-// against. `maxima` holds the levels of a pyramid over the cells' apexes, fine to coarse,
-// one after another.
+// The highest point of the surface under a region. Coarse cones and empty balls are tested against
+// it. `maxima` holds the levels of the pyramid of maxima one after another, fine to coarse.
 
-/// The cells first..=end of an axis of tiles, within one tile of `count` cells: two runs
-/// (x..=y and z..=w), the same one twice unless the cells lie across a seam.
-fn under_parts(first: u32, end: u32, count: u32) -> vec4<u32> {
+/// The cells first..=end of a tiled axis as cells of one tile of `count` cells: two runs (x..=y
+/// and z..=w), which are equal unless the cells lie across a seam.
+fn region_runs(first: u32, end: u32, count: u32) -> vec4<u32> {
     if end - first + 1u >= count {
         return vec4<u32>(0u, count - 1u, 0u, count - 1u);
     }
@@ -17,8 +16,8 @@ fn under_parts(first: u32, end: u32, count: u32) -> vec4<u32> {
 }
 
 /// The largest apex of the cells x.x..=x.y, y.x..=y.y of one tile.
-fn under_run(x: vec2<u32>, y: vec2<u32>) -> f32 {
-    // The level at which the run is at most two nodes wide and high. Each level is half
+fn region_run_max(x: vec2<u32>, y: vec2<u32>) -> f32 {
+    // The finest level at which the run is at most two nodes wide and high. Each level is half
     // the one below, rounded up.
     var nodes = vec4<u32>(x, y);
     var size = vec2<u32>(relief.cells);
@@ -49,17 +48,17 @@ fn region_max(low: vec2<f32>, high: vec2<f32>) -> f32 {
     }
     let first = vec2<u32>(clamp(floor(low), vec2<f32>(0.0), sides - 1.0));
     let end = vec2<u32>(clamp(floor(high), vec2<f32>(0.0), sides - 1.0));
-    let x = under_parts(first.x, end.x, cells.x);
-    let y = under_parts(first.y, end.y, cells.y);
-    var top = under_run(x.xy, y.xy);
+    let x = region_runs(first.x, end.x, cells.x);
+    let y = region_runs(first.y, end.y, cells.y);
+    var top = region_run_max(x.xy, y.xy);
     // Across a seam there are two runs.
     if x.x != x.z {
-        top = max(top, under_run(x.zw, y.xy));
+        top = max(top, region_run_max(x.zw, y.xy));
     }
     if y.x != y.z {
-        top = max(top, under_run(x.xy, y.zw));
+        top = max(top, region_run_max(x.xy, y.zw));
         if x.x != x.z {
-            top = max(top, under_run(x.zw, y.zw));
+            top = max(top, region_run_max(x.zw, y.zw));
         }
     }
     return top;

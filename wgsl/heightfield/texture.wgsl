@@ -1,4 +1,4 @@
-// A picture over a relief, once to each tile, interpolated between its texels.
+// A picture over a height surface, once for each tile, interpolated between its texels.
 
 /// Columns, rows, then texels row by row: sRGB of 8 bits, red in the low byte.
 @group(0) @binding(8) var<storage, read> texels: array<u32>;
@@ -8,8 +8,8 @@ fn texture_linear(c: vec3<f32>) -> vec3<f32> {
     return select(pow((c + 0.055) / 1.055, vec3<f32>(2.4)), c / 12.92, c <= vec3<f32>(0.04045));
 }
 
-/// The place of an index along an axis: beyond the ends the last one, or the one that comes
-/// round.
+/// The place of an index along an axis. Beyond the ends it is the last one, or on an axis that
+/// wraps the one that comes round.
 fn texture_index(i: i32, count: i32, wraps: bool) -> i32 {
     return select(clamp(i, 0, count - 1), (i % count + count) % count, wraps);
 }
@@ -23,8 +23,8 @@ fn texture_texel(place: vec2<i32>) -> vec3<f32> {
 
 /// The colour at a place in 0..1 of a cell of the domain.
 fn relief_paint(cell: vec2<i32>, at: vec2<f32>, height: f32, up: f32) -> vec3<f32> {
-    // A sample is the middle of its texel: a box is one, and so is the one cell of an axis
-    // with a single sample.
+    // A sample is the middle of its texel. A box is a sample, and so is the only cell of an axis
+    // with one sample.
     let alone = (relief.samples == vec2<i32>(1)) & (relief.wrap == vec2<u32>(0u));
     let middle = select(vec2<f32>(0.5), vec2<f32>(0.0), alone | vec2<bool>(RELIEF_BOXES));
     let own = vec2<f32>(relief_tile_cell(cell)) + at + middle;

@@ -175,10 +175,10 @@ fn to_world(v: vec3<f32>) -> vec3<f32> {
 /// The normal that faces out of the side by which a ray came into a box: that of the line
 /// which it crossed last on its way to a place in the box.
 fn box_side(d: vec3<f32>, uv: vec2<f32>) -> vec3<f32> {
-    let flat = abs(d.xy) < vec2<f32>(COURSE_FLAT);
+    let flat = abs(d.xy) < vec2<f32>(GRID_FLAT);
     let slope = select(abs(d.xy), vec2<f32>(1.0), flat);
     let way = select(1.0 - uv, uv, d.xy > vec2<f32>(0.0));
-    let since = select(way / slope, vec2<f32>(COURSE_FAR), flat);
+    let since = select(way / slope, vec2<f32>(GRID_FAR), flat);
     let out = select(vec2<f32>(1.0), vec2<f32>(-1.0), d.xy > vec2<f32>(0.0));
     return select(vec3<f32>(0.0, out.y, 0.0), vec3<f32>(out.x, 0.0, 0.0), since.x <= since.y);
 }

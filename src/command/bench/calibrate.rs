@@ -10,10 +10,11 @@ use crate::command::bench::row::flat;
 use crate::command::bench::table;
 use crate::command::executor::Executor;
 use crate::command::interrupt;
-use crate::gpu::render::RenderError;
+use crate::gpu::RenderError;
 use crate::measure::calibrate::{Calibration, calibrate};
 use crate::plan::march::Mode;
 use crate::plan::{Extras, Plan};
+use crate::scene::Assets;
 
 /// Options of `bench calibrate`.
 #[derive(Debug, Args)]
@@ -69,16 +70,16 @@ struct CalibrateRow {
 /// An unknown preset, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &CalibrateBench) -> Result<()> {
     interrupt::listen();
-    let plans = args.common.plans()?;
+    let assets = Assets::default();
+    let plans = args.common.plans(&assets)?;
     let files = args.common.files(None, &plans)?;
     let mut executor = args.common.executor()?;
     let mut rows = Vec::new();
     for (name, plan) in &plans {
-        let found = calibrate(plan, args.budget, args.rays as usize, &|| {
+        let found = calibrate(plan, &assets, args.budget, args.rays as usize, &|| {
             !interrupt::asked()
-        });
-        let found = found.ok_or(RenderError::Cancelled)?;
-        let row = measure(&mut executor, name, plan, &found, args.budget)?;
+        })?;
+        let row = measure(&mut executor, name, plan, &assets, &found, args.budget)?;
         files.show(&sentence(&row, plan))?;
         rows.push(row);
     }
@@ -91,6 +92,7 @@ fn measure(
     executor: &mut Executor,
     name: &str,
     plan: &Plan,
+    assets: &Assets,
     found: &Calibration,
     budget: f64,
 ) -> Result<CalibrateRow, RenderError> {
@@ -111,10 +113,10 @@ fn measure(
     let mut time = [f64::INFINITY; 2];
     let mut lost = 0;
     for (i, plan) in [&safe, &calibrated].into_iter().enumerate() {
-        let frame = executor.render(plan, counted, watch)?;
+        let frame = executor.render(plan, assets, counted, watch)?;
         work[i] = frame.work_per_pixel().map_or(0.0, |w| w.0);
         for _ in 0..4 {
-            time[i] = time[i].min(executor.render(plan, timed, watch)?.march_ms);
+            time[i] = time[i].min(executor.render(plan, assets, timed, watch)?.march_ms);
         }
         let width = plan.size[0] as usize;
         let gone = found.probes.iter().filter(|probe| {
@@ -173,7 +175,7 @@ fn sentence(row: &CalibrateRow, plan: &Plan) -> String {
         row.wall_ms,
         row.safe_ms,
     );
-    if row.lipschitz > plan.lipschitz() {
+    if row.lipschitz > plan.scene.lipschitz() {
         text += &format!("    [scene]\n    lipschitz = {}\n", row.lipschitz);
     }
     text += &format!(

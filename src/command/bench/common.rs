@@ -15,6 +15,7 @@ use crate::command::size;
 use crate::gpu::device::{Choice, DeviceError, STORAGE_BUFFERS};
 use crate::plan::Plan;
 use crate::preset;
+use crate::scene::Assets;
 
 /// Bytes for every pixel of a measurement: frame, truth, and the pictures that FLIP compares.
 /// Measured on 2 million pixels of `error`, which holds most, and rounded up.
@@ -44,7 +45,7 @@ impl Common {
     ///
     /// # Errors
     /// A preset is unknown or wrong, two have one name, or one does not fit into memory.
-    pub fn plans(&self) -> Result<Vec<(String, Plan)>> {
+    pub fn plans(&self, assets: &Assets) -> Result<Vec<(String, Plan)>> {
         let all = || preset::BUILTIN.iter().map(|(name, _)| (*name).to_string());
         let names: Vec<String> = if self.names.is_empty() {
             all().collect()
@@ -53,6 +54,7 @@ impl Common {
         };
         let load = |name: String| {
             let found = preset::load(&name, &[])?;
+            found.load_assets(assets)?;
             let mut plan = found.plan;
             plan.size = self.size.unwrap_or(plan.size);
             Ok((found.name, plan))
@@ -70,7 +72,7 @@ impl Common {
             if let Some(why) = memory::lacking(plan.size, BYTES_PER_PIXEL, memory::available()) {
                 anyhow::bail!("{name}: {why}");
             }
-            if let Some(why) = memory::lacking_for(plan, memory::available()) {
+            if let Some(why) = memory::lacking_for(plan, assets, memory::available()) {
                 anyhow::bail!("{name}: {why}");
             }
         }
@@ -112,7 +114,7 @@ impl Common {
         apart(&named)?;
         let presets = self.names.iter().filter_map(|name| preset::file(name));
         let presets = presets.map(|file| ("a preset", file));
-        let read = plans.iter().flat_map(|(_, plan)| plan.files());
+        let read = plans.iter().flat_map(|(_, plan)| plan.scene.files());
         spared(&named, &presets.chain(read).collect::<Vec<_>>())?;
         let [json, csv, plot] = named.map(|(_, path)| path.map(Sink::prepare).transpose());
         Ok(Files {

@@ -1,4 +1,4 @@
-//! The rows of `bench cones`: a map of a field, and a tracer over a view of one.
+//! The rows of `bench cones`: one kind for maps, one for tracers.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,20 +11,20 @@ pub struct GeneratorRow {
     pub size: [u32; 2],
     /// `bilinear` patches between the samples, or `boxes`.
     pub surface: String,
-    /// Who makes it.
+    /// The generator.
     pub generator: String,
-    /// On what.
+    /// The device that makes it.
     pub device: String,
-    /// Time on the clock; null where the budget ran out.
+    /// Wall time; null if it exceeds the time limit.
     pub ms: Option<f64>,
-    /// Mean ratio, none counted as wider than the texture.
+    /// Mean ratio; none counts as wider than the texture.
     pub mean_ratio: Option<f64>,
-    /// The same over that of `brute`.
+    /// The mean ratio over that of `brute`.
     pub of_exact: Option<f64>,
-    /// Share of samples with a cone over a millionth wider than `brute` has; null for maps
-    /// of another kind.
+    /// Share of samples whose cone is wider than that of `brute` by over a millionth; null for
+    /// maps of another kind.
     pub wider_than_exact: Option<f64>,
-    /// What it would have taken, where the budget ran out.
+    /// The estimated wall time of a map that exceeds the time limit.
     pub estimate_ms: Option<f64>,
 }
 
@@ -39,15 +39,15 @@ pub struct TracerRow {
     pub surface: String,
     /// Angle from the vertical.
     pub view_deg: u32,
-    /// Who traces.
+    /// The tracer.
     pub tracer: String,
-    /// Generator of its cones.
+    /// The generator of its cones.
     pub map: String,
     /// Mean steps of a ray.
     pub steps_mean: f64,
-    /// Steps that 99 of 100 rays need at most.
+    /// The number of steps that is enough for 99 % of the rays.
     pub steps_p99: u32,
-    /// Share of rays whose hit lies over one texel behind the true one, or is none.
+    /// Share of rays with a hit over one texel behind the true one, or with none.
     pub skipped: f64,
     /// Share of rays that run out of steps.
     pub unconverged: f64,

@@ -1,5 +1,5 @@
-//! `conemarch bench cones`: cone maps and tracers of heightfields, map by map and view by
-//! view. No scene, no picture: what generators and tracers do by themselves.
+//! `conemarch bench cones`: what generators and tracers of heightfields cost and miss, map by map
+//! and view by view. It renders no picture.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::command::failure::usage;
 use crate::command::print::say;
 use crate::command::{interrupt, size};
 use crate::gpu::conemap::generate::Maker;
-use crate::gpu::device::{Choice, Device, PROMISED_BUFFERS};
+use crate::gpu::device::{Choice, PROMISED_BUFFERS};
 use crate::gpu::render::RenderError;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::cpu;
@@ -27,16 +27,12 @@ use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::max_mip::MaxMip;
 use crate::heightfield::pattern::Pattern;
-use crate::heightfield::tracer::cones::{Cones, Manner};
-use crate::heightfield::tracer::linear::{LINEAR_ROUNDS, LINEAR_STEPS, LinearBinary};
-use crate::heightfield::tracer::max_mip::MaxMipTracer;
-use crate::heightfield::tracer::oracle::Oracle;
-use crate::heightfield::tracer::relaxed::WalkRelaxed;
-use crate::heightfield::tracer::walk::Walk;
-use crate::heightfield::tracer::{AnyTracer, TraceError};
-use crate::measure::tracer_stats::{first_hits, survey, view_rays};
+use crate::heightfield::tracer::TracerKind;
+use crate::heightfield::tracer::reference::ReferenceTracer;
+use crate::heightfield::tracer::settings::{Supply, TracerSettings};
+use crate::measure::tracer_stats::{first_hits, measure, view_rays};
 
-/// Fields where none is named.
+/// Fields by default.
 const FIELDS: [Pattern; 5] = [
     Pattern::Fbm,
     Pattern::Ridges,
@@ -44,43 +40,63 @@ const FIELDS: [Pattern; 5] = [
     Pattern::Checker,
     Pattern::Sine,
 ];
-/// Sizes where none is given.
+/// Sizes by default.
 const SIZES: [[u32; 2]; 2] = [[128, 128], [256, 256]];
 /// Angles of view, in degrees from the vertical.
 const VIEWS: [u32; 3] = [30, 60, 80];
-/// Rays of a view: a share of 0.01 % is two rays.
+/// Rays of a view. With so many, a share of 0.01 % is two rays.
 const RAYS: u32 = 20_000;
-/// What a generator may take for one map: with it all defaults stay under five minutes.
+/// Time limit of a generator for one map. It keeps the defaults below five minutes.
 const BUDGET: Duration = Duration::from_secs(10);
-/// Seed and power of the fields: rough terrain.
+/// Seed and power of the fields. The power is that of rough terrain.
 const SEED: u32 = 7;
 const POWER: f64 = 2.6;
+
+/// Tracers, each with the cones that it is measured with. `exact` gives the same bits as `brute`.
+const PAIRS: [(TracerKind, Option<Generator>); 16] = [
+    (TracerKind::LinearBinary, None),
+    (TracerKind::CsmExact, Some(Generator::Exact)),
+    (TracerKind::CsmExact, Some(Generator::Improved)),
+    (TracerKind::CsmExact, Some(Generator::Center)),
+    (TracerKind::CsmLoop, Some(Generator::Exact)),
+    (TracerKind::CsmFixed, Some(Generator::Exact)),
+    (TracerKind::CsmScaled, Some(Generator::Exact)),
+    (TracerKind::Quad, Some(Generator::Quad)),
+    (TracerKind::RcsBinary, Some(Generator::RelaxedSearch)),
+    (TracerKind::RcsBinary, Some(Generator::RelaxedExact)),
+    (TracerKind::Secant, Some(Generator::Exact)),
+    (TracerKind::Secant, Some(Generator::Improved)),
+    (TracerKind::Secant, Some(Generator::RelaxedExact)),
+    (TracerKind::MaxMip, None),
+    (TracerKind::Walk, Some(Generator::Walk)),
+    (TracerKind::WalkRelaxed, Some(Generator::WalkRelaxed)),
+];
 
 /// Options of `bench cones`.
 #[derive(Debug, Args)]
 pub struct ConesBench {
-    /// Fields: fbm, ridges, spikes, checker, sine, noise, stones, bricks; the first five where
-    /// none is named
+    /// Fields: fbm, ridges, spikes, checker, sine, noise, stones, bricks; the first five by
+    /// default
     #[arg(value_name = "FIELD")]
     names: Vec<String>,
     /// Samples, instead of 128x128 and 256x256
     #[arg(long, value_name = "WxH", value_parser = size::read)]
     size: Option<[u32; 2]>,
-    /// Take each sample for a flat box instead of joining four by a patch
+    /// Treat each sample as a flat box, instead of joining four samples by a patch
     #[arg(long)]
     boxes: bool,
-    /// Who makes the maps: cpu, auto, gpu, software, an index or a part of a name
+    /// The device that makes the maps: cpu, auto, gpu, software, an index or a part of a name
     #[arg(long, value_name = "DEVICE", default_value = "cpu", value_parser = device)]
     device: Choice,
-    /// Write the rows as JSON too
+    /// Also write the rows as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write the rows as CSV too
+    /// Also write the rows as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 }
 
-/// A row of either kind, as a file holds them.
+/// A row of either kind, as a file has it.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum ConesRow {
@@ -91,10 +107,17 @@ enum ConesRow {
 /// Maps that were finished, by their generators.
 type Maps = Vec<(Generator, Arc<ConeMap>)>;
 
+/// One surface to measure, and who makes its maps.
+struct Measured<'a> {
+    field: Pattern,
+    surface: Arc<HeightSurface>,
+    executor: &'a Executor,
+}
+
 /// Runs the measurement.
 ///
 /// # Errors
-/// An unknown field, a device that fails, an unwritable file, an interrupt.
+/// A field is unknown, a device fails, a file cannot be written, or the user interrupts.
 pub fn run(args: &ConesBench) -> Result<()> {
     interrupt::listen();
     let common = Common {
@@ -107,8 +130,8 @@ pub fn run(args: &ConesBench) -> Result<()> {
     let fields = fields(&args.names)?;
     let sizes = args.size.map_or(SIZES.to_vec(), |size| vec![size]);
     for size in &sizes {
-        Heights::new(*size, [false; 2], vec![0.0; area(*size)])
-            .map_err(|e| usage(e.to_string()))?;
+        let area = size[0] as usize * size[1] as usize;
+        Heights::new(*size, [false; 2], vec![0.0; area]).map_err(|e| usage(e.to_string()))?;
     }
     let patches = if args.boxes {
         Patches::Boxes
@@ -116,47 +139,49 @@ pub fn run(args: &ConesBench) -> Result<()> {
         Patches::Bilinear
     };
     let files = common.files(None, &[])?;
-    let executor = common.executor_with(PROMISED_BUFFERS)?;
-    let mut generators = Vec::new();
-    let mut tracers = Vec::new();
+    let executor = &common.executor_with(PROMISED_BUFFERS)?;
+    let (mut generators, mut tracers) = (Vec::new(), Vec::new());
     for size in sizes {
-        for field in &fields {
+        for &field in &fields {
             let heights = Heights::new(size, [false; 2], field.heights(size, SEED, POWER))?;
-            let relief = Arc::new(HeightSurface::new(heights, patches, [1, 1])?);
-            let (rows, maps) = generate(&executor, *field, &relief)?;
+            let measured = Measured {
+                field,
+                surface: Arc::new(HeightSurface::new(heights, patches, [1, 1])?),
+                executor,
+            };
+            let (rows, maps) = measured.generate()?;
             files.show(&table::generators(&rows))?;
             generators.extend(rows);
-            let rows = trace(*field, &relief, &maps)?;
+            let rows = measured.trace(&maps)?;
             files.show(&table::tracers(&rows))?;
             tracers.extend(rows);
         }
     }
-    let all = generators.into_iter().map(ConesRow::Generator);
-    let all: Vec<_> = all
-        .chain(tracers.into_iter().map(ConesRow::Tracer))
-        .collect();
+    let generators = generators.into_iter().map(ConesRow::Generator);
+    let tracers = tracers.into_iter().map(ConesRow::Tracer);
+    let all: Vec<_> = generators.chain(tracers).collect();
     let flat = one_header(all.iter().map(flat).collect());
     files.write(&all, &flat)
 }
 
-fn area([w, h]: [u32; 2]) -> usize {
-    w as usize * h as usize
-}
-
-/// The fields of names, or those that are measured where there are none.
+/// The named fields, or the default ones if there are no names.
 fn fields(names: &[String]) -> Result<Vec<Pattern>> {
     if names.is_empty() {
         return Ok(FIELDS.to_vec());
     }
     let one = |name: &String| {
         let known = Pattern::ALL.map(Pattern::name).join(", ");
-        let why = || usage(format!("there is no field `{name}`; there is: {known}"));
+        let why = || {
+            usage(format!(
+                "there is no field `{name}`; the fields are: {known}"
+            ))
+        };
         Pattern::named(name).ok_or_else(why)
     };
     names.iter().map(one).collect()
 }
 
-/// Rows of two kinds under one line of names: what a kind lacks stays empty.
+/// Rows of two kinds under one header. A value that a kind lacks stays empty.
 fn one_header(rows: Vec<Vec<(String, String)>>) -> Vec<Vec<(String, String)>> {
     let mut names: Vec<String> = Vec::new();
     for (name, _) in rows.iter().flatten() {
@@ -174,90 +199,141 @@ fn one_header(rows: Vec<Vec<(String, String)>>) -> Vec<Vec<(String, String)>> {
     rows.into_iter().map(fill).collect()
 }
 
-/// Every map of a relief, as far as the budget goes.
-fn generate(
-    executor: &Executor,
-    field: Pattern,
-    relief: &HeightSurface,
-) -> Result<(Vec<GeneratorRow>, Maps)> {
-    let device = match executor {
-        Executor::Gpu(renderer) => Some(&renderer.device),
-        Executor::Cpu => None,
-    };
-    let mut maker = device.map(Maker::new);
-    let mut maps: Maps = Vec::new();
-    let mut rows = Vec::new();
-    for generator in Generator::ALL {
-        let made = one_map(&mut maker, generator, relief)?;
-        let mut row = GeneratorRow {
-            field: field.name().into(),
-            size: relief.heights().size(),
-            surface: relief.patches().name().into(),
-            generator: generator.name().into(),
-            device: executor.name(),
-            ms: None,
-            mean_ratio: None,
-            of_exact: None,
-            wider_than_exact: None,
-            estimate_ms: None,
-        };
-        match made {
-            Made::Map(map, ms) => {
-                row.ms = Some(ms);
-                row.mean_ratio = Some(mean_ratio(&map));
-                maps.push((generator, Arc::new(map)));
-            }
-            Made::TooSlow(ms) => row.estimate_ms = Some(ms),
-        }
-        rows.push(row);
-    }
-    compare(&mut rows, &maps);
-    rows.push(pyramid(executor, device, field, relief)?);
-    Ok((rows, maps))
-}
-
 /// A map with its time, or the time that it would have taken.
 enum Made {
     Map(ConeMap, f64),
     TooSlow(f64),
 }
 
-fn one_map(
-    maker: &mut Option<Maker<'_>>,
-    generator: Generator,
-    relief: &HeightSurface,
-) -> Result<Made> {
-    let start = Instant::now();
-    let mut done = 0.0;
-    let mut watch = |share: f64| {
-        done = share;
-        !interrupt::asked() && (share >= 1.0 || start.elapsed() < BUDGET)
-    };
-    let (heights, patches) = (relief.heights(), relief.patches());
-    let options = Options::default();
-    let made = match maker {
-        Some(maker) => maker.generate(generator, heights, patches, &options, &mut watch),
-        None => cpu::generate(generator, heights, patches, &options, &mut watch),
-    };
-    let ms = start.elapsed().as_secs_f64() * 1e3;
-    match made {
-        Ok(map) => Ok(Made::Map(map, ms)),
-        Err(GenerateError::Cancelled) if interrupt::asked() => Err(RenderError::Cancelled.into()),
-        Err(GenerateError::Cancelled) => Ok(Made::TooSlow(ms / done.max(1e-6))),
-        Err(e) => Err(e.into()),
+impl Measured<'_> {
+    /// The row of a generator, without any figures.
+    fn row(&self, generator: &str) -> GeneratorRow {
+        GeneratorRow {
+            field: self.field.name().into(),
+            size: self.surface.heights().size(),
+            surface: self.surface.patches().name().into(),
+            generator: generator.into(),
+            device: self.executor.name(),
+            ms: None,
+            mean_ratio: None,
+            of_exact: None,
+            wider_than_exact: None,
+            estimate_ms: None,
+        }
+    }
+
+    /// Rows of all generators and of the pyramid of maxima, and the maps that were finished in
+    /// time.
+    fn generate(&self) -> Result<(Vec<GeneratorRow>, Maps)> {
+        let mut maker = match self.executor {
+            Executor::Gpu(renderer) => Some(Maker::new(&renderer.device)),
+            Executor::Cpu => None,
+        };
+        let mut maps: Maps = Vec::new();
+        let mut rows = Vec::new();
+        for generator in Generator::ALL {
+            let mut row = self.row(generator.name());
+            match self.one_map(&mut maker, generator)? {
+                Made::Map(map, ms) => {
+                    row.ms = Some(ms);
+                    row.mean_ratio = Some(mean_ratio(&map));
+                    maps.push((generator, Arc::new(map)));
+                }
+                Made::TooSlow(ms) => row.estimate_ms = Some(ms),
+            }
+            rows.push(row);
+        }
+        compare(&mut rows, &maps);
+        let apexes = self.surface.heights().apexes(self.surface.patches());
+        let start = Instant::now();
+        match &mut maker {
+            Some(maker) => maker.max_mip(self.surface.cells(), &apexes)?,
+            None => MaxMip::new(self.surface.cells(), apexes),
+        };
+        let mut row = self.row("max-mip");
+        row.ms = Some(start.elapsed().as_secs_f64() * 1e3);
+        rows.push(row);
+        Ok((rows, maps))
+    }
+
+    fn one_map(&self, maker: &mut Option<Maker<'_>>, generator: Generator) -> Result<Made> {
+        let start = Instant::now();
+        let mut done = 0.0;
+        let mut watch = |share: f64| {
+            done = share;
+            !interrupt::asked() && (share >= 1.0 || start.elapsed() < BUDGET)
+        };
+        let (heights, patches) = (self.surface.heights(), self.surface.patches());
+        let options = Options::default();
+        let made = match maker {
+            Some(maker) => maker.generate(generator, heights, patches, &options, &mut watch),
+            None => cpu::generate(generator, heights, patches, &options, &mut watch),
+        };
+        let ms = start.elapsed().as_secs_f64() * 1e3;
+        match made {
+            Ok(map) => Ok(Made::Map(map, ms)),
+            Err(GenerateError::Cancelled) if interrupt::asked() => {
+                Err(RenderError::Cancelled.into())
+            }
+            Err(GenerateError::Cancelled) => Ok(Made::TooSlow(ms / done.max(1e-6))),
+            Err(e) => Err(e.into()),
+        }
+    }
+
+    /// Rows of all tracers over all views.
+    fn trace(&self, maps: &Maps) -> Result<Vec<TracerRow>> {
+        let reference = ReferenceTracer::new(self.surface.clone());
+        let mut rows = Vec::new();
+        for view_deg in VIEWS {
+            let rays = view_rays(&self.surface, f64::from(view_deg), RAYS);
+            let truths = first_hits(&reference, &rays);
+            for (kind, generator) in PAIRS {
+                if interrupt::asked() {
+                    return Err(RenderError::Cancelled.into());
+                }
+                let map = maps.iter().find(|(g, _)| Some(*g) == generator);
+                if kind.needs_map() && map.is_none() {
+                    if view_deg == VIEWS[0] {
+                        let (name, map) = (kind.name(), generator.map_or("", Generator::name));
+                        say(&format!(
+                            "{name} is skipped: the map `{map}` takes too long"
+                        ));
+                    }
+                    continue;
+                }
+                let cones = map.map(|(_, map)| Supply::from(map.clone()));
+                let settings = TracerSettings::from(kind);
+                let tracer = kind.make(&self.surface, cones.as_ref(), &settings, 0.0)?;
+                let found = measure(&*tracer, &rays, &truths);
+                rows.push(TracerRow {
+                    field: self.field.name().into(),
+                    size: self.surface.heights().size(),
+                    surface: self.surface.patches().name().into(),
+                    view_deg,
+                    tracer: kind.name().into(),
+                    map: generator.map_or("none", Generator::name).into(),
+                    steps_mean: found.steps_mean,
+                    steps_p99: found.steps_p99,
+                    skipped: found.skipped,
+                    unconverged: found.unconverged,
+                    error_texels: found.error_texels,
+                });
+            }
+        }
+        Ok(rows)
     }
 }
 
-/// Mean ratio in texture widths, none counted as wider than one.
+/// The mean ratio in texture widths; none counts as wider than one.
 fn mean_ratio(map: &ConeMap) -> f64 {
     let width = f64::from(map.size[0]);
     let sum: f64 = map.ratios.iter().map(|r| (r / width).min(1.0)).sum();
     sum / map.ratios.len() as f64
 }
 
-/// Fills in what is relative to the brute force of Dummer's rule.
+/// Fills in the figures that compare a map with that of Dummer's rule by brute force.
 fn compare(rows: &mut [GeneratorRow], maps: &Maps) {
-    // Branch and bound gives the same bits, should brute force take too long.
+    // Branch and bound gives the same bits if brute force takes too long.
     let same = [Generator::Brute, Generator::Exact];
     let Some((_, exact)) = maps.iter().find(|(g, _)| same.contains(g)) else {
         return;
@@ -272,117 +348,4 @@ fn compare(rows: &mut [GeneratorRow], maps: &Maps) {
             row.wider_than_exact = Some(wider.count() as f64 / map.ratios.len() as f64);
         }
     }
-}
-
-/// The row of the pyramid of maxima, which needs no cones.
-fn pyramid(
-    executor: &Executor,
-    device: Option<&Device>,
-    field: Pattern,
-    relief: &HeightSurface,
-) -> Result<GeneratorRow> {
-    let apexes = relief.heights().apexes(relief.patches());
-    let start = Instant::now();
-    match device {
-        Some(device) => Maker::new(device).max_mip(relief.cells(), &apexes)?,
-        None => MaxMip::new(relief.cells(), apexes),
-    };
-    Ok(GeneratorRow {
-        field: field.name().into(),
-        size: relief.heights().size(),
-        surface: relief.patches().name().into(),
-        generator: "max-mip".into(),
-        device: executor.name(),
-        ms: Some(start.elapsed().as_secs_f64() * 1e3),
-        mean_ratio: None,
-        of_exact: None,
-        wider_than_exact: None,
-        estimate_ms: None,
-    })
-}
-
-/// Tracers, each with the cones that it is measured with. `exact` has the bits of `brute`.
-const PAIRS: [(&str, Option<Generator>); 16] = [
-    ("linear-binary", None),
-    ("csm-exact", Some(Generator::Exact)),
-    ("csm-exact", Some(Generator::Improved)),
-    ("csm-exact", Some(Generator::Center)),
-    ("csm-loop", Some(Generator::Exact)),
-    ("csm-fixed", Some(Generator::Exact)),
-    ("csm-scaled", Some(Generator::Exact)),
-    ("quad", Some(Generator::Quad)),
-    ("rcs-binary", Some(Generator::RelaxedSearch)),
-    ("rcs-binary", Some(Generator::RelaxedExact)),
-    ("secant", Some(Generator::Exact)),
-    ("secant", Some(Generator::Improved)),
-    ("secant", Some(Generator::RelaxedExact)),
-    ("max-mip", None),
-    ("walk", Some(Generator::Walk)),
-    ("walk-relaxed", Some(Generator::WalkRelaxed)),
-];
-
-/// A tracer of a name over a relief; `None` where its map is missing.
-fn tracer(
-    name: &str,
-    relief: &Arc<HeightSurface>,
-    map: Option<&Arc<ConeMap>>,
-) -> Result<Option<AnyTracer>, TraceError> {
-    let relief = relief.clone();
-    match name {
-        "linear-binary" => {
-            let own = LinearBinary::new(relief, LINEAR_STEPS, LINEAR_ROUNDS);
-            return Ok(Some(AnyTracer::LinearBinary(own)));
-        }
-        "max-mip" => return Ok(Some(AnyTracer::MaxMip(MaxMipTracer::new(relief)))),
-        _ => {}
-    }
-    let Some(map) = map.cloned() else {
-        return Ok(None);
-    };
-    Ok(match name {
-        "walk" => Some(AnyTracer::Walk(Walk::new(relief, map)?)),
-        "walk-relaxed" => Some(AnyTracer::WalkRelaxed(WalkRelaxed::new(relief, map)?)),
-        _ => match Manner::ALL.into_iter().find(|m| m.name == name) {
-            Some(manner) => Some(AnyTracer::Cones(Cones::new(relief, map, manner)?)),
-            None => None,
-        },
-    })
-}
-
-/// Every tracer over every view of a relief.
-fn trace(field: Pattern, relief: &Arc<HeightSurface>, maps: &Maps) -> Result<Vec<TracerRow>> {
-    let oracle = Oracle::new(relief.clone());
-    let mut rows = Vec::new();
-    for view_deg in VIEWS {
-        let rays = view_rays(relief, f64::from(view_deg), RAYS);
-        let truths = first_hits(&oracle, &rays);
-        for (name, generator) in PAIRS {
-            if interrupt::asked() {
-                return Err(RenderError::Cancelled.into());
-            }
-            let map = maps.iter().find(|(g, _)| Some(*g) == generator);
-            let Some(tracer) = tracer(name, relief, map.map(|(_, m)| m))? else {
-                if view_deg == VIEWS[0] {
-                    let map = generator.map_or("", Generator::name);
-                    say(&format!("{name} is left out: there is no map `{map}`"));
-                }
-                continue;
-            };
-            let found = survey(&tracer, &rays, &truths);
-            rows.push(TracerRow {
-                field: field.name().into(),
-                size: relief.heights().size(),
-                surface: relief.patches().name().into(),
-                view_deg,
-                tracer: name.into(),
-                map: generator.map_or("none", Generator::name).into(),
-                steps_mean: found.steps_mean,
-                steps_p99: found.steps_p99,
-                skipped: found.skipped,
-                unconverged: found.unconverged,
-                error_texels: found.error_texels,
-            });
-        }
-    }
-    Ok(rows)
 }

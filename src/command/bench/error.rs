@@ -19,13 +19,14 @@ use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
 use crate::command::sink::is_stdout;
-use crate::gpu::render::RenderError;
+use crate::gpu::RenderError;
 use crate::measure::compare::compare;
 use crate::measure::flip::{Picture, flip};
 use crate::measure::truth::{Cache, Truth, cached};
 use crate::picture::frame::Frame;
 use crate::picture::{Layer, Shades};
 use crate::plan::{Extras, Plan};
+use crate::scene::Assets;
 
 /// Options of `bench error`.
 #[derive(Debug, Args)]
@@ -49,7 +50,8 @@ const RUNS: usize = 5;
 /// An unknown preset, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &ErrorBench) -> Result<()> {
     interrupt::listen();
-    let plans = args.common.plans()?;
+    let assets = Assets::default();
+    let plans = args.common.plans(&assets)?;
     if let Some(path) = &args.plot
         && !is_svg(path)
     {
@@ -67,7 +69,14 @@ pub fn run(args: &ErrorBench) -> Result<()> {
     }
     let mut rows = Vec::new();
     for (name, plan) in &plans {
-        let measured = measure(&mut executor, cache.as_ref(), name, plan, &settings)?;
+        let measured = measure(
+            &mut executor,
+            cache.as_ref(),
+            name,
+            plan,
+            &assets,
+            &settings,
+        )?;
         files.show(&table::preset(&measured))?;
         rows.extend(measured);
     }
@@ -88,6 +97,7 @@ fn is_svg(path: &Path) -> bool {
 /// Truths by what they are asked for: settings that change the hit rule have their own.
 struct Truths<'a> {
     cache: Option<&'a Cache>,
+    assets: &'a Assets,
     name: &'a str,
     found: HashMap<u64, Truth>,
 }
@@ -97,7 +107,7 @@ impl Truths<'_> {
         let key = plan.march.detail.to_bits();
         if !self.found.contains_key(&key) {
             let watch = &mut |_: &_| !interrupt::asked();
-            let (truth, kept) = cached(self.cache, plan, watch)?;
+            let (truth, kept) = cached(self.cache, plan, self.assets, watch)?;
             say(&format!(
                 "{}: truth{} at {} of the estimate, {:.4} % of pixels still move",
                 self.name,
@@ -117,11 +127,13 @@ fn measure(
     cache: Option<&Cache>,
     name: &str,
     plan: &Plan,
+    assets: &Assets,
     settings: &[Setting],
 ) -> Result<Vec<Row>, RenderError> {
     let watch = &mut |_: &_| !interrupt::asked();
     let mut truths = Truths {
         cache,
+        assets,
         name,
         found: HashMap::new(),
     };
@@ -137,9 +149,9 @@ fn measure(
             levels: true,
             ..Extras::default()
         };
-        let frame = executor.render(plan, extras, watch)?;
+        let frame = executor.render(plan, assets, extras, watch)?;
         let mut row = blank(name, plan, setting, &frame, truth, executor);
-        row.fill(&compare(&frame, &truth.frame, plan));
+        row.fill(&compare(&frame, &truth.frame, plan, &plan.solid(assets)?));
         row.flip = look_apart(&truth.frame, &frame, plan);
         rows.push(row);
     }
@@ -151,11 +163,11 @@ fn measure(
     let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); rows.len()];
     for run in 0..=RUNS {
         for ((_, plan), [wall, gpu]) in fitting.iter().zip(&mut times) {
-            let frame = executor.render(plan, extras, watch)?;
+            let frame = executor.render(plan, assets, extras, watch)?;
             // The first round warms up: programs without counters are new.
             if run > 0 {
                 wall.push(frame.march_ms);
-                let each = frame.passes.iter().filter(|p| p.marches());
+                let each = frame.marched();
                 gpu.extend(each.map(|p| p.gpu_ms).sum::<Option<f64>>());
             }
         }

@@ -14,12 +14,13 @@ use crate::command::bench::table;
 use crate::command::executor::Executor;
 use crate::command::failure::usage;
 use crate::command::interrupt;
-use crate::gpu::render::RenderError;
+use crate::gpu::RenderError;
 use crate::picture::frame::Frame;
 use crate::picture::{BitDepth, Folder, Layer, Place, Shades, write_png};
 use crate::plan::march::MODES;
 use crate::plan::{Extras, Plan};
 use crate::preset;
+use crate::scene::Assets;
 
 /// Options of `bench steps`.
 #[derive(Debug, Args)]
@@ -43,7 +44,8 @@ const RUNS: usize = 5;
 /// An unknown preset or mode, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &StepsBench) -> Result<()> {
     interrupt::listen();
-    let plans = args.common.plans()?;
+    let assets = Assets::default();
+    let plans = args.common.plans(&assets)?;
     let settings = modes(args.mode.as_deref())?;
     // Kept until the end: a folder that was made goes again if no map comes into it.
     let _folder = args.heat.as_deref().map(Folder::prepare).transpose()?;
@@ -55,7 +57,7 @@ pub fn run(args: &StepsBench) -> Result<()> {
             let Some(plan) = setting.apply(plan) else {
                 continue;
             };
-            let (measured, frame) = measure(&mut executor, name, &plan)?;
+            let (measured, frame) = measure(&mut executor, name, &plan, &assets)?;
             files.show(&table::levels(&measured))?;
             rows.extend(measured);
             if let Some(folder) = &args.heat {
@@ -93,6 +95,7 @@ fn measure(
     executor: &mut Executor,
     name: &str,
     plan: &Plan,
+    assets: &Assets,
 ) -> Result<(Vec<StepsRow>, Frame), RenderError> {
     let watch = &mut |_: &_| !interrupt::asked();
     let counted = Extras {
@@ -106,11 +109,11 @@ fn measure(
         time: true,
         ..Extras::default()
     };
-    let frame = executor.render(plan, counted, watch)?;
+    let frame = executor.render(plan, assets, counted, watch)?;
     let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); frame.passes.len()];
     for run in 0..=RUNS {
-        let warm = executor.render(plan, timed, watch)?;
-        let passes = warm.passes.iter().filter(|p| p.marches());
+        let warm = executor.render(plan, assets, timed, watch)?;
+        let passes = warm.marched();
         for (pass, [wall, gpu]) in passes.zip(&mut times) {
             if run > 0 {
                 wall.push(pass.wall_ms);
@@ -119,7 +122,7 @@ fn measure(
         }
     }
     let mut rows = Vec::new();
-    let passes = frame.passes.iter().filter(|p| p.marches());
+    let passes = frame.marched();
     for (at, (pass, [mut wall, mut gpu])) in passes.zip(times).enumerate() {
         let (work, states, width) = match frame.levels.get(at) {
             Some(level) => (&level.work, &level.state, level.cells[0]),
@@ -128,7 +131,7 @@ fn measure(
         let mut row = count(work, states, width as usize);
         row.preset = name.into();
         row.mode = plan.march.mode.name().into();
-        row.pass.clone_from(&pass.name);
+        row.pass = pass.pass.name();
         row.size = plan.size;
         row.device = executor.name();
         row.wall_ms = median(&mut wall).unwrap_or(0.0);

@@ -2,15 +2,16 @@
 
 use std::fmt::Write as _;
 
-use crate::heightfield::conemap::file::{Layout, MapFile, Slopes, kind_word, promise, wrap_word};
+use crate::heightfield::conemap::WIDEST;
+use crate::heightfield::conemap::file::{Layout, MapFile, RatioScale, Slopes};
+use crate::heightfield::conemap::generate::generator::{Generator, Quality};
 use crate::heightfield::conemap::generate::slopes::slopes;
-use crate::heightfield::conemap::{MapKind, WIDEST};
-use crate::heightfield::heights::Patches;
+use crate::heightfield::heights::wrap_name;
 use crate::heightfield::load::Loaded;
 
 /// Longest bar of a histogram.
 const BAR: f64 = 40.0;
-/// Bars end at an eighth of a character.
+/// A bar ends with an eighth of a character.
 const EIGHTHS: [&str; 8] = ["", "▏", "▎", "▍", "▌", "▋", "▊", "▉"];
 
 /// Numbers in order, for quantiles.
@@ -35,13 +36,18 @@ impl Sorted {
         self.0.iter().sum::<f64>() / self.0.len().max(1) as f64
     }
 
+    /// How many are not above 0.
+    fn zeros(&self) -> usize {
+        self.0.partition_point(|v| *v <= 0.0)
+    }
+
     /// How many are under a bound.
     fn under(&self, bound: f64) -> usize {
         self.0.partition_point(|v| *v < bound)
     }
 }
 
-/// Three figures or so, and no more than anyone reads.
+/// A number with about three figures.
 fn figure(x: f64) -> String {
     let text = match x.abs() {
         0.0 => return "0".into(),
@@ -54,7 +60,7 @@ fn figure(x: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').into()
 }
 
-/// A share with one decimal, that is 0 only where there is nothing.
+/// A share with one decimal, which is 0 only if nothing is there.
 fn percent(count: usize, all: usize) -> String {
     let share = 100.0 * count as f64 / all.max(1) as f64;
     match count {
@@ -64,8 +70,21 @@ fn percent(count: usize, all: usize) -> String {
     }
 }
 
-fn row(text: &mut String, name: &str, what: &str) {
-    let _ = writeln!(text, "  {name:<9} {what}");
+/// A report: a name, rows of what is known, and a histogram with its title.
+fn report(
+    name: &str,
+    rows: &[(&str, String)],
+    title: &str,
+    bars: &[(String, usize)],
+    all: usize,
+) -> String {
+    let mut text = format!("{name}\n");
+    for (name, what) in rows {
+        let _ = writeln!(text, "  {name:<9} {what}");
+    }
+    let _ = writeln!(text, "\n  {title}");
+    histogram(&mut text, bars, all);
+    text
 }
 
 /// Rows of a histogram: what, how many of how many.
@@ -75,7 +94,7 @@ fn histogram(text: &mut String, rows: &[(String, usize)], all: usize) {
     let width = width.unwrap_or(0);
     for (name, n) in rows {
         let eighths = (BAR * 8.0 * *n as f64 / longest as f64).round() as usize;
-        // What is there at all is seen.
+        // Whatever is there has a visible bar.
         let eighths = eighths.max(usize::from(*n > 0));
         let bar = "█".repeat(eighths / 8) + EIGHTHS[eighths % 8];
         let line = format!("  {name:>width$}  {:>7}  {bar}", percent(*n, all));
@@ -83,104 +102,85 @@ fn histogram(text: &mut String, rows: &[(String, usize)], all: usize) {
     }
 }
 
-/// Tells what a cone map holds.
+/// Describes a cone map.
 pub fn describe_map(name: &str, file: &MapFile) -> String {
-    let mut text = format!("{name}\n");
-    let map = &file.map;
-    let label = &file.label;
-    let [w, h] = map.size;
-    row(
-        &mut text,
-        "cone map",
-        &format!(
-            "{w} x {h}, kind {}: {}",
-            kind_word(map.kind),
-            promise(map.kind)
-        ),
-    );
-    row(&mut text, "file", &form(file));
-    let [sw, sh] = label.samples;
-    let mut heights = format!("{sw} x {sh} samples, wrap {}", wrap_word(map.wrap));
-    if matches!(map.kind, MapKind::Walk | MapKind::WalkRelaxed) {
-        let surface = match label.patches {
-            Patches::Bilinear => "bilinear patches",
-            Patches::Boxes => "boxes",
-        };
-        let _ = write!(heights, ", {surface}, offset {} texels", figure(map.offset));
+    let (map, label, scale) = (&file.map, &file.label, file.label.scale);
+    let ([w, h], [sw, sh]) = (map.size, label.samples);
+    let (word, promise) = (map.kind.name(), map.kind.facts().promise);
+    let mut heights = format!("{sw} x {sh} samples, wrap {}", wrap_name(map.wrap));
+    if map.kind.over_cells() {
+        let (surface, offset) = (label.patches.surface(), figure(map.offset));
+        heights += &format!(", {surface}, offset {offset} texels");
     }
     if let Some(digest) = &label.digest {
-        let _ = write!(
-            heights,
-            ", SHA-256 {}...",
-            digest.chars().take(12).collect::<String>()
-        );
+        heights += &format!(", SHA-256 {digest:.12}...");
     }
-    row(&mut text, "heights", &heights);
-    let by = label.generator.as_deref().unwrap_or("another program");
-    row(&mut text, "made by", &maker(by));
     let ratios = Sorted::new(map.ratios.iter().copied());
-    let all = ratios.0.len();
-    let scale = label.scale;
-    row(
-        &mut text,
-        "ratios",
-        &format!(
-            "mean {} of the width ({} texels), none counting for more; median {} texels",
-            figure(file.mean_share()),
-            figure(file.mean_share() * scale),
-            figure(ratios.at(0.5))
+    let (all, mean) = (ratios.0.len(), file.mean_share());
+    let rows = [
+        ("cone map", format!("{w} x {h}, kind {word}: {promise}")),
+        ("file", format_of(file)),
+        ("heights", heights),
+        ("made by", maker(label.generator.as_deref())),
+        (
+            "ratios",
+            format!(
+                "mean {} of the width ({} texels), wider cones counted as the width; median {} texels",
+                figure(mean),
+                figure(mean * scale),
+                figure(ratios.at(0.5))
+            ),
         ),
-    );
-    row(
-        &mut text,
-        "",
-        &format!(
-            "from {} to {}; {} are 0, {} are {} or wider",
-            figure(ratios.at(0.0)),
-            figure(ratios.at(1.0)),
-            percent(all - ratios.0.iter().filter(|r| **r > 0.0).count(), all),
-            percent(all - ratios.under(scale), all),
-            figure(scale)
+        (
+            "",
+            format!(
+                "from {} to {}; {} are 0, {} are {} or wider",
+                figure(ratios.at(0.0)),
+                figure(ratios.at(1.0)),
+                percent(ratios.zeros(), all),
+                percent(all - ratios.under(scale), all),
+                figure(scale)
+            ),
         ),
-    );
-    let _ = writeln!(text, "\n  ratios in texels");
-    histogram(&mut text, &octaves(&ratios, scale), all);
-    text
+    ];
+    report(
+        name,
+        &rows,
+        "ratios in texels",
+        &octaves(&ratios, scale),
+        all,
+    )
 }
 
-/// What made a map, with a warning where that is no promise.
-fn maker(by: &str) -> String {
-    let first = by.split(',').next().unwrap_or_default();
-    match first {
-        "center" => format!("{by}: some cones are too wide, samples may lie inside"),
-        "relaxed-search" => format!("{by}: some cones are too wide, rays may cross twice"),
-        "another program" => format!("{by}: its cones may have been rounded up"),
-        _ => by.to_string(),
+/// What made a map, with a warning if its cones may be too wide.
+fn maker(label: Option<&str>) -> String {
+    let Some(by) = label else {
+        return "another program: its cones may have been rounded up".into();
+    };
+    let generator = by.split(',').next().and_then(Generator::named);
+    match generator.map(|g| g.facts().quality) {
+        Some(Quality::Flawed(flaw)) => format!("{by}: some cones are too wide, {flaw}"),
+        _ => by.into(),
     }
 }
 
-fn form(file: &MapFile) -> String {
-    let form = &file.form;
-    if form.layout == Layout::Full {
-        return format!(
-            "EXR, 32-bit floats, 1 means {} texels",
-            figure(file.label.scale)
-        );
+fn format_of(file: &MapFile) -> String {
+    let (format, scale) = (&file.format, figure(file.label.scale));
+    let layout = format.layout.name();
+    if format.layout == Layout::Full {
+        return format!("EXR, 32-bit floats, 1 means {scale} texels");
     }
-    let bits = form.bits.count();
+    let slopes = match (format.layout, format.slopes) {
+        (Layout::Dummer, Slopes::Half) => "half slopes, ",
+        _ => "",
+    };
+    let ratios = match format.ratio {
+        RatioScale::Sqrt => "as square roots",
+        RatioScale::Linear => "linear",
+    };
     format!(
-        "PNG, layout {}, {bits} bit, {}ratios {}, 1 means {} texels",
-        form.layout.name(),
-        match (form.layout, form.slopes) {
-            (Layout::Dummer, Slopes::Half) => "half slopes, ",
-            _ => "",
-        },
-        if form.root {
-            "as square roots"
-        } else {
-            "linear"
-        },
-        figure(file.label.scale)
+        "PNG, layout {layout}, {} bit, {slopes}ratios {ratios}, 1 means {scale} texels",
+        format.bits.count()
     )
 }
 
@@ -190,21 +190,17 @@ pub(crate) fn steepness(slope: [f32; 2]) -> f64 {
     x.hypot(y)
 }
 
-/// Ratios by doubling bounds, from the first that is under some of them up to the scale
-/// or the widest.
+/// How many ratios are between doubling bounds, up to the scale or the widest.
 fn octaves(ratios: &Sorted, scale: f64) -> Vec<(String, usize)> {
     let all = ratios.0.len();
-    let zero = ratios.0.partition_point(|r| *r <= 0.0);
-    // More rows at the low end than these would only be long.
+    let zero = ratios.zeros();
+    // More rows at the low end would only be long.
     let top = (scale.log2().ceil() as i32).max(0);
     let low = (top - 12).max(-3);
     let mut bounds: Vec<f64> = (low..=top).map(f64::from).map(f64::exp2).collect();
     if ratios.at(1.0) > 2.0 * scale {
-        bounds.extend(
-            [4.0 * bounds[bounds.len() - 1], WIDEST]
-                .iter()
-                .filter(|b| **b > scale),
-        );
+        let more = [4.0 * bounds[bounds.len() - 1], WIDEST];
+        bounds.extend(more.into_iter().filter(|b| *b > scale));
         bounds.sort_by(f64::total_cmp);
         bounds.dedup();
     }
@@ -222,7 +218,7 @@ fn octaves(ratios: &Sorted, scale: f64) -> Vec<(String, usize)> {
     }
     let last = bounds.last().copied().unwrap_or(0.0);
     rows.push((format!("{} and wider", short(last)), all - before));
-    // Empty rows before the first and after the last full one say nothing.
+    // Empty rows at both ends are left out.
     let full = |r: &(String, usize)| r.1 > 0;
     let first = rows.iter().position(full).unwrap_or(0);
     let end = rows.iter().rposition(full).map_or(rows.len(), |i| i + 1);
@@ -237,42 +233,35 @@ fn short(x: f64) -> String {
     }
 }
 
-/// Tells what a height map holds.
+/// Describes a height map.
 pub fn describe_heights(name: &str, loaded: &Loaded) -> String {
-    let mut text = format!("{name}\n");
     let heights = &loaded.heights;
-    let [w, h] = heights.size();
-    let what = format!(
-        "{w} x {h} samples, wrap {}, {}",
-        wrap_word(heights.wrap()),
-        loaded.form
-    );
-    row(&mut text, "heights", &what);
+    let ([w, h], wrap) = (heights.size(), wrap_name(heights.wrap()));
     let sorted = Sorted::new(heights.data().iter().map(|z| f64::from(*z)));
-    let range = format!(
-        "from {} to {}, mean {}, median {}",
-        figure(sorted.at(0.0)),
-        figure(sorted.at(1.0)),
-        figure(sorted.mean()),
-        figure(sorted.at(0.5))
-    );
-    row(&mut text, "", &range);
+    let [low, high, median] = [0.0, 1.0, 0.5].map(|share| figure(sorted.at(share)));
     let steep = Sorted::new(slopes(heights).into_iter().map(steepness));
-    let what = format!(
-        "mean {} of the height per texel, steepest {}",
-        figure(steep.mean()),
-        figure(steep.at(1.0))
-    );
-    row(&mut text, "slopes", &what);
-    let _ = writeln!(text, "\n  heights");
+    let [mean, mean_slope] = [&sorted, &steep].map(|s| figure(s.mean()));
+    let steepest = figure(steep.at(1.0));
+    let rows = [
+        (
+            "heights",
+            format!("{w} x {h} samples, wrap {wrap}, {}", loaded.form),
+        ),
+        (
+            "",
+            format!("from {low} to {high}, mean {mean}, median {median}"),
+        ),
+        (
+            "slopes",
+            format!("mean {mean_slope} of the height per texel, steepest {steepest}"),
+        ),
+    ];
     let bound = |i: usize| i as f64 / 10.0;
-    let rows: Vec<(String, usize)> = (0..10)
-        .map(|i| {
-            let end = if i == 9 { f64::INFINITY } else { bound(i + 1) };
-            let n = sorted.under(end) - sorted.under(bound(i));
-            (format!("{:.1} to {:.1}", bound(i), bound(i + 1)), n)
-        })
-        .collect();
-    histogram(&mut text, &rows, sorted.0.len());
-    text
+    let bars = (0..10).map(|i| {
+        let end = if i == 9 { f64::INFINITY } else { bound(i + 1) };
+        let n = sorted.under(end) - sorted.under(bound(i));
+        (format!("{:.1} to {:.1}", bound(i), bound(i + 1)), n)
+    });
+    let bars: Vec<_> = bars.collect();
+    report(name, &rows, "heights", &bars, sorted.0.len())
 }

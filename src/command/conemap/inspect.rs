@@ -1,24 +1,26 @@
 //! `conemarch conemap inspect FILE`
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::{Args, ValueHint};
 
-use crate::command::conemap::common::{Reading, Strange, of_map, shown};
 use crate::command::conemap::describe::{describe_heights, describe_map};
+use crate::command::conemap::options::{Foreign, Reading, of_map, shown};
 use crate::command::conemap::panels::{heights_panels, map_panels};
+use crate::command::conemap::sheet::png;
 use crate::command::failure::usage;
 use crate::command::print::{print, say};
 use crate::command::sink::{Sink, spared};
-use crate::heightfield::conemap::file::{MapFile, Wanted, has_map};
+use crate::heightfield::conemap::file::{MapFile, MapUse, has_map};
 
 /// What `inspect` takes.
 #[derive(Args, Debug)]
 pub struct Inspect {
     /// A cone map, a height map, or a field like fbm:512x512,seed=7
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    file: String,
+    file: OsString,
 
     /// Draw the channels side by side into a .png file
     #[arg(short, long, value_name = "PICTURE", value_hint = ValueHint::FilePath)]
@@ -26,72 +28,66 @@ pub struct Inspect {
 
     /// Check that the cone map belongs to these heights, read with the options below
     #[arg(long, value_name = "HEIGHTS", value_hint = ValueHint::FilePath)]
-    heights: Option<String>,
+    heights: Option<OsString>,
 
     #[command(flatten)]
     reading: Reading,
 
     #[command(flatten)]
-    strange: Strange,
+    foreign: Foreign,
 }
 
 /// Tells what is in a file, and draws it.
 ///
 /// # Errors
-/// Neither a map nor heights, a map of other heights, an unwritable picture.
+/// The file is neither a map nor heights, the map belongs to other heights, or the picture
+/// cannot be written.
 pub fn run(args: &Inspect) -> Result<()> {
-    let heights = args
-        .heights
-        .iter()
-        .map(|h| ("the heights", PathBuf::from(h)));
-    let read = std::iter::once(("what it shows", PathBuf::from(&args.file)));
-    spared(
-        &[("the picture", args.output.as_deref())],
-        &read.chain(heights).collect::<Vec<_>>(),
-    )?;
-    let picture = args.output.as_deref().map(prepared).transpose()?;
     let path = Path::new(&args.file);
-    // Fields have no file; what is neither is told by the reader of heights.
-    let is_map = args.strange.is_said() || has_map(path).unwrap_or(false);
-    let canvas = if is_map {
-        let needless = args.reading.given(args.strange.is_said());
+    let mut inputs = vec![("what it shows", path.to_path_buf())];
+    inputs.extend(args.heights.iter().map(|h| ("the heights", h.into())));
+    spared(&[("the picture", args.output.as_deref())], &inputs)?;
+    let picture = args.output.as_deref().map(prepared).transpose()?;
+    // Fields have no file. The reader of heights reports a file that is neither.
+    let is_map = args.foreign.is_given() || has_map(path).unwrap_or(false);
+    let name = path.display().to_string();
+    let panels = if is_map {
+        let needless = args.reading.given(args.foreign.is_given());
         if let (None, Some(option)) = (&args.heights, needless) {
             return Err(usage(format!(
-                "{option} says how heights are read, and `{}` is a cone map; leave it out, or name its heights with --heights",
-                args.file
+                "{option} is for heights, and `{name}` is a cone map; leave it out, or name its heights with --heights"
             )));
         }
-        let file = args.strange.decode(path, args.reading.wrap)?;
+        let file = args.foreign.decode(path, args.reading.wrap)?;
         if let Some(heights) = &args.heights {
-            belongs(args, &file, path, heights)?;
+            check_heights(args, &file, path, heights)?;
         }
-        print(describe_map(&args.file, &file).as_bytes())?;
+        print(describe_map(&name, &file).as_bytes())?;
         picture.is_some().then(|| map_panels(&file))
     } else {
         if args.heights.is_some() {
             return Err(usage(format!(
-                "`{}` is no cone map, so that --heights has nothing to check; leave it out",
-                args.file
+                "`{name}` is not a cone map, so --heights has nothing to check; leave it out"
             )));
         }
         let loaded = args.reading.load(&args.file)?;
-        print(describe_heights(&args.file, &loaded).as_bytes())?;
+        print(describe_heights(&name, &loaded).as_bytes())?;
         picture.is_some().then(|| heights_panels(&loaded.heights))
     };
-    if let (Some((path, sink)), Some(canvas)) = (picture, canvas) {
-        sink.finish(&canvas.png().map_err(anyhow::Error::msg)?)?;
-        let [w, h] = canvas.size();
+    if let (Some((path, sink)), Some(panels)) = (picture, panels) {
+        let (bytes, [w, h]) = png(&panels).map_err(anyhow::Error::msg)?;
+        sink.finish(&bytes)?;
         say(&format!("{}  {w} x {h}", shown(&path)));
     }
     Ok(())
 }
 
-/// A picture's name that can be written.
+/// The name of a picture, checked to be writable.
 fn prepared(path: &Path) -> Result<(PathBuf, Sink)> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     if path.as_os_str() == "-" || ending.to_lowercase() != "png" {
         return Err(usage(format!(
-            "`{}` does not end in .png, which is what pictures of maps are",
+            "`{}` must end in .png, the format of these pictures",
             path.display()
         )));
     }
@@ -99,20 +95,24 @@ fn prepared(path: &Path) -> Result<(PathBuf, Sink)> {
 }
 
 /// Checks that a map belongs to heights.
-fn belongs(args: &Inspect, file: &MapFile, path: &Path, heights: &str) -> Result<()> {
+fn check_heights(args: &Inspect, file: &MapFile, path: &Path, heights: &OsString) -> Result<()> {
     let loaded = args.reading.load(heights)?;
-    let wanted = Wanted {
+    let wanted = MapUse {
         who: "this check",
         kinds: &[],
         heights: &loaded.heights,
-        // A map of boxes is as good a map as one of patches; nothing is traced here.
+        // Nothing is traced here, so any surface will do.
         patches: file.label.patches,
     };
-    file.fit(path, &wanted).map_err(of_map)?;
+    file.check_use(path, &wanted).map_err(of_map)?;
     let verb = match file.unknown() {
         Some(_) => "may belong",
         None => "belongs",
     };
-    say(&format!("{} {verb} to {heights}", path.display()));
+    say(&format!(
+        "{} {verb} to {}",
+        path.display(),
+        Path::new(heights).display()
+    ));
     Ok(())
 }

@@ -1,12 +1,11 @@
 //! `conemarch conemap make|inspect|convert`
 
-mod canvas;
-mod common;
 mod convert;
 mod describe;
-mod generate;
-mod glyphs;
 mod inspect;
 mod make;
+mod maker;
+mod options;
 mod panels;
+mod sheet;
 pub mod verb;

@@ -2,20 +2,22 @@
 
 use glam::DVec3;
 
-use crate::command::conemap::canvas::{Bar, Canvas, Panel};
 use crate::command::conemap::describe::steepness;
+use crate::command::conemap::sheet::{Bar, Panel};
 use crate::heightfield::conemap::file::{Layout, MapFile};
 use crate::heightfield::conemap::generate::slopes::slopes;
 use crate::heightfield::heights::Heights;
 use crate::picture::heat;
 
-/// Ends of a scale of two signs: blue under, orange over (of one lightness).
-const UNDER: DVec3 = DVec3::new(0.10, 0.32, 0.62);
-const OVER: DVec3 = DVec3::new(0.75, 0.33, 0.05);
+/// Ends of a scale of two signs: blue below, orange above (of one lightness).
+const BELOW: DVec3 = DVec3::new(0.10, 0.32, 0.62);
+const ABOVE: DVec3 = DVec3::new(0.75, 0.33, 0.05);
 const EVEN: DVec3 = DVec3::splat(0.96);
 
-fn signed(x: f64) -> DVec3 {
-    let end = if x < 0.0 { UNDER } else { OVER };
+/// The colour of a share of 0..=1 that is even at one half.
+fn signed(share: f64) -> DVec3 {
+    let x = 2.0 * share - 1.0;
+    let end = if x < 0.0 { BELOW } else { ABOVE };
     EVEN.lerp(end, x.abs().min(1.0))
 }
 
@@ -29,113 +31,84 @@ fn mark(x: f64) -> String {
     }
 }
 
-fn height_panel(size: [u32; 2], heights: &[f32]) -> Panel<'_> {
-    let width = size[0];
-    Panel {
-        caption: "height".into(),
-        size,
-        color: Box::new(move |x, y| DVec3::splat(f64::from(heights[(y * width + x) as usize]))),
-        bar: Some(Bar {
-            color: Box::new(DVec3::splat),
-            marks: ["0".into(), "0.5".into(), "1".into()],
-        }),
-    }
+fn height_panel(size: [u32; 2], heights: &[f32]) -> Panel {
+    let bar = Bar {
+        color: DVec3::splat,
+        marks: ["0".into(), "0.5".into(), "1".into()],
+    };
+    let color = |i: usize| DVec3::splat(f64::from(heights[i]));
+    Panel::new("height", size, color, Some(bar))
 }
 
-/// Share of the ratios that the colours of a panel tell apart. The rest are as bright as
-/// colours get: a few cones over peaks would else leave no colours for all others.
-const TOLD_APART: f64 = 0.99;
+/// Share of the ratios that the colours of a panel distinguish. The rest are as bright as
+/// colours get; otherwise a few cones over peaks would leave no colours for all others.
+const DISTINGUISHED: f64 = 0.99;
 
-/// Ratios in a heat map of their square root, since most are small. `step` of them
-/// belong to each place, and one counts.
-fn ratio_panel<'a>(file: &'a MapFile, caption: &str, which: usize, step: usize) -> Panel<'a> {
-    let map = &file.map;
-    let width = map.size[0];
+/// The cones of one channel as a heat map of the square root of their ratios, because most
+/// are small.
+fn ratio_panel(file: &MapFile, caption: &str, channel: usize) -> Panel {
+    let (map, channels) = (&file.map, file.map.kind.channels());
     let mut sorted = map.ratios.clone();
-    let at = (TOLD_APART * sorted.len().saturating_sub(1) as f64) as usize;
+    let at = (DISTINGUISHED * sorted.len().saturating_sub(1) as f64) as usize;
     let most = match sorted.is_empty() {
         true => 0.0,
         false => *sorted.select_nth_unstable_by(at, f64::total_cmp).1,
     };
     // No farther than the papers' channels hold.
     let high = most.min(file.label.scale).max(1e-9);
-    Panel {
-        caption: caption.into(),
-        size: map.size,
-        color: Box::new(move |x, y| {
-            let ratio = map.ratios[(y * width + x) as usize * step + which];
-            heat((ratio / high).clamp(0.0, 1.0).sqrt())
-        }),
-        bar: Some(Bar {
-            color: Box::new(heat),
-            marks: [
-                "0".into(),
-                mark(high / 4.0),
-                format!("{} texels +", mark(high)),
-            ],
-        }),
-    }
+    let color = |i: usize| {
+        let ratio = map.ratios[i * channels + channel];
+        heat((ratio / high).clamp(0.0, 1.0).sqrt())
+    };
+    let most = format!("{} texels +", mark(high));
+    let bar = Bar {
+        color: heat,
+        marks: ["0".into(), mark(high / 4.0), most],
+    };
+    Panel::new(caption, map.size, color, Some(bar))
 }
 
-/// A channel that is even at one half, with its farthest value as its scale.
-fn signed_panel<'a>(size: [u32; 2], caption: &str, shares: &'a [f32]) -> Panel<'a> {
-    let width = size[0];
+/// A channel that is even at one half, scaled to its farthest value.
+fn signed_panel(size: [u32; 2], caption: &str, shares: &[f32]) -> Panel {
     let far = shares.iter().map(|s| (f64::from(*s) - 0.5).abs());
     let far = far.fold(0.0, f64::max).max(1e-9);
-    Panel {
-        caption: caption.into(),
-        size,
-        color: Box::new(move |x, y| {
-            let share = f64::from(shares[(y * width + x) as usize]);
-            signed((share - 0.5) / far)
-        }),
-        bar: Some(Bar {
-            color: Box::new(|x| signed(2.0 * x - 1.0)),
-            marks: [mark(-far), "0".into(), mark(far)],
-        }),
-    }
+    let color = |i: usize| signed(0.5 + 0.5 * (f64::from(shares[i]) - 0.5) / far);
+    let bar = Bar {
+        color: signed,
+        marks: [mark(-far), "0".into(), mark(far)],
+    };
+    Panel::new(caption, size, color, Some(bar))
+}
+
+/// A normal as it is stored, with the blue that follows from its two numbers.
+fn normal_panel(size: [u32; 2], xs: &[f32], ys: &[f32]) -> Panel {
+    let color = |i: usize| {
+        let [nx, ny] = [xs[i], ys[i]].map(|n| 2.0 * f64::from(n) - 1.0);
+        let nz = (1.0 - nx * nx - ny * ny).max(0.0).sqrt();
+        DVec3::new(nx, ny, nz) * 0.5 + 0.5
+    };
+    Panel::new("normal", size, color, None)
 }
 
 /// The channels of a cone map.
-pub fn map_panels(file: &MapFile) -> Canvas {
+pub fn map_panels(file: &MapFile) -> Vec<Panel> {
     let size = file.map.size;
-    let mut panels = Vec::new();
-    if let Some(heights) = &file.heights {
-        panels.push(height_panel(size, heights));
+    let heights = file.heights.iter().map(|h| height_panel(size, h));
+    let mut panels: Vec<Panel> = heights.collect();
+    let captions = match file.map.kind.channels() {
+        1 => &["ratio"][..],
+        _ => &["ratio +x", "ratio -x", "ratio +y", "ratio -y"],
+    };
+    for (channel, caption) in captions.iter().enumerate() {
+        panels.push(ratio_panel(file, caption, channel));
     }
-    let places = size[0] as usize * size[1] as usize;
-    if file.map.ratios.len() == places {
-        panels.push(ratio_panel(file, "ratio", 0, 1));
-    } else {
-        for (i, side) in ["+x", "-x", "+y", "-y"].iter().enumerate() {
-            panels.push(ratio_panel(file, &format!("ratio {side}"), i, 4));
+    match (file.format.layout, file.shading.as_slice()) {
+        (Layout::Relief, [x, y]) => panels.push(normal_panel(size, &x.shares, &y.shares)),
+        (_, slopes) => {
+            panels.extend(slopes.iter().map(|s| signed_panel(size, s.name, &s.shares)));
         }
     }
-    match (file.form.layout, file.extra.as_slice()) {
-        (Layout::HeightSurface, [x, y]) => panels.push(normal_panel(size, &x.shares, &y.shares)),
-        (_, extra) => {
-            for channel in extra {
-                panels.push(signed_panel(size, channel.name, &channel.shares));
-            }
-        }
-    }
-    Canvas::of(&panels)
-}
-
-/// A normal as it is stored, with the blue that its two numbers leave.
-fn normal_panel<'a>(size: [u32; 2], xs: &'a [f32], ys: &'a [f32]) -> Panel<'a> {
-    let width = size[0];
-    Panel {
-        caption: "normal".into(),
-        size,
-        color: Box::new(move |x, y| {
-            let i = (y * width + x) as usize;
-            let [nx, ny] = [xs[i], ys[i]].map(|n| 2.0 * f64::from(n) - 1.0);
-            let nz = (1.0 - nx * nx - ny * ny).max(0.0).sqrt();
-            DVec3::new(nx, ny, nz) * 0.5 + 0.5
-        }),
-        bar: None,
-    }
+    panels
 }
 
 /// Slope that the mean slope is shaded as: plastic, and not so steep that half of the
@@ -143,24 +116,18 @@ fn normal_panel<'a>(size: [u32; 2], xs: &'a [f32], ys: &'a [f32]) -> Panel<'a> {
 const SHADED: f64 = 0.5;
 
 /// A height map, as it is and lit from the top left.
-pub fn heights_panels(heights: &Heights) -> Canvas {
-    let size = heights.size();
-    let width = size[0];
+pub fn heights_panels(heights: &Heights) -> Vec<Panel> {
     let slopes = slopes(heights);
     let steep = slopes.iter().map(|slope| steepness(*slope)).sum::<f64>();
     let depth = SHADED * slopes.len() as f64 / steep.max(1e-9);
     let light = DVec3::new(-1.0, -1.0, 1.5).normalize();
-    let lit = |slope: [f32; 2]| {
-        let [x, y] = slope.map(f64::from);
+    let lit = |i: usize| {
+        let [x, y] = slopes[i].map(f64::from);
         let normal = DVec3::new(-x * depth, -y * depth, 1.0).normalize();
-        0.06 + 0.94 * normal.dot(light).max(0.0)
+        DVec3::splat(0.06 + 0.94 * normal.dot(light).max(0.0))
     };
-    let lit: Vec<f64> = slopes.into_iter().map(lit).collect();
-    let shaded = Panel {
-        caption: "lit from the top left".into(),
-        size,
-        color: Box::new(move |x, y| DVec3::splat(lit[(y * width + x) as usize])),
-        bar: None,
-    };
-    Canvas::of(&[height_panel(size, heights.data()), shaded])
+    vec![
+        height_panel(heights.size(), heights.data()),
+        Panel::new("lit from the top left", heights.size(), lit, None),
+    ]
 }

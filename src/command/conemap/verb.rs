@@ -1,4 +1,4 @@
-//! The sub-verbs of `conemap`.
+//! The verbs of `conemap`.
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -8,9 +8,9 @@ use crate::command::conemap::{convert, inspect, make};
 /// What `conemap` can do.
 #[derive(Debug, Subcommand)]
 pub enum ConeMapVerb {
-    /// Make a cone map of heights
+    /// Make a cone map from heights
     Make(Box<make::Make>),
-    /// Tell what is in a cone map or in a height map
+    /// Describe a cone map or a height map
     Inspect(Box<inspect::Inspect>),
     /// Write a cone map in another layout or format
     Convert(Box<convert::Convert>),
@@ -19,7 +19,7 @@ pub enum ConeMapVerb {
 /// Runs one.
 ///
 /// # Errors
-/// What the sub-verb says.
+/// As the verb says.
 pub fn run(verb: &ConeMapVerb) -> Result<()> {
     match verb {
         ConeMapVerb::Make(args) => make::run(args),

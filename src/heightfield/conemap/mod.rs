@@ -1,45 +1,84 @@
-//! A cone map: for every place of a grid how wide a cone over it stays empty.
+//! Cone maps: for every place of a grid, how wide a cone that opens upward from it stays empty.
+//!
+//! A *place* is a sample of the height map, or a cell between samples. The *apex* of its cone
+//! is at the sample's height, or at the highest point of the cell. The *ratio* of a cone is
+//! its radius, in texels, at one whole height above the apex.
+
+use crate::base::named::named_enum;
 
 pub mod file;
 pub mod generate;
 
-/// What the cones of a map promise, and so which tracers may use them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum MapKind {
-    /// Apex on a sample; no sample lies inside (Dummer 2006). Of the surface between the
-    /// samples nothing is promised.
-    Samples,
-    /// As `Samples`, one cone per side: +x, -x, +y, -y.
-    Quad,
-    /// Apex on a sample; a ray from above through the cone should meet the surface at
-    /// most once (Policarpo and Oliveira 2007).
-    Relaxed,
-    /// Apex over a cell; the cells that rise above it keep clear by an offset (the cone
-    /// walk). Proven for the surface.
-    Walk,
-    /// As `Walk`, for rays that go down: only cells from which a ray can come out on
-    /// the far side limit the cone.
-    WalkRelaxed,
+/// What all maps of a kind have in common.
+#[derive(Clone, Copy, Debug)]
+pub struct KindFacts {
+    /// Whether places are cells instead of samples.
+    pub over_cells: bool,
+    /// Cones per place.
+    pub channels: usize,
+    /// What the cones promise, in words.
+    pub promise: &'static str,
 }
 
-/// Widest ratio, in texels per whole height: a cone that nothing limits. Finite, so that
+named_enum! {
+    /// What the cones of a map promise, which decides which tracers may use them.
+    pub enum MapKind: KindFacts {
+        /// Apex on a sample; no other sample lies inside (Dummer 2006). The surface between
+        /// the samples may.
+        Samples = "samples" => KindFacts {
+            over_cells: false, channels: 1, promise: "apex on a sample, no other sample inside",
+        },
+        /// As `Samples`, with one cone per side: +x, -x, +y, -y.
+        Quad = "quad" => KindFacts {
+            over_cells: false, channels: 4, promise: "apex on a sample, one cone for each of four sides",
+        },
+        /// Apex on a sample; a ray from above through the cone should meet the surface at
+        /// most once (Policarpo and Oliveira 2007).
+        Relaxed = "relaxed" => KindFacts {
+            over_cells: false, channels: 1, promise: "apex on a sample, a ray inside should cross the surface once",
+        },
+        /// Apex over a cell; the cells that rise above it keep clear by an offset (the cone
+        /// walk). Proven for the surface between the samples.
+        Walk = "walk" => KindFacts {
+            over_cells: true, channels: 1, promise: "apex over a cell, proven for the surface between the samples",
+        },
+        /// As `Walk`, for rays that go down: only the cells from which a ray can come out on
+        /// the far side limit the cone.
+        WalkRelaxed = "walk-relaxed" => KindFacts {
+            over_cells: true, channels: 1, promise: "apex over a cell, proven for rays that go down",
+        },
+    }
+}
+
+impl MapKind {
+    /// Whether places are cells instead of samples.
+    pub fn over_cells(self) -> bool {
+        self.facts().over_cells
+    }
+
+    /// Cones per place.
+    pub fn channels(self) -> usize {
+        self.facts().channels
+    }
+}
+
+/// The ratio of a cone that nothing limits, in texels per whole height. It is finite so that
 /// no arithmetic on it makes an infinity.
 pub const WIDEST: f64 = 65_536.0;
 
-/// Ratios of the cones over a grid.
+/// The ratios of the cones over a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConeMap {
     /// What the cones promise.
     pub kind: MapKind,
-    /// Places along each axis: samples, or cells for the walks.
+    /// Places along each axis.
     pub size: [u32; 2],
     /// Which axes wrap.
     pub wrap: [bool; 2],
-    /// Room that a walk's cones leave, in texels; 0 for the others.
+    /// Room that the cones of a walk leave, in texels; 0 for the other kinds.
     pub offset: f64,
-    /// Horizontal distance in texels over difference in height (0..=1 being the whole
-    /// relief), 0 to [`WIDEST`], row by row; a quad map has four after one another for
-    /// each place.
+    /// Horizontal distance in texels over difference in height, where 0 to 1 is the whole
+    /// height: 0 to [`WIDEST`], row by row, all cones of a place together.
     pub ratios: Vec<f64>,
 }
 

@@ -1,10 +1,10 @@
-//! Why there is no height map: one sentence that says where, what, and what would do.
+//! Why heights cannot be loaded: one sentence that says where, what, and how to go on.
 
 use std::path::Path;
 
 use thiserror::Error;
 
-/// What can be wrong with the argument that names heights, or with what it names.
+/// What can be wrong with the argument that names heights, or with the file.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum LoadError {
     /// The file could not be read, or is not what it should be.
@@ -12,15 +12,15 @@ pub enum LoadError {
     File {
         /// Its path.
         path: String,
-        /// What is wrong and what would do.
+        /// What is wrong and how to go on.
         why: String,
     },
-    /// The argument names neither a file nor a field.
+    /// The argument names neither a file nor a pattern.
     #[error("{argument}: {why}")]
     Argument {
         /// What was given.
         argument: String,
-        /// What is wrong and what would do.
+        /// What is wrong and how to go on.
         why: String,
     },
 }
@@ -34,7 +34,7 @@ impl LoadError {
     }
 
     pub(crate) fn argument(argument: &str, why: impl Into<String>) -> Self {
-        // A long text is no name, and nobody reads it twice.
+        // A long text is not a name, and need not be repeated in full.
         let argument = argument.chars().take(80).collect();
         let why = why.into();
         Self::Argument { argument, why }

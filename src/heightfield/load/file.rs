@@ -1,20 +1,20 @@
-//! Numbers of a height map's file, as they stand: whole numbers as shares of their
-//! largest, floats as they are.
+//! The numbers in a height map's file: whole numbers as shares of their largest, floats as
+//! they are.
 //!
-//! **Which channel.** Of several channels the first counts: grey, or red, which is where
-//! cone step maps keep their heights. Alpha is no height and is left out. In an EXR a
-//! channel called `height` counts, else `Y`, `Z` or `R`, else the only one there is; of
-//! names with a dot the part before it counts for `height`, the one after it for the
-//! letters. Cone maps of this program say what their channels are: the one that holds
-//! heights, or depths, counts. Maps that hold none, or those of cells alone, are refused.
+//! **Which channel.** The first channel holds the heights: grey, or red, as in cone step
+//! maps. Alpha is not a height and is left out. In an EXR the heights are in a
+//! channel called `height`, else `Y`, `Z` or `R`, else in the only one. In
+//! names with a dot, `height` may stand before or after it, the letters after it. Cone
+//! maps of this program say which channel holds heights, or depths. Cone maps
+//! without heights of samples are refused.
 //!
-//! **Raw files** (.raw, .f32 or .r32) hold f32, little endian, row by row and nothing
-//! else. Their size is given, or stands in the name as in `heights-512x256.raw`.
+//! **Raw files** (.raw, .f32 or .r32) hold f32, little endian, row by row, and nothing
+//! else. Their size is an option or part of the name, as in `heights-512x256.raw`.
 
 use std::io::Read;
 use std::path::Path;
 
-use crate::heightfield::conemap::file::{Layout, MapError, has_map, is_walk, kind_word, read_map};
+use crate::heightfield::conemap::file::{Layout, MapError, has_map, read_map};
 use crate::heightfield::heights::Patches;
 use crate::heightfield::load::pattern_spec::read_size;
 use crate::heightfield::raster::open::{Format, Opened, open};
@@ -27,9 +27,9 @@ pub struct Grid {
     pub size: [u32; 2],
     /// Numbers row by row; floats may be anything.
     pub values: Vec<f32>,
-    /// What the file is, in words.
+    /// The format of the file, in words.
     pub form: String,
-    /// What was left out, if anybody might wonder.
+    /// What was left out of the file, if it is not obvious.
     pub note: Option<String>,
 }
 
@@ -40,7 +40,7 @@ pub struct Grid {
 pub fn read(path: &Path, size: Option<[u32; 2]>) -> Result<Grid, String> {
     let mut opened = open(path)?;
     if size.is_some() && opened.format != Format::Other {
-        return Err("says its own size; leave --size out, which is for raw files".into());
+        return Err("has a size of its own; leave out --size, which is for raw files".into());
     }
     if has_map(path).unwrap_or(false) {
         return of_map(path);
@@ -49,9 +49,9 @@ pub fn read(path: &Path, size: Option<[u32; 2]>) -> Result<Grid, String> {
         Format::Png => read_png(opened),
         Format::Exr => read_exr(&mut opened),
         Format::Tiff => read_tiff(opened),
-        Format::Jpeg => {
-            Err("is a JPEG, whose losses are steps in heights; save it as PNG or TIFF".into())
-        }
+        Format::Jpeg => Err(
+            "is a JPEG, whose compression makes steps in heights; save it as PNG or TIFF".into(),
+        ),
         Format::Other => read_raw(path, opened, size),
     }
 }
@@ -59,34 +59,34 @@ pub fn read(path: &Path, size: Option<[u32; 2]>) -> Result<Grid, String> {
 /// The heights in a cone map of this program.
 fn of_map(path: &Path) -> Result<Grid, String> {
     let file = read_map(path).map_err(MapError::into_why)?;
-    let would = "name the heights that it was made from";
+    let instead = "name the heights that it was made from";
     let values = file
         .heights
-        .ok_or_else(|| format!("is a cone map that holds no heights; {would}"))?;
-    if is_walk(file.map.kind) && file.label.patches != Patches::Boxes {
+        .ok_or_else(|| format!("is a cone map that holds no heights; {instead}"))?;
+    let kind = file.map.kind;
+    if kind.over_cells() && file.label.patches != Patches::Boxes {
         return Err(format!(
-            "is a cone map of the kind `{}`, whose heights are of cells, not of samples; {would}",
-            kind_word(file.map.kind)
+            "is a cone map of the kind `{}`, whose heights are of cells, not of samples; {instead}",
+            kind.name()
         ));
     }
-    let layout = file.form.layout;
-    let bits = file.form.bits.count();
-    let name = layout.name();
-    let (form, channel) = match layout {
-        Layout::Full => ("EXR, cone map".into(), "the channel height"),
-        _ => (
-            format!("PNG, cone map, layout {name}, {bits} bit"),
-            match layout {
-                Layout::HeightSurface => "alpha, which holds depths",
-                Layout::Pair => "grey",
-                _ => "red",
-            },
-        ),
+    let (layout, name) = (file.format.layout, file.format.layout.name());
+    let channel = match layout {
+        Layout::Full => "the channel height",
+        Layout::Relief => "alpha, which holds depths",
+        Layout::Pair => "grey",
+        Layout::Dummer | Layout::Quad => "red",
     };
     Ok(Grid {
         size: file.map.size,
         values,
-        form,
+        form: match layout {
+            Layout::Full => "EXR, cone map".into(),
+            _ => format!(
+                "PNG, cone map, layout {name}, {} bit",
+                file.format.bits.count()
+            ),
+        },
         note: Some(format!(
             "is a cone map of the layout `{name}`: its heights are taken, from {channel}"
         )),
@@ -102,7 +102,7 @@ fn read_png(opened: Opened) -> Result<Grid, String> {
     let note = if !pixels.is_grey {
         Some("has colours: red is taken as the height")
     } else if !pixels.is_opaque {
-        Some("is transparent in places: alpha is left out, and what it hides counts")
+        Some("is transparent in places: alpha is left out")
     } else {
         None
     };
@@ -134,23 +134,12 @@ fn read_exr(opened: &mut Opened) -> Result<Grid, String> {
 
 /// The channel that holds heights.
 fn chosen(channels: &[String]) -> Option<&str> {
-    let named = |name: &str| name.to_lowercase();
-    let height = |name: &&String| {
-        let name = named(name);
-        name == "height" || name.starts_with("height.") || name.ends_with(".height")
-    };
-    let letter = |letter: &'static str| {
-        move |name: &&String| {
-            let name = named(name);
-            name.rsplit('.').next() == Some(letter)
-        }
-    };
-    let found = channels.iter().find(height);
-    let found = found.or_else(|| channels.iter().find(letter("y")));
-    let found = found.or_else(|| channels.iter().find(letter("z")));
-    let found = found.or_else(|| channels.iter().find(letter("r")));
+    let find = |fits: &dyn Fn(&str) -> bool| channels.iter().find(|c| fits(&c.to_lowercase()));
+    let height = |c: &str| c == "height" || c.starts_with("height.") || c.ends_with(".height");
+    let letter = |letter| find(&|c| c.rsplit('.').next() == Some(letter));
+    let letters = ["y", "z", "r"].into_iter().find_map(letter);
     let only = (channels.len() == 1).then(|| channels.first()).flatten();
-    found.or(only).map(String::as_str)
+    find(&height).or(letters).or(only).map(String::as_str)
 }
 
 fn read_tiff(opened: Opened) -> Result<Grid, String> {
@@ -172,7 +161,7 @@ fn read_raw(path: &Path, mut opened: Opened, size: Option<[u32; 2]>) -> Result<G
     let is_raw = RAW.contains(&ending.to_lowercase().as_str());
     if !is_raw && size.is_none() {
         return Err(
-            "is neither PNG, EXR nor TIFF; raw 32-bit floats end in .raw, or are given a --size"
+            "is neither PNG, EXR nor TIFF; files of raw 32-bit floats end in .raw, or need --size"
                 .into(),
         );
     }
@@ -182,13 +171,13 @@ fn read_raw(path: &Path, mut opened: Opened, size: Option<[u32; 2]>) -> Result<G
         && size != named
     {
         return Err(format!(
-            "says by its name that it is {x} x {y}, and --size that it is {w} x {h}; leave --size out, or rename it"
+            "is {x} x {y} by its name, and {w} x {h} by --size; leave out --size, or rename it"
         ));
     }
     let size = size.or(named);
     let Some([w, h]) = size else {
         return Err(
-            "is raw and does not tell its size; put it into the name like heights-512x256.raw (or give --size WxH where that is an option)"
+            "is raw and does not tell its size; put it into the name like heights-512x256.raw, or give --size WxH to a command that has this option"
                 .into(),
         );
     };
@@ -197,7 +186,7 @@ fn read_raw(path: &Path, mut opened: Opened, size: Option<[u32; 2]>) -> Result<G
         let hint = if opened.bytes * 2 == wanted {
             "; it may hold 16-bit numbers, which a 16-bit PNG or TIFF would carry"
         } else if named.is_some() {
-            "; its name tells the wrong size"
+            "; the size in its name is wrong"
         } else {
             "; give the right --size"
         };
@@ -206,13 +195,12 @@ fn read_raw(path: &Path, mut opened: Opened, size: Option<[u32; 2]>) -> Result<G
             opened.bytes
         ));
     }
-    // One byte more than wanted would tell of a file that grows; it is not believed.
     let mut bytes = Vec::with_capacity(wanted as usize);
     let mut part = opened.file.by_ref().take(wanted);
     let read = part.read_to_end(&mut bytes);
     read.map_err(|e| format!("cannot be read: {e}"))?;
     if bytes.len() as u64 != wanted {
-        return Err("became shorter while it was read; try again".into());
+        return Err("became shorter while it was being read; try again".into());
     }
     let float = |b: &[u8]| f32::from_le_bytes(b.try_into().unwrap_or_default());
     Ok(Grid {

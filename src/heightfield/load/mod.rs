@@ -1,5 +1,4 @@
-//! Height maps by what the command line or a preset calls them: a file, or a field of
-//! the program's own.
+//! Heights by the names that the command line and presets use: files and built-in patterns.
 
 mod error;
 mod file;

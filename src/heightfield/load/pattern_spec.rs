@@ -1,18 +1,17 @@
-//! Fields of the program's own as one word: `fbm`, `fbm:512x256`, or
-//! `ridges:512x512,seed=7,power=2.2`.
+//! Patterns as one word: `fbm`, `fbm:512x256`, or `ridges:512x512,seed=7,power=2.2`.
 //!
-//! A colon after the name, then in any order and by commas: the size, `seed=N` and
-//! `power=P`. What is left out is 256x256, 1 and 2.6.
+//! After the name and a colon follow, in any order and separated by commas, the size,
+//! `seed=N` and `power=P`. The defaults are 256x256, 1 and 2.6.
 
 use std::fmt;
 
 use crate::heightfield::heights::MOST_SAMPLES;
 use crate::heightfield::pattern::Pattern;
 
-/// A field with everything that decides its heights.
+/// A pattern with everything that decides its heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatternSpec {
-    /// The formula.
+    /// The pattern.
     pub field: Pattern,
     /// Samples along each axis.
     pub size: [u32; 2],
@@ -22,11 +21,11 @@ pub struct PatternSpec {
     pub power: f64,
 }
 
-/// Exponents that make a picture: from white noise to one smooth hill.
+/// Useful exponents: from white noise to one smooth hill.
 const POWERS: std::ops::RangeInclusive<f64> = 0.0..=8.0;
 
 impl PatternSpec {
-    /// A field as its name alone means it.
+    /// A pattern with the default size, seed and power.
     pub fn new(field: Pattern) -> Self {
         Self {
             field,
@@ -37,10 +36,10 @@ impl PatternSpec {
         }
     }
 
-    /// Reads the word; `None` if it does not begin with the name of a field.
+    /// Reads the word; `None` if it does not begin with the name of a pattern.
     ///
     /// # Errors
-    /// What stands behind the colon is wrong; in words.
+    /// In words: what follows the colon is wrong.
     pub fn read(text: &str) -> Option<Result<Self, String>> {
         let (name, rest) = match text.split_once(':') {
             Some((name, rest)) => (name, Some(rest)),
@@ -54,19 +53,19 @@ impl PatternSpec {
         for part in rest.split(',') {
             match part.split_once('=') {
                 Some(("seed", n)) => {
-                    let why = || format!("seed={n} is no whole number from 0 to {}", u32::MAX);
+                    let why = || format!("seed={n} is not a whole number from 0 to {}", u32::MAX);
                     self.seed = whole(n).ok_or_else(why)?;
                 }
                 Some(("power", p)) => {
                     let read: Option<f64> = p.parse().ok().filter(|p| POWERS.contains(p));
                     let (low, high) = (POWERS.start(), POWERS.end());
-                    let why = || format!("power={p} is no number from {low} to {high}");
+                    let why = || format!("power={p} is not a number from {low} to {high}");
                     self.power = read.ok_or_else(why)?;
                 }
                 None if part.contains(['x', 'X']) => self.size = read_size(part)?,
                 _ => {
                     return Err(format!(
-                        "`{part}` is no size, seed or power, like {}:512x512,seed=7,power=2.2",
+                        "`{part}` is not a size, seed or power; write {}:512x512,seed=7,power=2.2",
                         self.field.name()
                     ));
                 }
@@ -96,14 +95,14 @@ fn whole(text: &str) -> Option<u32> {
 /// Reads `512x256` as samples along each axis.
 ///
 /// # Errors
-/// In words: another form, or a side out of range.
+/// In words: the text has another form, or a side is out of range.
 pub(crate) fn read_size(text: &str) -> Result<[u32; 2], String> {
     let side = |s: &str| whole(s).filter(|n| (1..=MOST_SAMPLES).contains(n));
     let (w, h) = text.split_once(['x', 'X']).unwrap_or_default();
     match (side(w), side(h)) {
         (Some(w), Some(h)) => Ok([w, h]),
         _ => Err(format!(
-            "`{text}` is no size: width x height, each from 1 to {MOST_SAMPLES}, like 512x256"
+            "`{text}` is not a size: width x height, each from 1 to {MOST_SAMPLES}, like 512x256"
         )),
     }
 }

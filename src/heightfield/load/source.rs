@@ -1,12 +1,12 @@
 //! From an argument to heights from 0 to 1.
 //!
-//! Numbers that are no numbers are refused with their place. What lies outside 0..=1,
-//! metres of an elevation model say, is refused as well, with the way out: `normalize`
-//! brings the lowest to 0 and the highest to 1. It is not done unasked, because two
-//! maps of one landscape would not fit together any more, and a dent that uses half of
-//! the range would become twice as deep. `invert` turns depths into heights, and comes
-//! last.
+//! NaN and infinite numbers are refused, with their place. Numbers outside 0..=1, such as
+//! the metres of an elevation model, are refused too, unless `normalize` scales the lowest
+//! to 0 and the highest to 1. This is not done automatically, because two maps of one
+//! landscape would not fit together any more, and a dent that uses half of the range would
+//! become twice as deep. `invert` turns depths into heights, as the last step.
 
+use std::ffi::OsStr;
 use std::path::Path;
 
 use crate::heightfield::heights::Heights;
@@ -15,44 +15,49 @@ use crate::heightfield::load::file::{Grid, read};
 use crate::heightfield::load::pattern_spec::PatternSpec;
 use crate::heightfield::pattern::Pattern;
 
-/// How heights are to be read.
+/// How heights are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LoadOptions {
     /// Which axes wrap.
     pub wrap: [bool; 2],
     /// Turn depths into heights: 0 becomes 1 and 1 becomes 0.
     pub invert: bool,
-    /// Bring the lowest to 0 and the highest to 1, whatever they are; an even map to 0.
+    /// Scale the lowest to 0 and the highest to 1. An even map becomes 0.
     pub normalize: bool,
     /// Columns and rows of a raw file.
     pub size: Option<[u32; 2]>,
 }
 
-/// Heights that were found and read.
+/// Heights that were loaded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
-    /// The file's name without its ending, or the field's.
+    /// The file's name without its ending, or the pattern's name.
     pub name: String,
     /// The heights.
     pub heights: Heights,
     /// Where they come from, in words.
     pub form: String,
-    /// What was left out, if anybody might wonder; with the file's name.
+    /// What was left out of the file, if it is not obvious; with its name.
     pub note: Option<String>,
 }
 
-/// Finds and reads what an argument means: a field by its name, or a file by its path.
+/// Loads the heights that an argument names: a pattern, or a file by its path.
 ///
 /// # Errors
 /// The argument names nothing, or the file cannot be read or holds no heights.
-pub fn load(argument: &str, options: &LoadOptions) -> Result<Loaded, LoadError> {
-    if let Some(named) = PatternSpec::read(argument) {
-        return generated(named, argument, options);
+pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded, LoadError> {
+    let path = Path::new(argument.as_ref());
+    let shown = path.display().to_string();
+    if let Some(named) = path.to_str().and_then(PatternSpec::read) {
+        return generated(named, &shown, options);
     }
-    let path = Path::new(argument);
-    let is_path = argument.contains(['/', '\\', '.']) || (!argument.is_empty() && path.exists());
+    let is_path = shown.contains(['/', '\\', '.']) || (!shown.is_empty() && path.exists());
     if !is_path {
-        return Err(LoadError::argument(argument, strange()));
+        let why = format!(
+            "there is no such file or field; fields are {}, and files are PNG, EXR, TIFF or .raw",
+            Pattern::ALL.map(Pattern::name).join(", ")
+        );
+        return Err(LoadError::argument(&shown, why));
     }
     let fail = |why: String| LoadError::file(path, why);
     let Grid {
@@ -67,7 +72,7 @@ pub fn load(argument: &str, options: &LoadOptions) -> Result<Loaded, LoadError> 
         name: stem.unwrap_or_else(|| "heights".into()),
         heights: finished(size, values, options).map_err(fail)?,
         form,
-        note: note.map(|note| format!("{argument} {note}")),
+        note: note.map(|note| format!("{shown} {note}")),
     })
 }
 
@@ -81,7 +86,7 @@ fn generated(
     if options.size.is_some() {
         let name = named.field.name();
         let why = format!(
-            "is a field, whose size stands behind a colon like {name}:512x512; --size is for raw files"
+            "is a field; give its size after a colon like {name}:512x512 (--size is for raw files)"
         );
         return Err(fail(why));
     }
@@ -94,20 +99,12 @@ fn generated(
     })
 }
 
-/// What an argument should have been.
-fn strange() -> String {
-    format!(
-        "there is no such file or field; fields are {}, and files are PNG, EXR, TIFF or .raw",
-        Pattern::ALL.map(Pattern::name).join(", ")
-    )
-}
-
-/// Brings numbers to 0..=1, or says what keeps them from it.
+/// Normalizes numbers, or checks that they are in 0..=1.
 fn into_range(values: &mut [f32], width: usize, normalize: bool) -> Result<(), String> {
     if let Some(i) = values.iter().position(|z| !z.is_finite()) {
         let (x, y, z) = (i % width, i / width, values[i]);
         return Err(format!(
-            "the height at column {x}, row {y} is {z}; fill such places before"
+            "the height at column {x}, row {y} is {z}; fill such places first"
         ));
     }
     let low = values.iter().copied().fold(f32::INFINITY, f32::min);
@@ -121,7 +118,7 @@ fn into_range(values: &mut [f32], width: usize, normalize: bool) -> Result<(), S
         }
     } else if low < 0.0 || high > 1.0 {
         return Err(format!(
-            "its heights reach from {low} to {high}, and heights are 0 to 1; normalize (--normalize, or normalize = true in a preset) brings the lowest to 0 and the highest to 1"
+            "its heights reach from {low} to {high}, and heights must be 0 to 1; --normalize (in a preset, normalize = true) scales them to that range"
         ));
     }
     Ok(())
@@ -137,7 +134,7 @@ fn finished(
             *z = 1.0 - *z;
         }
     }
-    // No minus zero, whose bits would make equal heights look different.
+    // Minus zero becomes zero, because its bits would make equal heights look different.
     for z in &mut values {
         *z += 0.0;
     }

@@ -1,8 +1,7 @@
 //! OpenEXR by channel: only what is asked for is kept in memory.
 //!
-//! Parts without deep data, scan lines or tiles, of which the finest level is read;
-//! halves and whole numbers become f32. A size is checked before memory is taken for
-//! it.
+//! Reads parts without deep data, in scan lines or tiles, at the finest level. Halves and
+//! whole numbers become f32. A size is checked before memory is allocated for it.
 
 use std::io::{BufRead, Cursor, Read, Seek, Write};
 
@@ -16,7 +15,7 @@ use exr::prelude::{
 use crate::heightfield::heights::MOST_SAMPLES;
 use crate::heightfield::raster::open::check_size;
 
-/// Longest text of an attribute that is believed.
+/// Longest text of an attribute that is read.
 const MOST_TEXT: usize = 1 << 16;
 
 /// What the head of a file tells.

@@ -1,4 +1,4 @@
-//! Numbers in image files: what height maps and cone maps are read from.
+//! Image files as numbers, which height maps and cone maps are read from.
 
 pub mod exr;
 pub mod open;

@@ -1,6 +1,6 @@
-//! Opening a file and telling its format by its first bytes, whatever its name says.
+//! Opens a file and recognises its format by its first bytes, whatever its name says.
 //!
-//! Pipes and devices are refused: formats want to seek, and a pipe without a writer
+//! Pipes and devices are refused: the readers must seek, and a pipe without a writer
 //! would wait for ever.
 
 use std::fs::{self, File};
@@ -16,9 +16,9 @@ pub enum Format {
     Exr,
     /// TIFF, or BigTIFF.
     Tiff,
-    /// JPEG, which is known only to be refused with a word.
+    /// JPEG, which is recognised only to say why it is refused.
     Jpeg,
-    /// Nothing that is known; raw numbers have no mark.
+    /// Any other format; raw numbers have no mark.
     Other,
 }
 
@@ -29,7 +29,7 @@ pub struct Opened {
     pub file: BufReader<File>,
     /// Its length in bytes.
     pub bytes: u64,
-    /// What it seems to be.
+    /// Its format.
     pub format: Format,
 }
 
@@ -83,8 +83,8 @@ pub fn format_of(start: &[u8]) -> Format {
 /// A size that a height map may have.
 ///
 /// # Errors
-/// In words: an axis without samples or with too many. Asked before memory is taken for
-/// what a header claims.
+/// In words: an axis has no samples or too many. This is checked before memory is allocated
+/// for what a header claims.
 pub fn check_size(width: u64, height: u64, most: u32) -> Result<[u32; 2], String> {
     let side = |n: u64| u32::try_from(n).ok().filter(|n| (1..=most).contains(n));
     match (side(width), side(height)) {

@@ -1,7 +1,7 @@
 //! PNG as whole numbers: grey or colour, with or without alpha, 1 to 16 bits.
 //!
 //! Palettes and fewer than 8 bits are expanded. Numbers are taken as they stand:
-//! neither gamma nor a colour profile is applied, as heights are no light.
+//! neither gamma nor a colour profile is applied, because heights are not light.
 
 use std::io::{BufRead, Seek, Write};
 
@@ -24,7 +24,7 @@ pub struct Pixels {
     pub channels: usize,
     /// The largest number: 255 or 65535.
     pub most: u16,
-    /// Cache numbers, pixel by pixel, row by row.
+    /// Numbers of the kept channels, pixel by pixel, row by row.
     pub numbers: Vec<u16>,
     /// Whether red, green and blue are the same everywhere.
     pub is_grey: bool,
@@ -35,6 +35,20 @@ pub struct Pixels {
 }
 
 impl Pixels {
+    /// Pixels that keep all their channels, with no text.
+    pub fn new(size: [u32; 2], channels: usize, most: u16, numbers: Vec<u16>) -> Self {
+        Self {
+            size,
+            kept: channels,
+            channels,
+            most,
+            numbers,
+            is_grey: true,
+            is_opaque: true,
+            text: None,
+        }
+    }
+
     /// One of the kept channels.
     pub fn channel(&self, i: usize) -> impl Iterator<Item = u16> + '_ {
         self.numbers.iter().skip(i).step_by(self.kept).copied()
@@ -52,22 +66,15 @@ pub fn read(from: impl BufRead + Seek, most_kept: usize, keyword: &str) -> Resul
     let (width, height) = reader.info().size();
     let size = check_size(width.into(), height.into(), MOST_SAMPLES)?;
     let (color, depth) = reader.output_color_type();
-    let bytes = if depth == png::BitDepth::Sixteen {
-        2
-    } else {
-        1
-    };
+    let bytes = usize::from(depth as u8).div_ceil(8);
     let channels = color.samples();
     let kept = channels.min(most_kept);
+    let most = if bytes == 2 { u16::MAX } else { 255 };
+    let numbers = Vec::with_capacity(size[0] as usize * size[1] as usize * kept);
     let mut pixels = Pixels {
-        size,
         kept,
-        channels,
-        most: if bytes == 2 { u16::MAX } else { 255 },
-        numbers: Vec::with_capacity(size[0] as usize * size[1] as usize * kept),
-        is_grey: true,
-        is_opaque: true,
         text: text(&reader, keyword),
+        ..Pixels::new(size, channels, most, numbers)
     };
     let has_alpha = matches!(color, ColorType::GrayscaleAlpha | ColorType::Rgba);
     let mut take = |row: &[u8]| {
@@ -163,21 +170,15 @@ pub fn write(to: impl Write, pixels: &Pixels, keyword: &str) -> Result<(), Strin
     } else {
         png::BitDepth::Eight
     });
-    let mut bytes = Vec::with_capacity(pixels.numbers.len() * if wide { 2 } else { 1 });
-    for n in &pixels.numbers {
-        let [high, low] = n.to_be_bytes();
-        if wide {
-            bytes.push(high);
-        }
-        bytes.push(low);
-    }
-    let mut put = || {
-        if let Some(text) = &pixels.text {
-            encoder.add_text_chunk(keyword.into(), text.clone())?;
-        }
-        Ok::<_, png::EncodingError>(())
+    let numbers = pixels.numbers.iter();
+    let bytes: Vec<u8> = match wide {
+        true => numbers.flat_map(|n| n.to_be_bytes()).collect(),
+        false => numbers.map(|n| *n as u8).collect(),
     };
-    put().map_err(|e| e.to_string())?;
+    if let Some(text) = &pixels.text {
+        let added = encoder.add_text_chunk(keyword.into(), text.clone());
+        added.map_err(|e| e.to_string())?;
+    }
     let written = encoder.write_header().and_then(|mut writer| {
         writer.write_image_data(&bytes)?;
         writer.finish()

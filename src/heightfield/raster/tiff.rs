@@ -1,7 +1,7 @@
 //! TIFF as numbers: the first image, strips or tiles, uncompressed, deflate or LZW.
 //!
-//! Whole numbers without a sign are shares of their largest; all others are taken as
-//! they stand, as elevation models hold metres. Of several channels the first counts.
+//! Unsigned whole numbers are divided by their largest value. All others stay as they are,
+//! because elevation models hold metres. Only the first channel is read.
 
 use std::io::{Read, Seek};
 
@@ -66,7 +66,7 @@ pub fn read(from: impl Read + Seek) -> Result<Channel, String> {
     })
 }
 
-/// Numbers as heights may be: shares of the largest, or as they stand.
+/// Unsigned numbers as shares of their largest, all others as they are.
 fn numbers(read: DecodingResult) -> Vec<f32> {
     fn shares<T: Into<f64>>(of: Vec<T>, most: f64) -> Vec<f32> {
         of.into_iter().map(|v| (v.into() / most) as f32).collect()
@@ -76,8 +76,7 @@ fn numbers(read: DecodingResult) -> Vec<f32> {
         DecodingResult::U16(v) => shares(v, 65_535.0),
         DecodingResult::U32(v) => shares(v, f64::from(u32::MAX)),
         DecodingResult::U64(v) => {
-            let share = |v: u64| (v as f64 / u64::MAX as f64) as f32;
-            v.into_iter().map(share).collect()
+            shares(v.into_iter().map(|v| v as f64).collect(), u64::MAX as f64)
         }
         DecodingResult::F16(v) => v.into_iter().map(f32::from).collect(),
         DecodingResult::F32(v) => v,

@@ -1,16 +1,19 @@
-//! Tracers with one cone per sample: those of the papers, put right.
+//! Cone stepping with one cone for each sample: the tracers of the papers, corrected.
 //! Twins: `wgsl/heightfield/tracer/cones.wgsl`, with `cones_one.wgsl` or `cones_four.wgsl`.
 //!
-//! Dummer's step (Cone Step Mapping, 2006) from the height z over a place with height h and
-//! ratio R is `(z - h) R / (iz - dz R)` along a direction of horizontal part iz; his text has
-//! the wrong sign, his code the right one. What is put right besides: a step goes at least
-//! to the cell's edge, in place of a texel added to each; the part of the ray inside the
-//! block is clipped first, so that rising and level rays end; the first place under the
-//! surface ends the search and is refined between it and the one before; and a ray that has
-//! used up its steps above the surface has not converged, whatever the papers show there.
+//! From the height z over a place of height h and ratio R, Dummer's step (Cone Step Mapping,
+//! 2006) is `(z - h) R / (iz - dz R)` along a direction with the horizontal part iz. His text
+//! has the wrong sign, his code has the right one. Four more things are corrected:
 //!
-//! None of this makes such cones safe: they keep clear of samples, not of the surface
-//! between them. What each tracer misses is measured, not promised away.
+//! - A step reaches at least the cell's edge; the papers add a texel to each step.
+//! - The ray is first clipped to the block, so that rising and level rays end.
+//! - The first place under the surface ends the search, and the hit is refined between it and
+//!   the place before.
+//! - A ray that has used up its steps above the surface has not converged, whatever the papers
+//!   show there.
+//!
+//! None of this makes the cones safe. They keep clear of the samples, not of the surface between
+//! them. What each tracer misses is measured (docs/heightfields.md).
 
 use std::sync::Arc;
 
@@ -20,15 +23,15 @@ use crate::base::shader::Module;
 use crate::base::work::Work;
 use crate::heightfield::conemap::generate::mips::rounded_down;
 use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::height_surface::{HeightSurface, Numbers};
-use crate::heightfield::heights::Patches;
+use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
+use crate::heightfield::heights::{Patches, bilinear};
+use crate::heightfield::tracer::cone::cone_way;
 use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
-use crate::heightfield::tracer::course::{
-    course_begin, course_cross, course_end, course_exit, course_hit, course_land, course_solve,
-    course_uv,
+use crate::heightfield::tracer::grid::{
+    grid_begin, grid_hit, grid_leave, grid_over, grid_solve, grid_uv,
 };
+use crate::heightfield::tracer::kind::Parts;
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
-use crate::heightfield::tracer::walk::{check_map, cone_way};
 use crate::wgsl;
 
 /// How a ratio is read between the samples.
@@ -43,172 +46,119 @@ pub enum Lookup {
 
 /// How many steps a ray has of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Budget {
+enum Budget {
     /// As many as the caller allows.
     Endless,
-    /// The same for every ray.
+    /// The same number for every ray.
     Fixed(u32),
-    /// `steps * (0.5 + iz)`, iz being the horizontal part of the direction when heights and
-    /// texture widths are the units, and half of them at the distance `lod` along the ray, a
-    /// third at twice that; `lod` 0 is for no such thing.
-    View {
-        /// Steps of a ray halfway between vertical and level.
-        steps: u32,
-        /// Distance in units of the ray's parameter.
-        lod: f64,
-    },
+    /// `steps * (0.5 + iz)`, where iz is the horizontal part of the direction in texture widths
+    /// and heights. At the distance `lod` along the ray it is half of them, at twice that a
+    /// third; 0 turns this off.
+    View { steps: u32, lod: f64 },
 }
 
 /// What tells one of these tracers from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Manner {
-    /// Its name.
-    pub name: &'static str,
-    /// How ratios are read.
-    pub lookup: Lookup,
-    /// Whether the patch of each cell on the way is solved.
-    pub solves: bool,
-    /// Its own limit.
-    pub budget: Budget,
+pub struct ConeMethod {
+    /// Whether every patch on the way is solved.
+    solves: bool,
+    /// Whether the number of steps follows the view.
+    by_view: bool,
     /// Factor on the steps that cones give.
-    pub scale: f64,
+    scale: f64,
     /// How a bracket becomes a hit.
-    pub refine: Refine,
+    refine: Refine,
 }
 
-/// Steps of the paper's fixed version.
-pub const FIXED_STEPS: u32 = 10;
-/// Steps that the paper shows its adaptive version with.
-pub const LOOP_STEPS: u32 = 20;
-/// Cone steps of listing 18-3, and halvings after them.
-pub const RCS_STEPS: u32 = 15;
-/// Halvings of listing 18-3.
-pub const RCS_ROUNDS: u32 = 6;
-/// False positions: the error falls at least by half with each, mostly by much more.
-pub const SECANT_ROUNDS: u32 = 4;
-/// How much `csm-scaled` stretches a step: what it jumps over is mostly thinner than a
-/// texel still.
-pub const SCALE: f64 = 1.5;
+/// Cone steps, then the secant method. Each round at least halves the error and mostly reduces
+/// it by much more, so that 4 are enough.
+pub const SECANT: ConeMethod = ConeMethod {
+    solves: false,
+    by_view: false,
+    scale: 1.0,
+    refine: Refine::Secant(4),
+};
 
-impl Manner {
-    /// Cones until the surface, every patch on the way solved.
-    pub const CSM_EXACT: Self = Self {
-        name: "csm-exact",
-        lookup: Lookup::Bilinear,
-        solves: true,
-        budget: Budget::Endless,
-        scale: 1.0,
-        refine: Refine::Settle,
-    };
-    /// A number of steps that follows the view.
-    pub const CSM_LOOP: Self = Self {
-        name: "csm-loop",
-        solves: false,
-        budget: Budget::View {
-            steps: LOOP_STEPS,
-            lod: 0.0,
-        },
-        refine: Refine::Secant(SECANT_ROUNDS),
-        ..Self::CSM_EXACT
-    };
-    /// The same number of steps for every ray.
-    pub const CSM_FIXED: Self = Self {
-        name: "csm-fixed",
-        budget: Budget::Fixed(FIXED_STEPS),
-        ..Self::CSM_LOOP
-    };
-    /// Stretched steps, then halvings.
-    pub const CSM_SCALED: Self = Self {
-        name: "csm-scaled",
-        budget: Budget::Endless,
-        scale: SCALE,
-        refine: Refine::Binary(RCS_ROUNDS),
-        ..Self::CSM_LOOP
-    };
-    /// One cone for each of four sides.
-    pub const QUAD: Self = Self {
-        name: "quad",
-        budget: Budget::Endless,
-        ..Self::CSM_LOOP
-    };
-    /// Relaxed cones, then halvings.
-    pub const RCS_BINARY: Self = Self {
-        name: "rcs-binary",
-        budget: Budget::Fixed(RCS_STEPS),
-        refine: Refine::Binary(RCS_ROUNDS),
-        ..Self::CSM_LOOP
-    };
-    /// Any cones, then false positions.
-    pub const SECANT: Self = Self {
-        name: "secant",
-        budget: Budget::Endless,
-        ..Self::CSM_LOOP
-    };
+/// Cone steps, with every patch on the way solved.
+pub const CSM_EXACT: ConeMethod = ConeMethod {
+    solves: true,
+    refine: Refine::Settle,
+    ..SECANT
+};
 
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::CSM_EXACT,
-        Self::CSM_LOOP,
-        Self::CSM_FIXED,
-        Self::CSM_SCALED,
-        Self::QUAD,
-        Self::RCS_BINARY,
-        Self::SECANT,
-    ];
+/// A number of cone steps that follows the view.
+pub const CSM_LOOP: ConeMethod = ConeMethod {
+    by_view: true,
+    ..SECANT
+};
 
-    /// Kinds of maps that it can use.
-    pub fn kinds(&self) -> &'static [MapKind] {
-        match self.name {
-            "quad" => &[MapKind::Quad],
-            "rcs-binary" => &[MapKind::Relaxed],
-            "secant" => &[MapKind::Samples, MapKind::Quad, MapKind::Relaxed],
-            _ => &[MapKind::Samples],
-        }
-    }
-}
+/// Cone steps, then bisection: 6 rounds as in listing 18-3.
+pub const RCS_BINARY: ConeMethod = ConeMethod {
+    refine: Refine::Binary(6),
+    ..SECANT
+};
 
-/// Cone steps over a relief.
-#[derive(Clone, Debug)]
+/// Longer cone steps, then bisection. With a factor of 1.5, what a step jumps over is mostly
+/// still thinner than a texel.
+pub const CSM_SCALED: ConeMethod = ConeMethod {
+    scale: 1.5,
+    ..RCS_BINARY
+};
+
+/// Cone stepping over samples.
+#[derive(Debug)]
 pub struct Cones {
-    relief: Arc<HeightSurface>,
+    surface: Arc<HeightSurface>,
     map: Arc<ConeMap>,
-    manner: Manner,
+    lookup: Lookup,
+    budget: Budget,
+    method: ConeMethod,
+}
+
+/// Makes a tracer that follows a method, with the numbers of a preset in place of its own.
+///
+/// # Errors
+/// There is no map that it can use.
+pub fn make(parts: &Parts<'_>, mut method: ConeMethod) -> Result<Arc<dyn Tracer>, TraceError> {
+    let settings = parts.settings;
+    if let (Refine::Binary(rounds) | Refine::Secant(rounds), Some(own)) =
+        (&mut method.refine, settings.rounds)
+    {
+        *rounds = own;
+    }
+    method.scale = settings.stretch.unwrap_or(method.scale);
+    let lod = settings.lod.unwrap_or(0.0);
+    let budget = match settings.own_steps() {
+        steps if method.by_view => Budget::View { steps, lod },
+        0 => Budget::Endless,
+        steps => Budget::Fixed(steps),
+    };
+    Ok(Arc::new(Cones {
+        surface: parts.surface.clone(),
+        map: parts.map()?,
+        lookup: settings.lookup,
+        budget,
+        method,
+    }))
 }
 
 impl Cones {
-    /// A tracer with the cones of a map.
-    ///
-    /// # Errors
-    /// The map is of a kind that the manner cannot use, or of another relief.
-    pub fn new(
-        relief: Arc<HeightSurface>,
-        map: Arc<ConeMap>,
-        manner: Manner,
-    ) -> Result<Self, TraceError> {
-        check_map(manner.name, manner.kinds(), &relief, &map)?;
-        Ok(Self {
-            relief,
-            map,
-            manner,
-        })
-    }
-
     /// Height and ratio of the cone over the ray at s.
     fn cone(&self, ray: &LocalRay, trace: &Trace) -> (f64, f64) {
-        let relief = &*self.relief;
-        let [u, v] = course_uv(ray, trace.cell, trace.s);
-        let [x, y] = relief.tile_cell(trace.cell).map(i64::from);
-        // A box's sample lies in its middle, a patch's in its corners.
-        let boxes = relief.patches() == Patches::Boxes;
-        if self.manner.lookup == Lookup::Nearest {
+        let surface = &*self.surface;
+        let [u, v] = grid_uv(ray, trace.cell, trace.s);
+        let [x, y] = surface.tile_cell(trace.cell).map(i64::from);
+        // The sample of a box lies in its middle, those of a patch in its corners.
+        let boxes = surface.patches() == Patches::Boxes;
+        if self.lookup == Lookup::Nearest {
             let [i, j] = if boxes {
                 [x, y]
             } else {
                 [x + i64::from(u >= 0.5), y + i64::from(v >= 0.5)]
             };
-            return (relief.heights().at(i, j), self.ratio(ray.axis, i, j));
+            return (surface.heights().at(i, j), self.ratio(ray.axis, i, j));
         }
-        let height = relief.height(trace.cell, u, v);
+        let height = surface.height(trace.cell, u, v);
         let [[i, u], [j, v]] = [[u, x as f64], [v, y as f64]].map(|[f, i]| {
             let at = if boxes { i + f - 0.5 } else { i + f };
             // The far edge belongs to the cell.
@@ -216,17 +166,14 @@ impl Cones {
             [low, at - low]
         });
         let (i, j) = (i as i64, j as i64);
-        let near = |j| {
-            let (a, b) = (self.ratio(ray.axis, i, j), self.ratio(ray.axis, i + 1, j));
-            a + u * (b - a)
-        };
-        let (low, high) = (near(j), near(j + 1));
-        (height, low + v * (high - low))
+        let corners = [[0, 0], [1, 0], [0, 1], [1, 1]];
+        let ratios = corners.map(|[x, y]| self.ratio(ray.axis, i + x, j + y));
+        (height, bilinear(ratios, u, v))
     }
 
     /// The ratio at a sample, for the side that the ray goes to.
     fn ratio(&self, axis: DVec3, i: i64, j: i64) -> f64 {
-        let heights = self.relief.heights();
+        let heights = self.surface.heights();
         let (i, j) = (heights.index(0, i), heights.index(1, j));
         let at = (j * self.map.size[0] + i) as usize;
         if self.map.kind != MapKind::Quad {
@@ -241,12 +188,12 @@ impl Cones {
     }
 
     /// Steps of a ray that begins at s; 0 for no limit.
-    fn budget(&self, ray: &LocalRay, s: f64) -> u32 {
-        match self.manner.budget {
+    fn steps(&self, ray: &LocalRay, s: f64) -> u32 {
+        match self.budget {
             Budget::Endless => 0,
-            Budget::Fixed(steps) => steps.max(1),
+            Budget::Fixed(steps) => steps,
             Budget::View { steps, lod } => {
-                let [w, h] = self.relief.cells().map(f64::from);
+                let [w, h] = self.surface.cells().map(f64::from);
                 let flat = (ray.axis.x / w).hypot(ray.axis.y / h);
                 let whole = flat.hypot(ray.axis.z).max(f64::MIN_POSITIVE);
                 let far = if lod > 0.0 {
@@ -262,96 +209,96 @@ impl Cones {
 }
 
 impl Tracer for Cones {
-    fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
-        let mut trace = course_begin(&self.relief, ray, from, to);
-        trace.left = self.budget(ray, trace.s);
+    fn surface(&self) -> &HeightSurface {
+        &self.surface
+    }
+
+    fn begin(&self, ray: &LocalRay, from: f64, to: f64) -> Trace {
+        let mut trace = grid_begin(&self.surface, ray, from, to);
+        trace.left = self.steps(ray, trace.s);
         trace
     }
 
-    fn look(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        let relief = &*self.relief;
-        let (exit, axis) = course_exit(ray, trace.cell, trace.cell.map(|i| i + 1));
-        let to = exit.min(trace.end);
-        let z = ray.height(trace.s);
-        trace.gap = z.min(ray.height(to)) - relief.apex(trace.cell);
-        if refine_over(relief, ray, trace.s) <= 0.0 {
-            course_hit(relief, ray, trace, trace.s);
+    fn advance(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+        let surface = &*self.surface;
+        let node = surface.node(trace.cell, 0);
+        let over = grid_over(ray, trace, &node);
+        // Only the first step can begin under the surface.
+        if refine_over(surface, ray, trace.s) <= 0.0 {
+            grid_hit(surface, ray, trace, trace.s);
             return Step::Hit;
         }
-        let solves = self.manner.solves;
-        if solves && trace.gap <= 0.0 && course_solve(relief, ray, trace, to) {
+        let solves = self.method.solves;
+        if solves && over.gap <= 0.0 && grid_solve(surface, ray, trace, over.to) {
             return Step::Hit;
         }
         let (height, ratio) = self.cone(ray, trace);
-        let way = cone_way(ray, ratio, z - height, 0.0) * self.manner.scale;
-        let next = (trace.s + way).max(exit).min(trace.end);
-        let ended = next >= trace.end;
-        if (ended && trace.falls) || refine_over(relief, ray, next) <= 0.0 {
-            let low = if solves { to } else { trace.s };
-            refine(relief, ray, trace, [low, next], self.manner.refine, work);
+        let way = cone_way(ray, ratio, over.z - height, 0.0) * self.method.scale;
+        let next = (trace.s + way).max(over.exit).min(trace.end);
+        let grounded = next >= trace.end && trace.falls;
+        if grounded || refine_over(surface, ray, next) <= 0.0 {
+            let low = if solves { over.to } else { trace.s };
+            let how = self.method.refine;
+            refine(surface, ray, trace, [low, next], how, work);
             return Step::Hit;
         }
-        if ended {
-            return course_end(relief, ray, trace);
-        }
-        if next > exit {
-            course_land(relief, ray, trace, next);
-        } else {
-            course_cross(ray, trace, exit, axis);
-        }
-        if trace.left == 1 {
+        trace.state = grid_leave(surface, ray, trace, &node, &over, next);
+        if trace.state == Step::Moving && trace.left == 1 {
             trace.state = Step::Spent;
         }
         trace.left = trace.left.saturating_sub(1);
         trace.state
     }
 
-    fn modules(&self) -> Vec<Module> {
-        let set = |is: bool| f64::from(u8::from(is));
-        let manner = &self.manner;
-        let mut all = self.relief.modules();
-        all.push(wgsl!("heightfield/tracer/cone.wgsl"));
-        all.push(wgsl!("heightfield/tracer/refine.wgsl"));
-        all.push(if self.map.kind == MapKind::Quad {
-            wgsl!("heightfield/tracer/cones_four.wgsl")
-        } else {
-            wgsl!("heightfield/tracer/cones_one.wgsl")
-        });
-        all.push(wgsl!(
-            "heightfield/tracer/cones.wgsl",
-            "CONES_NEAREST" = set(manner.lookup == Lookup::Nearest),
-            "CONES_SOLVE" = set(manner.solves),
-            "CONES_VIEW" = set(matches!(manner.budget, Budget::View { .. })),
-            "CONES_SECANT" = set(matches!(manner.refine, Refine::Secant(_))),
-        ));
-        all
+    fn map(&self) -> Option<&ConeMap> {
+        Some(&self.map)
     }
 
-    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
-        let (steps, lod) = match self.manner.budget {
+    fn parameters(&self) -> TracerParameters {
+        let (steps, lod) = match self.budget {
             Budget::Endless => (0, 0.0),
-            Budget::Fixed(steps) => (steps.max(1), 0.0),
+            Budget::Fixed(steps) => (steps, 0.0),
             Budget::View { steps, lod } => (steps, lod),
         };
-        let numbers = Numbers {
-            scale: self.manner.scale,
+        TracerParameters {
+            scale: self.method.scale,
             steps,
             lod,
-            rounds: match self.manner.refine {
+            rounds: match self.method.refine {
                 Refine::Binary(rounds) | Refine::Secant(rounds) => rounds,
                 Refine::Settle => 0,
             },
-        };
-        if self.map.kind != MapKind::Quad {
-            return self.relief.buffers(Some(&self.map), numbers);
         }
-        // Four cones of a map of 4096 x 4096 are more than a binding must hold: two, and two.
+    }
+
+    fn own_modules(&self) -> Vec<Module> {
+        let set = |is: bool| f64::from(u8::from(is));
+        vec![
+            wgsl!("heightfield/tracer/cone.wgsl"),
+            wgsl!("heightfield/tracer/refine.wgsl"),
+            if self.map.kind == MapKind::Quad {
+                wgsl!("heightfield/tracer/cones_four.wgsl")
+            } else {
+                wgsl!("heightfield/tracer/cones_one.wgsl")
+            },
+            wgsl!(
+                "heightfield/tracer/cones.wgsl",
+                "CONES_NEAREST" = set(self.lookup == Lookup::Nearest),
+                "CONES_SOLVE" = set(self.method.solves),
+                "CONES_VIEW" = set(self.method.by_view),
+                "CONES_SECANT" = set(matches!(self.method.refine, Refine::Secant(_))),
+            ),
+        ]
+    }
+
+    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
+        if self.map.kind != MapKind::Quad {
+            return self.surface.buffers(Some(&self.map), self.parameters());
+        }
+        // Four cones for each of 4096 x 4096 samples may exceed a binding: two buffers.
         let half = |side: usize| -> Vec<u8> {
-            let two = self
-                .map
-                .ratios
-                .chunks(4)
-                .flat_map(|four| &four[side..side + 2]);
+            let places = self.map.ratios.chunks(4);
+            let two = places.flat_map(|four| &four[side..side + 2]);
             two.flat_map(|ratio| rounded_down(*ratio).to_ne_bytes())
                 .collect()
         };
@@ -359,7 +306,7 @@ impl Tracer for Cones {
             ratios: Vec::new(),
             ..*self.map
         };
-        let mut all = self.relief.buffers(Some(&bare), numbers);
+        let mut all = self.surface.buffers(Some(&bare), self.parameters());
         all.retain(|(name, _)| *name != "ratios");
         all.extend([("ratios", half(0)), ("ratios_y", half(2))]);
         all

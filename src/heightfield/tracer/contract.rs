@@ -1,22 +1,27 @@
-//! The questions that a scene asks a tracer, and what goes to and fro.
+//! What a scene asks a tracer, and the values that they exchange.
 //!
-//! A tracer is a small state, the [`Trace`], and a step of bounded work. It has no loop
-//! over steps: whoever asks counts and caps them, so that a limit is always theirs to
-//! report. All tracers have the same state and answer to the same names, here and in
-//! `wgsl/heightfield/tracer/NAME.wgsl`, so that one can take another's place.
+//! A tracer has no loop over steps. It answers [`Tracer::begin`] with a small state, the
+//! [`Trace`], and moves it on by one bounded step at a time. The caller counts the steps and
+//! limits them. All tracers share the state and the names of the functions, here and in
+//! `wgsl/heightfield/tracer/NAME.wgsl`, so that one can replace another.
+
+use std::fmt::Debug;
 
 use glam::DVec3;
 use thiserror::Error;
 
 use crate::base::shader::Module;
+pub use crate::base::work::Step;
 use crate::base::work::Work;
-use crate::heightfield::conemap::MapKind;
+use crate::heightfield::conemap::{ConeMap, MapKind};
+use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
+use crate::heightfield::tracer::grid::grid_begin;
 
-/// A ray in the relief's own units: x and y in texels, z in heights. `axis` is not of
-/// unit length: s is whatever parameter the caller's ray has.
+/// A ray in the surface's own units: x and y in texels, z in heights. `axis` is not of unit
+/// length; s is the parameter of the caller's ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalRay {
-    /// Where s is 0.
+    /// The point at s = 0.
     pub origin: DVec3,
     /// Change per unit of s.
     pub axis: DVec3,
@@ -34,19 +39,6 @@ impl LocalRay {
     }
 }
 
-/// What one step came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// Go on.
-    Moving,
-    /// The block is met.
-    Hit,
-    /// Past the block, or past the end: nothing there.
-    Out,
-    /// The tracer has a number of steps of its own, and it is used up: not converged.
-    Spent,
-}
-
 /// Bits of a hit's id below the face.
 pub const FACE_BITS: u32 = 28;
 /// The surface on top.
@@ -62,22 +54,22 @@ pub const WALL_Y_HIGH: u32 = 4;
 /// The underside, at z = 0.
 pub const BASE: u32 = 5;
 
-/// Where a ray met the block.
+/// Where a ray meets the block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TraceHit {
     /// The parameter of the ray.
     pub s: f64,
-    /// In the low [`FACE_BITS`] bits the cell, `y * cells_x + x` within its tile; above
-    /// them the face.
+    /// The low [`FACE_BITS`] bits are the cell, `y * cells_x + x` within its tile. The bits
+    /// above them are the face.
     pub id: u32,
-    /// On the surface and the underside the place in the cell, 0..=1. On a wall the
-    /// place along the cell, 0..=1, and the height. A box that is met on its side has 0
-    /// or 1 exactly.
+    /// On the surface and the underside the place in the cell, 0..=1. On a wall the place
+    /// along the cell, 0..=1, and the height. On the side of a box one of them is exactly 0
+    /// or 1.
     pub uv: [f64; 2],
 }
 
 impl TraceHit {
-    /// What was met: [`SURFACE`], a wall, or [`BASE`].
+    /// What is met: [`SURFACE`], a wall, or [`BASE`].
     pub fn face(&self) -> u32 {
         self.id >> FACE_BITS
     }
@@ -88,36 +80,33 @@ impl TraceHit {
     }
 }
 
-/// A ray on its way, whatever traces it.
+/// The state of a ray on its way, the same for every tracer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trace {
-    /// Where the ray stands: nothing is met before, as far as the tracer can tell.
+    /// Where the ray stands. The tracer has found nothing before it.
     pub s: f64,
-    /// Where it leaves the block or reaches its end.
+    /// Where the ray leaves the block or reaches its end.
     pub end: f64,
-    /// Where it came into its cell, or into the block.
+    /// Where the ray came into its cell, or into the block.
     pub enter: f64,
-    /// A lower bound of its height above the apex of its cell, or of the larger node that
-    /// it was last over.
-    pub gap: f64,
-    /// Its cell of the domain.
+    /// The cell of the domain that the ray is in.
     pub cell: [i32; 2],
-    /// The level of the pyramid that is looked at.
+    /// The level of the pyramid that the tracer looks at.
     pub level: u32,
-    /// Steps that are left to a tracer that counts its own.
+    /// Steps left, for a tracer that counts its own.
     pub left: u32,
     /// Whether the end is the bottom of the block, reached from above.
     pub falls: bool,
     /// What the last step came to.
     pub state: Step,
-    /// What was met, once it was.
+    /// What is met, once there is a hit.
     pub id: u32,
-    /// Where on it.
+    /// The place on it.
     pub uv: [f64; 2],
 }
 
 impl Trace {
-    /// Where the ray stands: its hit, once it has one.
+    /// The hit, once there is one; the place of the ray before that.
     pub fn hit(&self) -> TraceHit {
         TraceHit {
             s: self.s,
@@ -127,67 +116,94 @@ impl Trace {
     }
 }
 
-/// A way of finding the first hit.
-pub trait Tracer {
-    /// Starts a ray; nothing before `from` or beyond `to` counts.
-    fn begin(&self, ray: &LocalRay, from: f64, to: f64, work: &mut Work) -> Trace;
+/// A way to find the first hit of a ray.
+pub trait Tracer: Debug + Send + Sync {
+    /// The surface that it traces.
+    fn surface(&self) -> &HeightSurface;
 
-    /// What a step does with a ray that moves.
-    fn look(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step;
+    /// Starts a ray. Nothing before `from` or beyond `to` counts.
+    fn begin(&self, ray: &LocalRay, from: f64, to: f64) -> Trace {
+        grid_begin(self.surface(), ray, from, to)
+    }
 
-    /// One step, of bounded work; none of a ray that has ended. `work` gains an evaluation
-    /// for it, and an iteration for each round of refinement.
+    /// What a step does with a ray that is moving.
+    fn advance(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step;
+
+    /// One step of bounded work; a ray that has ended stays as it is. `work` gains one
+    /// evaluation, and an iteration for each round of refinement.
     fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
         if trace.state != Step::Moving {
             return trace.state;
         }
         work.evaluations += 1;
-        self.look(ray, trace, work)
+        self.advance(ray, trace, work)
     }
 
-    /// The modules of WGSL to join for it, those of its relief among them.
-    fn modules(&self) -> Vec<Module>;
+    /// The cone map, for a tracer that uses one.
+    fn map(&self) -> Option<&ConeMap> {
+        None
+    }
 
-    /// What the relief's buffers hold for it, by the names of the WGSL variables.
-    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)>;
+    /// Its numbers in the uniform.
+    fn parameters(&self) -> TracerParameters {
+        TracerParameters::default()
+    }
+
+    /// The WGSL modules of its own.
+    fn own_modules(&self) -> Vec<Module>;
+
+    /// All WGSL modules to join, those of the surface included.
+    fn modules(&self) -> Vec<Module> {
+        let mut all = self.surface().modules();
+        all.extend(self.own_modules());
+        all
+    }
+
+    /// Bytes to bind, by the names of the WGSL variables.
+    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
+        self.surface().buffers(self.map(), self.parameters())
+    }
 }
 
-/// Why a cone map does not serve a tracer.
+/// Why a tracer cannot use a cone map.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TraceError {
-    /// Its cones promise something else.
+    /// There is no map.
+    #[error("the tracer `{0}` needs a cone map")]
+    Missing(&'static str),
+    /// The map's cones promise something else.
     #[error("the tracer `{tracer}` cannot use cones of the kind {kind:?}")]
     Kind {
         /// The tracer.
         tracer: &'static str,
-        /// What the map is.
+        /// The kind of the map.
         kind: MapKind,
     },
-    /// It was made for another grid.
-    #[error("a cone map of {found:?} places for a relief of {wanted:?}")]
+    /// The map was made for another grid.
+    #[error("the cone map has {found:?} places, but the surface has {wanted:?}")]
     Size {
-        /// Places of the relief.
+        /// Places of the surface.
         wanted: [u32; 2],
         /// Places of the map.
         found: [u32; 2],
     },
-    /// It holds another number of cones than its size says.
-    #[error("a cone map of {found} cones where its size needs {wanted}")]
+    /// The number of cones does not fit the map's size.
+    #[error("the cone map has {found} cones, but its size needs {wanted}")]
     Count {
         /// Cones of its size.
         wanted: usize,
         /// Cones given.
         found: usize,
     },
-    /// Its axes do not wrap as those of the relief do.
-    #[error("a cone map that wraps {found:?} for a relief that wraps {wanted:?}")]
+    /// The map's axes do not wrap as those of the surface do.
+    #[error("the cone map wraps {found:?}, but the surface wraps {wanted:?}")]
     Wrap {
-        /// Axes of the relief.
+        /// Axes of the surface.
         wanted: [bool; 2],
         /// Axes of the map.
         found: [bool; 2],
     },
-    /// A cone or an offset that no arithmetic may meet.
-    #[error("a cone map with the number {0}: ratios and offsets are finite and not negative")]
+    /// A ratio or an offset that is out of range.
+    #[error("the cone map contains {0}; ratios and offsets must be finite and not negative")]
     Number(f64),
 }

@@ -1,56 +1,56 @@
-//! Relief mapping: so many equal steps, then halvings (Policarpo, Oliveira, Comba 2005).
+//! Relief mapping: a number of equal steps, then bisection (Policarpo, Oliveira, Comba 2005).
 //! Twin: `wgsl/heightfield/tracer/linear.wgsl`.
 //!
-//! The steps divide the part of the ray inside the block, so that they always suffice; what
-//! is thinner than a step is missed. Needs no map.
+//! The steps divide the part of the ray inside the block, so that they always reach its end.
+//! The tracer misses what is thinner than a step, and needs no map.
 
 use std::sync::Arc;
 
 use crate::base::shader::Module;
 use crate::base::work::Work;
-use crate::heightfield::height_surface::{HeightSurface, Numbers};
-use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, Tracer};
-use crate::heightfield::tracer::course::{course_begin, course_end, course_hit, course_land};
+use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
+use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
+use crate::heightfield::tracer::grid::{grid_begin, grid_end, grid_hit, grid_land};
+use crate::heightfield::tracer::kind::Parts;
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::wgsl;
 
-/// Steps, where nobody says otherwise.
-pub const LINEAR_STEPS: u32 = 32;
-/// Halvings, where nobody says otherwise: those of relief mapping.
-pub const LINEAR_ROUNDS: u32 = 6;
+/// Bisections by default: those of relief mapping.
+const LINEAR_ROUNDS: u32 = 6;
 
-/// Equal steps and halvings.
-#[derive(Clone, Debug)]
+/// Equal steps and bisections.
+#[derive(Debug)]
 pub struct LinearBinary {
-    relief: Arc<HeightSurface>,
+    surface: Arc<HeightSurface>,
     steps: u32,
     rounds: u32,
 }
 
-impl LinearBinary {
-    /// The tracer of a relief, with one step at least.
-    pub fn new(relief: Arc<HeightSurface>, steps: u32, rounds: u32) -> Self {
-        Self {
-            relief,
-            steps: steps.max(1),
-            rounds,
-        }
-    }
+/// Makes the tracer, with at least one step.
+pub fn make(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
+    Ok(Arc::new(LinearBinary {
+        surface: parts.surface.clone(),
+        steps: parts.settings.own_steps().max(1),
+        rounds: parts.settings.rounds.unwrap_or(LINEAR_ROUNDS),
+    }))
 }
 
 impl Tracer for LinearBinary {
-    fn begin(&self, ray: &LocalRay, from: f64, to: f64, _work: &mut Work) -> Trace {
-        let mut trace = course_begin(&self.relief, ray, from, to);
+    fn surface(&self) -> &HeightSurface {
+        &self.surface
+    }
+
+    fn begin(&self, ray: &LocalRay, from: f64, to: f64) -> Trace {
+        let mut trace = grid_begin(&self.surface, ray, from, to);
         trace.left = self.steps;
         trace
     }
 
-    fn look(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        let relief = &*self.relief;
-        trace.gap = ray.height(trace.s) - relief.apex(trace.cell);
+    fn advance(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+        let surface = &*self.surface;
         // Only the first step can begin under the surface.
-        if trace.left == self.steps && refine_over(relief, ray, trace.s) <= 0.0 {
-            course_hit(relief, ray, trace, trace.s);
+        if trace.left == self.steps && refine_over(surface, ray, trace.s) <= 0.0 {
+            grid_hit(surface, ray, trace, trace.s);
             return Step::Hit;
         }
         let last = trace.left <= 1;
@@ -59,39 +59,31 @@ impl Tracer for LinearBinary {
         } else {
             trace.s + (trace.end - trace.s) / f64::from(trace.left)
         };
-        if (last && trace.falls) || refine_over(relief, ray, next) <= 0.0 {
-            let bracket = [trace.s, next];
-            refine(
-                relief,
-                ray,
-                trace,
-                bracket,
-                Refine::Binary(self.rounds),
-                work,
-            );
+        if (last && trace.falls) || refine_over(surface, ray, next) <= 0.0 {
+            let (bracket, how) = ([trace.s, next], Refine::Binary(self.rounds));
+            refine(surface, ray, trace, bracket, how, work);
             return Step::Hit;
         }
         if last {
-            return course_end(relief, ray, trace);
+            return grid_end(surface, ray, trace);
         }
         trace.left -= 1;
-        course_land(relief, ray, trace, next);
+        grid_land(surface, ray, trace, next);
         Step::Moving
     }
 
-    fn modules(&self) -> Vec<Module> {
-        let mut all = self.relief.modules();
-        all.push(wgsl!("heightfield/tracer/refine.wgsl"));
-        all.push(wgsl!("heightfield/tracer/linear.wgsl"));
-        all
-    }
-
-    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
-        let numbers = Numbers {
+    fn parameters(&self) -> TracerParameters {
+        TracerParameters {
             steps: self.steps,
             rounds: self.rounds,
-            ..Numbers::default()
-        };
-        self.relief.buffers(None, numbers)
+            ..TracerParameters::default()
+        }
+    }
+
+    fn own_modules(&self) -> Vec<Module> {
+        vec![
+            wgsl!("heightfield/tracer/refine.wgsl"),
+            wgsl!("heightfield/tracer/linear.wgsl"),
+        ]
     }
 }

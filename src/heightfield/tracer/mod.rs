@@ -1,20 +1,21 @@
-//! Tracers: where a ray first meets a relief.
+//! Tracers: they find where a ray first meets a height surface. [`kind`] lists them.
 
-mod any;
+pub mod cone;
 pub mod cones;
 mod contract;
-pub mod course;
+pub mod grid;
+pub mod kind;
 pub mod linear;
 pub mod max_mip;
-pub mod oracle;
+pub mod reference;
 pub mod refine;
 pub mod relaxed;
 pub mod settings;
 pub mod walk;
 pub mod walk_mip;
 
-pub use any::AnyTracer;
 pub use contract::{
     BASE, FACE_BITS, LocalRay, SURFACE, Step, Trace, TraceError, TraceHit, Tracer, WALL_X_HIGH,
     WALL_X_LOW, WALL_Y_HIGH, WALL_Y_LOW,
 };
+pub use kind::{Accuracy, Steps, TracerKind};

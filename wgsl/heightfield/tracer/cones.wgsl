@@ -1,17 +1,17 @@
-// Tracers with one cone per sample: those of the papers, put right (Dummer 2006; Policarpo
-// and Oliveira 2007). A step is the cone's, and goes to the cell's edge at least; the first
-// place under the surface ends the search and is refined between it and the one before. A
-// ray that has used up its own steps has not converged. The cones keep clear of samples, not
-// of the surface between them: rays may pass through thin parts of it.
+// Cone stepping with one cone for each sample: the tracers of the papers, corrected (Dummer 2006;
+// Policarpo and Oliveira 2007). A step goes as far as the cone, or to the cell's edge if that is
+// farther. The first place under the surface ends the search, and the hit is refined between it
+// and the place before. A ray that has used up its own steps has not converged. The cones keep
+// clear of the samples, not of the surface between them: rays may pass thin parts of it.
 
-/// Height and ratio of the nearest sample, in place of the surface's height and the ratio
-/// between the samples.
+/// Whether to take height and ratio of the nearest sample, instead of the surface's height and
+/// the interpolated ratio.
 override CONES_NEAREST: bool;
-/// Each cell's patch is solved on the way.
+/// Whether every patch on the way is solved.
 override CONES_SOLVE: bool;
-/// The number of steps follows the view.
+/// Whether the number of steps follows the view.
 override CONES_VIEW: bool;
-/// Brackets are refined by false positions, else by halvings; solved ones settle.
+/// Whether brackets are refined by secants instead of bisections, unless they are solved.
 override CONES_SECANT: bool;
 
 /// A sample's place in its tile, for indices from -1 to the size.
@@ -24,9 +24,9 @@ fn cones_place(at: vec2<i32>) -> i32 {
 
 /// Height and ratio of the cone over the ray at s, in a cell.
 fn cones_at(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {
-    let at = course_uv(o, d, cell, s);
+    let at = grid_uv(o, d, cell, s);
     let own = relief_tile_cell(cell);
-    // A box's sample lies in its middle, a patch's in its corners.
+    // The sample of a box lies in its middle, those of a patch in its corners.
     if CONES_NEAREST {
         let place = own + select(vec2<i32>(at + 0.5), vec2<i32>(0), RELIEF_BOXES);
         return vec2<f32>(heights[cones_place(place)], cones_ratio(d, place));
@@ -35,7 +35,6 @@ fn cones_at(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {
     let shift = select(vec2<f32>(0.0), floor(middle), RELIEF_BOXES);
     let f = select(at, middle - shift, RELIEF_BOXES);
     let i = own + vec2<i32>(shift);
-    // Ratios at the four samples around, then between them.
     let a = cones_ratio(d, i);
     let b = cones_ratio(d, i + vec2<i32>(1, 0));
     let c = cones_ratio(d, i + vec2<i32>(0, 1));
@@ -45,9 +44,10 @@ fn cones_at(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {
     return vec2<f32>(relief_height(cell, at), low + f.y * (high - low));
 }
 
-/// Steps of a ray that begins at s: steps * (0.5 + the horizontal part of its direction in
-/// texture widths and heights), fewer with the distance; 0 for no limit.
-fn cones_budget(d: vec3<f32>, s: f32) -> u32 {
+/// Steps of a ray that begins at s; 0 for no limit. If they follow the view, they are
+/// steps * (0.5 + the horizontal part of the direction in texture widths and heights), fewer with
+/// the distance.
+fn cones_steps(d: vec3<f32>, s: f32) -> u32 {
     if !CONES_VIEW {
         return relief.steps;
     }
@@ -62,12 +62,12 @@ fn cones_budget(d: vec3<f32>, s: f32) -> u32 {
 
 /// Starts a ray with the steps that its direction gives it.
 fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
-    var trace = course_begin(o, d, front, to);
-    trace.left = cones_budget(d, trace.s);
+    var trace = grid_begin(o, d, front, to);
+    trace.left = cones_steps(d, trace.s);
     return trace;
 }
 
-/// One cone, and the look at where it ends.
+/// One cone, and the height where it ends.
 fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if (*trace).state != STATE_MOVING {
         return (*trace).state;
@@ -76,26 +76,24 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     let cell = (*trace).cell;
     let s = (*trace).s;
     let end = (*trace).end;
-    let exit = course_exit(o, d, cell, cell + 1);
+    let exit = grid_exit(o, d, cell, cell + 1);
     let to = min(exit.x, end);
     let z = o.z + s * d.z;
-    (*trace).gap = min(z, o.z + to * d.z) - relief_apex(cell);
     // Only the first step can begin under the surface.
     if refine_over(o, d, s) <= 0.0 {
-        course_hit(o, d, trace, s);
+        grid_hit(o, d, trace, s);
         return STATE_HIT;
     }
-    if CONES_SOLVE && (*trace).gap <= 0.0 {
-        if course_solve(o, d, trace, to) {
+    if CONES_SOLVE && min(z, o.z + to * d.z) - relief_apex(cell) <= 0.0 {
+        if grid_solve(o, d, trace, to) {
             return STATE_HIT;
         }
     }
     let cone = cones_at(o, d, cell, s);
     let way = cone_way(d, cone.y, z - cone.x, 0.0) * relief.scale;
     let next = min(max(s + way, exit.x), end);
-    let ended = next >= end;
     // At the bottom the ray is under the surface by definition.
-    if (ended && (*trace).falls == 1u) || refine_over(o, d, next) <= 0.0 {
+    if (next >= end && (*trace).falls == 1u) || refine_over(o, d, next) <= 0.0 {
         if CONES_SOLVE {
             refine_settle(o, d, trace, vec2<f32>(to, next));
         } else if CONES_SECANT {
@@ -105,16 +103,9 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
         }
         return STATE_HIT;
     }
-    if ended {
-        return course_end(o, d, trace);
-    }
-    if next > exit.x {
-        course_land(o, d, trace, next);
-    } else {
-        course_cross(d, trace, exit);
-    }
-    // The last of its own steps, and still above: not converged. 0 is no limit.
-    if (*trace).left == 1u {
+    let state = grid_leave(o, d, trace, cell, cell + 1, 0u, exit, next);
+    // The ray is above the surface after the last of its own steps: it has not converged.
+    if state == STATE_MOVING && (*trace).left == 1u {
         (*trace).state = STATE_UNCONVERGED;
     }
     (*trace).left = max((*trace).left, 1u) - 1u;

@@ -1,5 +1,5 @@
-// Four cones to a sample, one for each side: +x, -x in `ratios`, +y, -y in a buffer of their
-// own. All four of 4096 x 4096 samples would be more than a binding must hold.
+// Four cones for each sample, one for each side: +x and -x in `ratios`, +y and -y in a second
+// buffer, because all four of 4096 x 4096 samples may exceed a binding.
 
 @group(0) @binding(9) var<storage, read> ratios_y: array<f32>;
 

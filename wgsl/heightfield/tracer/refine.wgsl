@@ -1,27 +1,27 @@
-// From a place above the surface and a later one under it to the hit between them: by
-// halvings, by false positions, or by settling, which halves until few cells are left and
-// solves those exactly. All keep the bracket. Where there are several crossings, any may
-// be found. Over boxes every bracket is settled after its rounds: a place near a box says
-// nothing of whether its top is met or a side.
+// Refinement: from a point above the surface and a later point under it, a bracket, to a hit
+// between them. Bisection and the secant method end near the surface after some rounds. Settling
+// bisects until few cells are left, and solves these exactly. If there are several crossings, any
+// of them may be found. Over boxes every bracket is settled after its rounds: a point near a box
+// does not tell whether the ray meets its top or its side.
 
-/// Halvings of a settling bracket, and cells that are solved then: what is left of 2^16
-/// cells is a small part of one, which three share at most, around a corner.
+/// Bisections of a bracket that settles, and cells that are solved then. What is left of 2^16
+/// cells is a small part of one, which lies in at most three cells, around a corner.
 const SETTLE_ROUNDS = 24u;
 const SETTLE_CELLS = 4u;
 
-/// Height of the ray above the surface at s, in whatever cell it is there.
+/// The ray's height above the surface at s.
 fn refine_over(o: vec3<f32>, d: vec3<f32>, s: f32) -> f32 {
-    let cell = course_cell(o, d, s);
-    return o.z + s * d.z - relief_height(cell, course_uv(o, d, cell, s));
+    let cell = grid_cell(o, d, s);
+    return o.z + s * d.z - relief_height(cell, grid_uv(o, d, cell, s));
 }
 
-/// Marks a hit at s, whatever cell that is in.
+/// Marks a hit at s, in the cell there.
 fn refine_mark(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, s: f32) {
-    (*trace).cell = course_cell(o, d, s);
-    course_hit(o, d, trace, s);
+    (*trace).cell = grid_cell(o, d, s);
+    grid_hit(o, d, trace, s);
 }
 
-/// Halvings, and the middle of what is left.
+/// Bisections; the hit is the middle of the bracket that is left.
 fn refine_binary(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracket: vec2<f32>) {
     var low = bracket.x;
     var high = bracket.y;
@@ -41,7 +41,7 @@ fn refine_binary(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
     refine_mark(o, d, trace, 0.5 * (low + high));
 }
 
-/// False positions: where the straight line between the heights at both ends crosses.
+/// Secants (regula falsi): the hit is where the line between the heights at both ends crosses.
 fn refine_secant(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracket: vec2<f32>) {
     var low = bracket.x;
     var high = bracket.y;
@@ -51,7 +51,7 @@ fn refine_secant(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
     for (var i = 0u; i < relief.rounds; i++) {
         count_iterations(1u);
         let drop = above - under;
-        // Both ends on the surface: the first is the hit.
+        // With both ends on the surface the first is the hit.
         at = low;
         if drop > 0.0 {
             at = low + (high - low) * (above / drop);
@@ -72,12 +72,12 @@ fn refine_secant(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
     refine_mark(o, d, trace, at);
 }
 
-/// Halvings until both ends lie in one cell, or nearly, then the patches between them.
+/// Bisections until both ends lie in one cell, or nearly, then the patches between them.
 fn refine_settle(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracket: vec2<f32>) {
     var low = bracket.x;
     var high = bracket.y;
     for (var i = 0u; i < SETTLE_ROUNDS; i++) {
-        if all(course_cell(o, d, low) == course_cell(o, d, high)) {
+        if all(grid_cell(o, d, low) == grid_cell(o, d, high)) {
             break;
         }
         count_iterations(1u);
@@ -89,17 +89,17 @@ fn refine_settle(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
         }
     }
     // The first of these patches that is met is the hit.
-    course_land(o, d, trace, low);
+    grid_land(o, d, trace, low);
     for (var i = 0u; i < SETTLE_CELLS; i++) {
-        let exit = course_exit(o, d, (*trace).cell, (*trace).cell + 1);
-        if course_solve(o, d, trace, min(exit.x, high)) {
+        let exit = grid_exit(o, d, (*trace).cell, (*trace).cell + 1);
+        if grid_solve(o, d, trace, min(exit.x, high)) {
             return;
         }
         if exit.x >= high {
             break;
         }
-        course_cross(d, trace, exit);
+        grid_cross(d, trace, exit);
     }
-    // Under the surface by less than a rounding, or at the edge of a box.
+    // The ray is under the surface by less than a rounding, or at the edge of a box.
     refine_mark(o, d, trace, high);
 }

@@ -1,33 +1,31 @@
 //! A file to a cone map.
 //!
-//! A file of another program has no label; what it is must be said then ([`Foreign`]),
-//! and is believed. Its ratios may have been rounded up by it.
+//! A file of another program has no label. The caller must say what it is
+//! ([`ForeignFormat`]), and is believed. The other program may have rounded ratios up.
 
 use std::io::{BufRead, Cursor, Seek};
 use std::path::Path;
 
 use crate::heightfield::conemap::file::encode::SIDES;
 use crate::heightfield::conemap::file::error::MapError;
-use crate::heightfield::conemap::file::form::{
-    Bits, Extra, Form, Label, Layout, MapFile, Slopes, scale,
-};
-use crate::heightfield::conemap::file::label::{self, KEYWORD, Read};
-use crate::heightfield::conemap::file::round::Ratios;
-use crate::heightfield::conemap::file::words::{is_walk, ratios_per_place};
+use crate::heightfield::conemap::file::format::{Bits, Layout, MapFormat, RatioScale, Slopes};
+use crate::heightfield::conemap::file::label::{self, KEYWORD, ParsedLabel};
+use crate::heightfield::conemap::file::map_file::{Label, MapFile, ShadingChannel, scale};
+use crate::heightfield::conemap::file::rounding::Ratios;
 use crate::heightfield::conemap::{ConeMap, MapKind, WIDEST};
 use crate::heightfield::heights::Patches;
 use crate::heightfield::raster::open::{Format, format_of, open};
 use crate::heightfield::raster::{exr, png};
 
-/// What a file without a label is to be taken for.
+/// What a file without a label contains.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foreign {
+pub struct ForeignFormat {
     /// Its channels; not [`Layout::Full`].
     pub layout: Layout,
-    /// What its cones promise; not a walk, whose offset and cells nobody else has.
+    /// What its cones promise; not a kind over cells, which no other program makes.
     pub kind: MapKind,
-    /// Whether its ratios are square roots.
-    pub root: bool,
+    /// How its numbers stand for ratios.
+    pub ratio: RatioScale,
     /// Which axes wrap.
     pub wrap: [bool; 2],
 }
@@ -40,7 +38,7 @@ pub fn has_map(path: &Path) -> Result<bool, MapError> {
     let fail = |why: String| MapError::file(path, why);
     let mut opened = open(path).map_err(fail)?;
     Ok(match opened.format {
-        // Broken files are no maps; who reads them as heights says what is broken.
+        // A broken file is not a map; reading it as heights reports what is broken.
         Format::Png => png::text_in(opened.file, KEYWORD).is_some(),
         Format::Exr => exr::head(&mut opened.file, KEYWORD).is_ok_and(|h| h.text.is_some()),
         _ => false,
@@ -50,16 +48,16 @@ pub fn has_map(path: &Path) -> Result<bool, MapError> {
 /// Reads a map that this program wrote.
 ///
 /// # Errors
-/// The file cannot be read, or is no map, or says of itself what cannot be.
+/// The file cannot be read, is not a map, or has a label that contradicts itself.
 pub fn read_map(path: &Path) -> Result<MapFile, MapError> {
     decode(path, None)
 }
 
-/// Reads a map; one without a label as what it is said to be.
+/// Reads a map. One without a label is read as `foreign` says.
 ///
 /// # Errors
 /// As [`read_map`].
-pub fn decode(path: &Path, foreign: Option<&Foreign>) -> Result<MapFile, MapError> {
+pub fn decode(path: &Path, foreign: Option<&ForeignFormat>) -> Result<MapFile, MapError> {
     let read = || {
         let opened = open(path)?;
         from(opened.file, opened.format, foreign)
@@ -78,39 +76,35 @@ pub fn decode_bytes(bytes: &[u8]) -> Result<MapFile, String> {
 fn from(
     file: impl BufRead + Seek,
     format: Format,
-    foreign: Option<&Foreign>,
+    foreign: Option<&ForeignFormat>,
 ) -> Result<MapFile, String> {
     match format {
         Format::Png => from_png(file, foreign),
         Format::Exr => from_exr(file),
-        _ => Err("is no cone map: those are PNG or EXR".into()),
+        _ => Err("is not a cone map; cone maps are PNG or EXR".into()),
     }
 }
 
-/// What a file without a label lacks.
+/// The error for a file without a label.
 fn unlabelled(is_png: bool) -> String {
-    let would = if is_png {
-        "`conemarch conemap make` makes one from heights; if it is another program's map, say of which layout with --from"
-    } else {
-        "`conemarch conemap make` makes one from heights"
+    let more = match is_png {
+        true => "; if another program wrote the map, give its layout with --from",
+        false => "",
     };
-    format!("does not say that it is a cone map; {would}")
+    format!("has no label of a cone map; `conemarch conemap make` makes a map from heights{more}")
 }
 
-fn from_png(file: impl BufRead + Seek, foreign: Option<&Foreign>) -> Result<MapFile, String> {
+fn from_png(file: impl BufRead + Seek, foreign: Option<&ForeignFormat>) -> Result<MapFile, String> {
     let pixels = png::read(file, 4, KEYWORD)?;
     let read = match (&pixels.text, foreign) {
         (Some(text), _) => label::read(text)?,
-        (None, Some(foreign)) => taken_for(foreign, pixels.size)?,
+        (None, Some(foreign)) => assumed_label(foreign, pixels.size)?,
         (None, None) => return Err(unlabelled(true)),
     };
     if read.layout == Layout::Full {
-        return Err("says that it is an EXR, and is a PNG; make the map again".into());
+        return Err("is a PNG, and its label says EXR; make the map again".into());
     }
-    let channels = match read.layout {
-        Layout::Pair => 2,
-        _ => 4,
-    };
+    let channels = read.layout.facts().channels;
     if pixels.channels != channels {
         return Err(format!(
             "has {} channels, and the layout `{}` has {channels}; was it saved again without alpha?",
@@ -119,71 +113,64 @@ fn from_png(file: impl BufRead + Seek, foreign: Option<&Foreign>) -> Result<MapF
         ));
     }
     check_places(&read, pixels.size)?;
-    let bits = if pixels.most > 255 {
-        Bits::Sixteen
-    } else {
-        Bits::Eight
+    let bits = match pixels.most {
+        255 => Bits::Eight,
+        _ => Bits::Sixteen,
     };
     let steps = bits.steps();
     let numbers = Ratios {
         steps,
-        root: read.root,
+        scaling: read.ratio,
         scale: read.label.scale,
-        again: true,
+        reread: true,
     };
-    let ratios = |channel: usize| pixels.channel(channel).map(|n| numbers.ratio(n));
-    let heights = |channel: usize| pixels.channel(channel).map(|n| steps.height(n));
-    let extra = |channel: usize, name| Extra {
+    let ratios = |channel: usize| pixels.channel(channel).map(|n| numbers.ratio(n)).collect();
+    let heights = |channel: usize| pixels.channel(channel).map(|n| steps.height(n)).collect();
+    let shading = |channel: usize, name| ShadingChannel {
         name,
-        shares: heights(channel).collect(),
+        shares: heights(channel),
     };
-    let (ratios, heights, extra): (Vec<f64>, Option<Vec<f32>>, Vec<Extra>) = match read.layout {
-        Layout::Dummer => (
-            ratios(1).collect(),
-            Some(heights(0).collect()),
-            vec![extra(2, "slope x"), extra(3, "slope y")],
-        ),
-        Layout::HeightSurface => (
-            ratios(2).collect(),
-            // Turned as whole numbers, so that heights come back as they were.
-            Some(
-                pixels
-                    .channel(3)
-                    .map(|n| steps.height(steps.most - n))
-                    .collect(),
-            ),
-            vec![extra(0, "normal x"), extra(1, "normal y")],
-        ),
-        Layout::Quad => (
-            pixels.numbers.iter().map(|n| numbers.ratio(*n)).collect(),
-            None,
-            Vec::new(),
-        ),
-        Layout::Pair | Layout::Full => {
-            (ratios(1).collect(), Some(heights(0).collect()), Vec::new())
+    let (ratios, heights, shading): (Vec<f64>, Option<Vec<f32>>, Vec<_>) = match read.layout {
+        Layout::Dummer => {
+            let slopes = vec![shading(2, "slope x"), shading(3, "slope y")];
+            (ratios(1), Some(heights(0)), slopes)
         }
+        Layout::Relief => {
+            let normal = vec![shading(0, "normal x"), shading(1, "normal y")];
+            // Turned as whole numbers, so that heights come back exactly.
+            let depths = pixels.channel(3);
+            let heights = depths.map(|n| steps.height(steps.most - n)).collect();
+            (ratios(2), Some(heights), normal)
+        }
+        Layout::Quad => {
+            let ratios = pixels.numbers.iter().map(|n| numbers.ratio(*n));
+            (ratios.collect(), None, Vec::new())
+        }
+        Layout::Pair | Layout::Full => (ratios(1), Some(heights(0)), Vec::new()),
     };
-    let origin = Some(read.root);
-    let read = Read { origin, ..read };
-    Ok(finished(read, bits, pixels.size, ratios, heights, extra))
+    let read = ParsedLabel {
+        origin: Some(read.ratio),
+        ..read
+    };
+    Ok(finished(read, bits, pixels.size, ratios, heights, shading))
 }
 
 /// The label that a foreign file would have.
-fn taken_for(foreign: &Foreign, size: [u32; 2]) -> Result<Read, String> {
-    if is_walk(foreign.kind) || foreign.layout.lacks(foreign.kind).is_some() {
+fn assumed_label(foreign: &ForeignFormat, size: [u32; 2]) -> Result<ParsedLabel, String> {
+    if foreign.kind.over_cells() || foreign.layout.lacks(foreign.kind).is_some() {
         return Err(format!(
             "has no label, and cannot be read as such a map in the layout `{}`",
             foreign.layout.name()
         ));
     }
-    Ok(Read {
+    Ok(ParsedLabel {
         kind: foreign.kind,
         layout: foreign.layout,
-        root: foreign.root,
+        ratio: foreign.ratio,
         wrap: foreign.wrap,
         offset: 0.0,
         origin: None,
-        // His program's, most likely; cones do not depend on it.
+        // As Dummer's program writes them, most likely; cones do not depend on it.
         slopes: Slopes::Half,
         label: Label {
             samples: size,
@@ -200,7 +187,7 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
     let text = head.text.as_ref().ok_or_else(|| unlabelled(false))?;
     let read = label::read(text)?;
     if read.layout != Layout::Full {
-        return Err("says that it is a PNG, and is an EXR; make the map again".into());
+        return Err("is an EXR, and its label says PNG; make the map again".into());
     }
     check_places(&read, head.size)?;
     let mut channel = |name: &str| {
@@ -216,7 +203,7 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
         if let Some(i) = values.iter().position(|v| !good(v)) {
             let (w, v) = (head.size[0] as usize, values[i]);
             return Err(format!(
-                "{name} at column {}, row {} is {v}, which is none; make the map again",
+                "{name} at column {}, row {} is {v}, which is out of range; make the map again",
                 i % w,
                 i / w
             ));
@@ -225,18 +212,16 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
     };
     let scale = read.label.scale;
     let ratio = |v: f32| (f64::from(v) * scale).min(WIDEST);
-    let mut ratios = Vec::new();
-    if ratios_per_place(read.kind) == 1 {
-        ratios.extend(channel("ratio")?.into_iter().map(ratio));
+    let names = if read.kind.channels() == 1 {
+        &["ratio"][..]
     } else {
-        let sides = SIDES.map(&mut channel);
-        let [e, w, s, n] = sides;
-        let (e, w, s, n) = (e?, w?, s?, n?);
-        for i in 0..e.len() {
-            ratios.extend([e[i], w[i], s[i], n[i]].map(ratio));
-        }
-    }
-    // Four ratios may have come from a PNG, which has no room for heights beside them.
+        &SIDES
+    };
+    let cones: Vec<Vec<f32>> = names.iter().map(|n| channel(n)).collect::<Result<_, _>>()?;
+    let places = 0..cones[0].len();
+    let ratios = places.flat_map(|i| cones.iter().map(move |cone| ratio(cone[i])));
+    let ratios = ratios.collect();
+    // Four ratios may come from a PNG, which has no room for heights beside them.
     let heights = match read.kind {
         MapKind::Quad if !head.channels.iter().any(|c| c == "height") => None,
         _ => Some(channel("height")?),
@@ -249,25 +234,25 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
     Ok(finished(read, bits, size, ratios, heights, Vec::new()))
 }
 
-/// A label and an image that belong together.
-fn check_places(read: &Read, found: [u32; 2]) -> Result<(), String> {
+/// Checks that an image has the size that its label says.
+fn check_places(read: &ParsedLabel, found: [u32; 2]) -> Result<(), String> {
     let wanted = read.places();
     if found == wanted {
         return Ok(());
     }
     Err(format!(
-        "is {} x {}, and by its label should be {} x {}; it was cut or scaled, which makes cones wrong; make the map again",
+        "is {} x {}, and its label says {} x {}; it was cut or scaled, which makes cones wrong; make the map again",
         found[0], found[1], wanted[0], wanted[1]
     ))
 }
 
 fn finished(
-    read: Read,
+    read: ParsedLabel,
     bits: Bits,
     size: [u32; 2],
     ratios: Vec<f64>,
     heights: Option<Vec<f32>>,
-    extra: Vec<Extra>,
+    shading: Vec<ShadingChannel>,
 ) -> MapFile {
     MapFile {
         map: ConeMap {
@@ -278,14 +263,13 @@ fn finished(
             ratios,
         },
         heights,
-        extra,
-        slopes: None,
+        shading,
         origin: read.origin,
-        form: Form {
+        format: MapFormat {
             bits,
-            root: read.root,
+            ratio: read.ratio,
             slopes: read.slopes,
-            ..Form::new(read.layout)
+            ..MapFormat::new(read.layout)
         },
         label: read.label,
     }

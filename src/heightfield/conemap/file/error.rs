@@ -1,5 +1,5 @@
 //! Why a cone map cannot be read, written or used: one sentence that says where, what,
-//! and what would do.
+//! and how to go on.
 
 use std::path::Path;
 
@@ -13,23 +13,23 @@ pub enum MapError {
     File {
         /// Its path.
         path: String,
-        /// What is wrong and what would do.
+        /// What is wrong and how to go on.
         why: String,
     },
     /// The layout cannot hold the map.
     #[error("the layout `{layout}` {why}")]
     Layout {
-        /// Its word.
+        /// Its name.
         layout: &'static str,
-        /// What is wrong and what would do.
+        /// What is wrong and how to go on.
         why: String,
     },
-    /// The map is a good one, and not for this use.
+    /// The map is valid, but not for this use.
     #[error("{path}: {why}")]
     Misfit {
         /// Its path.
         path: String,
-        /// What does not match and what would do.
+        /// What does not match and how to go on.
         why: String,
     },
 }
@@ -42,7 +42,7 @@ impl MapError {
         }
     }
 
-    /// What is wrong and what would do, without where.
+    /// What is wrong and how to go on, without the file.
     pub fn into_why(self) -> String {
         match self {
             Self::File { why, .. } | Self::Layout { why, .. } | Self::Misfit { why, .. } => why,

@@ -5,12 +5,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::heightfield::conemap::MapKind;
-use crate::heightfield::conemap::file::form::{Form, Label, Layout, MapFile, Slopes, scale};
-use crate::heightfield::conemap::file::words::{
-    is_walk, kind_named, kind_word, wrap_named, wrap_word,
-};
+use crate::heightfield::conemap::file::format::{Layout, MapFormat, RatioScale, Slopes};
+use crate::heightfield::conemap::file::map_file::{Label, MapFile, places, scale};
 use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
-use crate::heightfield::heights::{MOST_SAMPLES, Patches};
+use crate::heightfield::heights::{MOST_SAMPLES, Patches, wrap_name, wrap_named};
 
 /// Keyword of the text chunk and name of the attribute.
 pub(crate) const KEYWORD: &str = "conemarch cone map";
@@ -44,37 +42,27 @@ struct Text {
     generator: Option<String>,
 }
 
-fn root_word(root: bool) -> &'static str {
-    if root { "sqrt" } else { "linear" }
-}
-
-fn root_named(word: &str) -> Option<bool> {
-    [true, false]
-        .into_iter()
-        .find(|root| root_word(*root) == word)
-}
-
 /// The only version of the text so far.
 const VERSION: u32 = 1;
 
-/// Writes the text for a map in a form.
-pub(crate) fn write(file: &MapFile, form: &Form) -> Result<String, String> {
+/// Writes the text for a map in a format.
+pub(crate) fn write(file: &MapFile, format: &MapFormat) -> Result<String, String> {
     let map = &file.map;
     let label = &file.label;
-    // A PNG says it by its own numbers.
-    let origin = file.origin.filter(|_| form.layout == Layout::Full);
+    // The numbers of a PNG are their own origin.
+    let origin = file.origin.filter(|_| format.layout == Layout::Full);
     let text = Text {
         version: VERSION,
-        kind: kind_word(map.kind).into(),
-        layout: form.layout.name().into(),
-        ratio: root_word(form.root).into(),
+        kind: map.kind.name().into(),
+        layout: format.layout.name().into(),
+        ratio: format.ratio.name().into(),
         scale: label.scale,
-        wrap: wrap_word(map.wrap).into(),
+        wrap: wrap_name(map.wrap).into(),
         offset: map.offset,
         samples: label.samples,
         surface: label.patches.name().into(),
-        from_ratio: origin.map(|root| root_word(root).into()),
-        slopes: (form.layout == Layout::Dummer).then(|| form.slopes.name().into()),
+        from_ratio: origin.map(|origin| origin.name().into()),
+        slopes: (format.layout == Layout::Dummer).then(|| format.slopes.name().into()),
         heights_sha256: label.digest.clone(),
         generator: label.generator.clone(),
     };
@@ -83,75 +71,64 @@ pub(crate) fn write(file: &MapFile, form: &Form) -> Result<String, String> {
 
 /// What a text says.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Read {
+pub(crate) struct ParsedLabel {
     pub kind: MapKind,
     pub layout: Layout,
-    pub root: bool,
+    pub ratio: RatioScale,
     pub wrap: [bool; 2],
     pub offset: f64,
     pub slopes: Slopes,
-    pub origin: Option<bool>,
+    pub origin: Option<RatioScale>,
     pub label: Label,
 }
 
-impl Read {
+impl ParsedLabel {
     /// Places that a map of such heights has along each axis.
     pub fn places(&self) -> [u32; 2] {
         places(self.label.samples, self.wrap, self.kind, self.label.patches)
     }
 }
 
-/// Places of a map along each axis: samples, or for walks cells.
-pub(crate) fn places(
-    samples: [u32; 2],
-    wrap: [bool; 2],
-    kind: MapKind,
-    patches: Patches,
-) -> [u32; 2] {
-    [0, 1].map(|a| {
-        let ends = is_walk(kind) && patches == Patches::Bilinear && !wrap[a];
-        samples[a] - u32::from(ends && samples[a] > 1)
-    })
+fn broken(why: &str) -> String {
+    format!("has a label that cannot be understood ({why}); make the map again")
+}
+
+fn wrong(key: &str, value: &str) -> String {
+    broken(&format!("{key} = {value}"))
+}
+
+/// The value of a word under a key.
+fn word<T>(key: &str, word: &str, named: impl Fn(&str) -> Option<T>) -> Result<T, String> {
+    named(word).ok_or_else(|| wrong(key, word))
 }
 
 /// Reads a text.
 ///
 /// # Errors
-/// In words: it is none, or says what cannot be.
-pub(crate) fn read(text: &str) -> Result<Read, String> {
-    let broken = |why: String| {
-        format!("says of its cones what is not understood ({why}); make the map again")
-    };
-    let text: Text = toml::from_str(text).map_err(|e| broken(e.message().to_string()))?;
+/// In words: the text is not a label, or contradicts itself.
+pub(crate) fn read(text: &str) -> Result<ParsedLabel, String> {
+    let text: Text = toml::from_str(text).map_err(|e| broken(e.message()))?;
     if text.version != VERSION {
         return Err(format!(
-            "was written by a later conemarch (version {} of its label, and {VERSION} is known); make the map again",
+            "was written by a later conemarch (its label has version {}, and only {VERSION} is known); make the map again",
             text.version
         ));
     }
-    let wrong = |key: &str, value: &str| broken(format!("{key} = {value}"));
-    let kind = kind_named(&text.kind).ok_or_else(|| wrong("kind", &text.kind))?;
-    let layout = Layout::named(&text.layout).ok_or_else(|| wrong("layout", &text.layout))?;
-    let wrap = wrap_named(&text.wrap).ok_or_else(|| wrong("wrap", &text.wrap))?;
-    let root = root_named(&text.ratio).ok_or_else(|| wrong("ratio", &text.ratio))?;
-    let origin = match text.from_ratio.as_deref() {
-        None => None,
-        Some(word) => Some(root_named(word).ok_or_else(|| wrong("from_ratio", word))?),
-    };
-    let patches = match text.surface.as_str() {
-        "bilinear" => Patches::Bilinear,
-        "boxes" => Patches::Boxes,
-        other => return Err(wrong("surface", other)),
-    };
-    let slopes = match text.slopes.as_deref() {
-        None => Slopes::Whole,
-        Some(word) => Slopes::named(word).ok_or_else(|| wrong("slopes", word))?,
-    };
+    let kind = word("kind", &text.kind, MapKind::named)?;
+    let layout = word("layout", &text.layout, Layout::named)?;
+    let wrap = word("wrap", &text.wrap, wrap_named)?;
+    let ratio = word("ratio", &text.ratio, RatioScale::named)?;
+    let origin = text.from_ratio.as_deref();
+    let origin = origin.map(|w| word("from_ratio", w, RatioScale::named));
+    let origin = origin.transpose()?;
+    let patches = word("surface", &text.surface, Patches::named)?;
+    let slopes = text.slopes.as_deref().unwrap_or(Slopes::Whole.name());
+    let slopes = word("slopes", slopes, Slopes::named)?;
     if layout.lacks(kind).is_some() {
         let both = format!("{} in the layout {}", text.kind, text.layout);
         return Err(wrong("kind", &both));
     }
-    let room = if is_walk(kind) {
+    let room = if kind.over_cells() {
         (LEAST_OFFSET..=MOST_OFFSET).contains(&text.offset)
     } else {
         text.offset == 0.0
@@ -168,14 +145,14 @@ pub(crate) fn read(text: &str) -> Result<Read, String> {
     if text.samples.iter().any(|n| !(1..=MOST_SAMPLES).contains(n)) {
         return Err(wrong("samples", &format!("{:?}", text.samples)));
     }
-    // Nothing else was ever written; another one would make all cones wider or narrower.
+    // Only this scale is ever written. Another one would make all cones wider or narrower.
     if text.scale != scale(text.samples) {
         return Err(wrong("scale", &text.scale.to_string()));
     }
-    Ok(Read {
+    Ok(ParsedLabel {
         kind,
         layout,
-        root,
+        ratio,
         wrap,
         offset: text.offset,
         slopes,

@@ -1,20 +1,20 @@
-//! Cone maps in files: what the papers' layouts hold and how, rounded to the safe side,
-//! with a label that says what the map is and for which heights.
+//! Cone maps in files: the layouts of the papers, rounded so that no cone becomes wider,
+//! with a label that says what the map is and which heights it belongs to.
 
+mod compatibility;
 mod decode;
 mod encode;
 mod error;
-mod fit;
-mod form;
+mod format;
 mod label;
-mod round;
-mod slopes;
-mod words;
+mod map_file;
+mod rounding;
+mod shading;
 
-pub use decode::{Foreign, decode, decode_bytes, has_map, read_map};
+pub use compatibility::MapUse;
+pub use decode::{ForeignFormat, decode, decode_bytes, has_map, read_map};
 pub use encode::encode;
 pub use error::MapError;
-pub use fit::Wanted;
-pub use form::{Bits, Extra, Form, Label, Layout, MapFile, Slopes, digest};
-pub use round::{Ratios, Steps, narrowed};
-pub use words::{is_walk, kind_named, kind_word, promise, wrap_word};
+pub use format::{Bits, Layout, MapFormat, RatioScale, Slopes};
+pub use map_file::{Label, MapFile, ShadingChannel, digest};
+pub use rounding::{Ratios, Steps, narrowed};

@@ -1,15 +1,27 @@
 //! How wide a cone one higher place allows. Twin: `wgsl/heightfield/conemap/generate/cost.wgsl`.
 //!
-//! A cone is bounded by every place that rises above its apex: the *cost* of a place
-//! falls with its distance and with its rise, and the least cost of all is the answer.
-//! Costs only have to compare like ratios, so that of a cone over samples is the square
-//! of its ratio, which needs no root.
+//! Every place that rises above an apex bounds its cone. The *cost* of a place grows with
+//! its distance and falls with its rise above the apex; the least cost of all places gives
+//! the ratio. Costs only have to be in the same order as ratios. For cones over samples the
+//! cost is the square of the ratio, which needs no root.
 //!
-//! In f64 every operation here is rounded, but never against its order: a node that is
-//! no farther and no lower than a place never costs more. So a search that skips nodes
-//! by their cost ends with the very bits of one that skips nothing.
+//! In f64 every operation here is rounded, but keeps the order: a node that is no farther
+//! and no lower than a place never costs more. A search that skips nodes by their cost
+//! therefore ends with the very bits of one that skips nothing.
 
+use crate::base::shader::Module;
 use crate::heightfield::conemap::WIDEST;
+use crate::wgsl;
+
+/// Costs that are closer than this, relative to them, may compare wrongly in f32. WGSL
+/// allows 4.5 units in the last place for a root and 2.5 for a division; with one half
+/// for each of the other operations two costs are apart by 2^-19 at the worst.
+const MARGIN: f64 = 1.0 / 262_144.0;
+
+/// The least rise that a device looks at: a place of the least distance that counts, a
+/// thousandth of a texel, with this rise costs far more than the widest cone. Its
+/// square, 2^-80, is no denormal, which devices may take for 0.
+const LEAST_RISE: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// What a place costs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,5 +60,18 @@ impl Cost {
             Self::Cone => cost.sqrt().min(WIDEST),
             Self::Walk { .. } => cost.min(WIDEST),
         }
+    }
+
+    /// The WGSL of the cost, for searches that measure distances in so many units per texel.
+    pub fn module(self, units: f64) -> Module {
+        let walk = matches!(self, Self::Walk { .. });
+        wgsl!(
+            "heightfield/conemap/generate/cost.wgsl",
+            "COST_WALK" = f64::from(u8::from(walk)),
+            "COST_UNITS" = units,
+            "COST_WIDEST" = self.widest(),
+            "COST_MARGIN" = MARGIN,
+            "COST_LEAST_RISE" = LEAST_RISE,
+        )
     }
 }

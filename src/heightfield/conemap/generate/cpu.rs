@@ -6,22 +6,22 @@ use rayon::prelude::*;
 
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::generator::{
-    GenerateError, Generator, Options, Watch, Work,
+    GenerateError, Generator, NodeCount, Options, Watch,
 };
 use crate::heightfield::conemap::generate::min3x3::min3x3;
 use crate::heightfield::conemap::generate::task::{Found, MapTask};
 use crate::heightfield::heights::{Heights, Patches};
 
-/// Places before the first look at the watch: seconds at most for the slowest generators
+/// Places before the first call of the watch: seconds at most for the slowest generators
 /// on large maps.
 const BAND: usize = 1 << 10;
-/// How long a band should take at least, in seconds. Bands grow until they do: each ends
-/// with waiting for the last thread, long on a busy machine.
+/// How long a band should take at least, in seconds. Bands grow until they do, because each
+/// ends with waiting for the last thread, which is long on a busy machine.
 const SHORT: f64 = 0.03;
 /// Places that a thread takes at least: fewer cost more in handing out than they save.
 const TAKEN: usize = 64;
 
-/// Makes a cone map. Patches matter to the walks: they say which cells there are.
+/// Makes a cone map. Only generators over cells depend on the patches.
 ///
 /// # Errors
 /// Options that are out of range; [`GenerateError::Cancelled`] when `watch` returns
@@ -36,7 +36,7 @@ pub fn generate(
     generate_counted(generator, heights, patches, options, watch).map(|(map, _)| map)
 }
 
-/// Makes a cone map, and tells how much work it was.
+/// Makes a cone map, and counts the nodes that the searches looked up.
 ///
 /// # Errors
 /// As [`generate`].
@@ -46,25 +46,23 @@ pub fn generate_counted(
     patches: Patches,
     options: &Options,
     watch: Watch<'_>,
-) -> Result<(ConeMap, Work), GenerateError> {
-    let prepared = MapTask::new(generator, heights, patches, options)?;
-    let places = prepared.values.len();
+) -> Result<(ConeMap, NodeCount), GenerateError> {
+    let task = MapTask::new(generator, heights, patches, options)?;
+    let places = task.values.len();
     let channels = generator.channels();
     let mut ratios = Vec::with_capacity(places * channels);
-    let mut work = Work::default();
+    let mut count = NodeCount::default();
     let mut band: Vec<Found> = Vec::new();
     let (mut start, mut length) = (0, BAND);
     while start < places {
         let since = Instant::now();
         let indices = (start..places.min(start + length)).into_par_iter();
-        let found = indices
-            .with_min_len(TAKEN)
-            .map(|index| prepared.find(index));
+        let found = indices.with_min_len(TAKEN).map(|index| task.find(index));
         found.collect_into_vec(&mut band);
         for found in &band {
             ratios.extend_from_slice(&found.ratios[..channels]);
-            work.nodes += u64::from(found.nodes);
-            work.most = work.most.max(found.nodes);
+            count.total += u64::from(found.nodes);
+            count.most = count.most.max(found.nodes);
         }
         start += band.len();
         if !watch(start as f64 / places as f64) {
@@ -74,9 +72,9 @@ pub fn generate_counted(
             length *= 2;
         }
     }
-    let mut map = prepared.map(ratios);
+    let mut map = task.map(ratios);
     if options.min3x3 {
         map = min3x3(&map);
     }
-    Ok((map, work))
+    Ok((map, count))
 }

@@ -1,14 +1,14 @@
 //! Which places can limit a relaxed cone: those behind which the surface falls.
 //!
 //! A ray that goes down and has entered the surface comes out again only where the
-//! surface falls more steeply than the ray, so a place need not keep clear of a cone
-//! unless the surface beyond it, as seen from the apex, falls somewhere (the falling
-//! edges of Ban, Valasek, Balint and Vad: Robust Cone Step Mapping, EGSR 2024). What
-//! lies beyond depends on the quadrant alone that the ray goes to; hence one mask, and
+//! surface falls more steeply than the ray. So a place limits a cone only if the surface
+//! beyond it, as seen from the apex, falls somewhere (the falling
+//! edges of Bán, Valasek, Bálint and Vad: Robust Cone Step Mapping, EGSR 2024). What
+//! lies beyond depends only on the quadrant that the ray goes to. So there is one mask, and
 //! one pyramid of maxima, per quadrant.
 //!
-//! For the walk that makes every cone exact: each jump meets the surface at most once.
-//! For cones over samples it does not, as rays pass between them.
+//! For cones over cells this is proven: each step meets the surface at most once. For cones
+//! over samples it is not, because rays pass between samples.
 
 use rayon::prelude::*;
 
@@ -55,30 +55,22 @@ fn cell_limits(heights: &Heights, patches: Patches, x: i64, y: i64, up: [bool; 2
     }
 }
 
-/// The heights that limit relaxed cones over samples in the direction of a quadrant.
-pub fn of_samples(heights: &Heights, up: [bool; 2]) -> Vec<f32> {
-    let width = heights.size()[0] as usize;
+/// The values of the places that limit relaxed cones in the direction of a quadrant, and
+/// [`NO_LIMIT`] for the others. `cells` says what the places are cells of, if they are cells.
+pub fn limits(
+    heights: &Heights,
+    cells: Option<Patches>,
+    values: &[f32],
+    up: [bool; 2],
+) -> Vec<f32> {
+    let width = heights.places_along(cells)[0] as usize;
     let one = |(i, z): (usize, &f32)| {
         let (x, y) = ((i % width) as i64, (i / width) as i64);
-        if sample_limits(heights, x, y, up) {
-            *z
-        } else {
-            NO_LIMIT
-        }
+        let limits = match cells {
+            Some(patches) => cell_limits(heights, patches, x, y, up),
+            None => sample_limits(heights, x, y, up),
+        };
+        if limits { *z } else { NO_LIMIT }
     };
-    heights.data().par_iter().enumerate().map(one).collect()
-}
-
-/// The apexes that limit relaxed cones over cells in the direction of a quadrant.
-pub fn of_cells(heights: &Heights, patches: Patches, apexes: &[f32], up: [bool; 2]) -> Vec<f32> {
-    let width = heights.cells(patches)[0] as usize;
-    let one = |(i, z): (usize, &f32)| {
-        let (x, y) = ((i % width) as i64, (i / width) as i64);
-        if cell_limits(heights, patches, x, y, up) {
-            *z
-        } else {
-            NO_LIMIT
-        }
-    };
-    apexes.par_iter().enumerate().map(one).collect()
+    values.par_iter().enumerate().map(one).collect()
 }

@@ -1,129 +1,122 @@
-//! The generators by name, what they are told, and why there may be no map.
+//! The list of generators, their options, and why a map cannot be made.
 
 use thiserror::Error;
 
-use crate::gpu::device::DeviceError;
-use crate::gpu::kernel::KernelError;
-use crate::heightfield::conemap::MapKind;
+use crate::base::named::named_enum;
+use crate::heightfield::conemap::MapKind::{self, Relaxed, Samples};
+use crate::heightfield::conemap::generate::brute::BruteForce;
+use crate::heightfield::conemap::generate::method::Method;
+use crate::heightfield::conemap::generate::quick::Quick;
+use crate::heightfield::conemap::generate::relaxed::RaySearch;
+use crate::heightfield::conemap::generate::search;
 
-/// A way to make a cone map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Generator {
-    /// Every sample against the others in growing rings, until no ring can matter
-    /// (Dummer 2006).
-    Brute,
-    /// Eight neighbours per level of the maxima, each at its nearest point (Valasek and
-    /// Ban 2022, Algorithm 1): narrower than `Brute`, never wider.
-    Naive,
-    /// The same, each at the nearest point that finer levels have not seen (Algorithm
-    /// 2, with the nearest point as it should be).
-    Improved,
-    /// The same at the centres: close to `Brute`, but *not* conservative.
-    Center,
-    /// `Brute` by branch and bound over the maxima: equal to the last bit.
+/// How the cones of a generator compare with the widest that their kind allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quality {
+    /// As wide, to the last bit.
     Exact,
-    /// Four cones per sample, one per side, by branch and bound.
-    Quad,
-    /// Relaxed cones by searching along rays (Policarpo and Oliveira 2007, Listing
-    /// 18-2): unsound at any number of steps.
-    RelaxedSearch,
-    /// Relaxed cones by the rule of falling edges, by branch and bound.
-    RelaxedExact,
-    /// Cones over cells, for the exact tracer.
-    Walk,
-    /// The same, limited only by cells that fall away behind.
-    WalkRelaxed,
+    /// Never wider.
+    Conservative,
+    /// Sometimes wider. In words: what their cones then may contain.
+    Flawed(&'static str),
+}
+
+use Quality::{Conservative, Exact, Flawed};
+
+/// What is particular to a generator.
+pub struct GeneratorFacts {
+    /// The kind of map that it makes.
+    pub kind: MapKind,
+    /// How wide its cones are.
+    pub quality: Quality,
+    /// How it searches.
+    pub method: &'static dyn Method,
+}
+
+impl GeneratorFacts {
+    fn new(kind: MapKind, quality: Quality, method: &'static dyn Method) -> Self {
+        Self {
+            kind,
+            quality,
+            method,
+        }
+    }
+}
+
+named_enum! {
+    /// A way to make a cone map.
+    pub enum Generator: GeneratorFacts {
+        /// Compares every sample with the others in growing rings, until no ring can matter
+        /// (Dummer 2006).
+        Brute = "brute" => GeneratorFacts::new(Samples, Exact, &BruteForce),
+        /// Looks at eight neighbours per level of the maxima, each at its nearest point
+        /// (Valasek and Ban 2022, Algorithm 1): narrower than `Brute`, never wider.
+        Naive = "naive" => GeneratorFacts::new(Samples, Conservative, &Quick::Naive),
+        /// The same, each neighbour at the nearest point that finer levels have not seen
+        /// (Algorithm 2, corrected).
+        Improved = "improved" => GeneratorFacts::new(Samples, Conservative, &Quick::Improved),
+        /// The same, each neighbour at its centre: close to `Brute`, but *not* conservative.
+        Center = "center" =>
+            GeneratorFacts::new(Samples, Flawed("samples may lie inside"), &Quick::Center),
+        /// `Brute` by branch and bound over the maxima: equal to the last bit.
+        Exact = "exact" => GeneratorFacts::new(Samples, Exact, &search::ALL),
+        /// Four cones per sample, one per side, by branch and bound.
+        Quad = "quad" => GeneratorFacts::new(MapKind::Quad, Exact, &search::SIDES),
+        /// Relaxed cones by a search along rays (Policarpo and Oliveira 2007, Listing
+        /// 18-2): unsound at any number of steps.
+        RelaxedSearch = "relaxed-search" =>
+            GeneratorFacts::new(Relaxed, Flawed("rays may cross twice"), &RaySearch),
+        /// Relaxed cones by the rule of falling edges, by branch and bound.
+        RelaxedExact = "relaxed-exact" => GeneratorFacts::new(Relaxed, Exact, &search::FALLING),
+        /// Cones over cells, for the exact tracer.
+        Walk = "walk" => GeneratorFacts::new(MapKind::Walk, Exact, &search::ALL),
+        /// The same, limited only by cells that fall away behind.
+        WalkRelaxed = "walk-relaxed" =>
+            GeneratorFacts::new(MapKind::WalkRelaxed, Exact, &search::FALLING),
+    }
 }
 
 impl Generator {
-    /// Every generator.
-    pub const ALL: [Self; 10] = [
-        Self::Brute,
-        Self::Naive,
-        Self::Improved,
-        Self::Center,
-        Self::Exact,
-        Self::Quad,
-        Self::RelaxedSearch,
-        Self::RelaxedExact,
-        Self::Walk,
-        Self::WalkRelaxed,
-    ];
-
-    /// The word that chooses it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Brute => "brute",
-            Self::Naive => "naive",
-            Self::Improved => "improved",
-            Self::Center => "center",
-            Self::Exact => "exact",
-            Self::Quad => "quad",
-            Self::RelaxedSearch => "relaxed-search",
-            Self::RelaxedExact => "relaxed-exact",
-            Self::Walk => "walk",
-            Self::WalkRelaxed => "walk-relaxed",
-        }
-    }
-
-    /// The generator of a name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|g| g.name() == name)
-    }
-
-    /// What its cones promise.
+    /// The kind of map that it makes.
     pub fn kind(self) -> MapKind {
-        match self {
-            Self::Brute | Self::Naive | Self::Improved | Self::Center | Self::Exact => {
-                MapKind::Samples
-            }
-            Self::Quad => MapKind::Quad,
-            Self::RelaxedSearch | Self::RelaxedExact => MapKind::Relaxed,
-            Self::Walk => MapKind::Walk,
-            Self::WalkRelaxed => MapKind::WalkRelaxed,
-        }
+        self.facts().kind
     }
 
-    /// Whether its places are cells, with an apex each, instead of samples.
+    /// Whether its places are cells instead of samples.
     pub fn over_cells(self) -> bool {
-        matches!(self, Self::Walk | Self::WalkRelaxed)
-    }
-
-    /// Whether no cone is wider than its kind allows.
-    pub fn keeps_its_promise(self) -> bool {
-        !matches!(self, Self::Center | Self::RelaxedSearch)
+        self.kind().over_cells()
     }
 
     /// Cones per place.
     pub fn channels(self) -> usize {
-        if self == Self::Quad { 4 } else { 1 }
+        self.kind().channels()
     }
 }
 
 /// Most steps of a search along a ray: several to each texel of the longest axis.
 pub const MOST_SEARCH_STEPS: u32 = 4096;
-/// Least room that a walk's cones leave, in texels. With none at all a cell next to a
-/// higher one, by however little, would have a cone of no width.
+/// Least room that the cones of a walk leave, in texels. With no room, a cell next to a
+/// slightly higher one would have a cone of no width.
 pub const LEAST_OFFSET: f64 = 1e-3;
-/// Most room that they may leave: more only takes from every jump.
+/// Most room that they may leave: more only shortens every step.
 pub const MOST_OFFSET: f64 = 1e3;
 
-/// What generators can be told.
+/// Options of the generators.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Steps along each ray of `RelaxedSearch`, 1 to [`MOST_SEARCH_STEPS`].
     pub search_steps: u32,
-    /// Room that the walks' cones leave, in texels, [`LEAST_OFFSET`] to [`MOST_OFFSET`].
+    /// Room that the cones of a walk leave, in texels, [`LEAST_OFFSET`] to [`MOST_OFFSET`].
     pub offset: f64,
-    /// Whether each cone ends up as narrow as the narrowest of its eight neighbours (Ban
-    /// and others 2024): nearly safe between the samples, too, and still no promise.
+    /// Whether each cone is made as narrow as the narrowest of its eight neighbours (Bán
+    /// and others 2024): nearly safe between the samples, too, but without a proof.
     pub min3x3: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
         Self {
-            // As the listing has it.
+            // The number of the published listing.
             search_steps: 128,
             // Fewest steps over rays of all inclinations on terrain: 1.4 texels are as
             // good for steep rays, 3 for flat ones.
@@ -134,10 +127,10 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Whether a generator can be told this.
+    /// Checks that all numbers are in range.
     ///
     /// # Errors
-    /// Numbers outside their ranges.
+    /// The number that is out of range.
     pub fn check(&self) -> Result<(), GenerateError> {
         if !(1..=MOST_SEARCH_STEPS).contains(&self.search_steps) {
             return Err(GenerateError::Steps(self.search_steps));
@@ -149,54 +142,31 @@ impl Options {
     }
 }
 
-/// Why there is no cone map.
+/// Why a cone map cannot be made.
 #[derive(Debug, Error)]
 pub enum GenerateError {
     /// Too few or too many steps of the search.
-    #[error("a search of {0} steps: 1 to {MOST_SEARCH_STEPS} would do")]
+    #[error("a search of {0} steps is out of range; give 1 to {MOST_SEARCH_STEPS}")]
     Steps(u32),
-    /// No offset to walk with.
-    #[error("an offset of {0} texels: a number from {LEAST_OFFSET} to {MOST_OFFSET} would do")]
+    /// An offset out of range.
+    #[error("an offset of {0} texels is out of range; give {LEAST_OFFSET} to {MOST_OFFSET}")]
     Offset(f64),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
-    /// A buffer that the device does not allow.
-    #[error(
-        "the device `{device}` binds at most {most} bytes at once, and a map of {} x {} places needs {needed}; choose another with --device, or use --device cpu",
-        size[0], size[1]
-    )]
-    TooLarge {
-        /// Its name.
-        device: String,
-        /// Places along each axis.
-        size: [u32; 2],
-        /// Bytes of the largest buffer.
-        needed: u64,
-        /// Bytes that it allows.
-        most: u64,
-    },
-    /// The device failed.
+    /// The device that makes the map failed.
     #[error(transparent)]
-    Device(#[from] DeviceError),
-    /// A program failed.
-    #[error(transparent)]
-    Kernel(#[from] KernelError),
-    /// The device ended a search that claims not to have begun.
-    #[error(
-        "the device `{0}` made no progress on a cone map and reported no error; choose another with --device, or use --device cpu"
-    )]
-    Stuck(String),
+    Device(Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// Told the share of places that are done, now and then; `false` cancels.
+/// Receives the share of places that are done, now and then; `false` cancels.
 pub type Watch<'a> = &'a mut dyn FnMut(f64) -> bool;
 
-/// How much work a map was. Nodes are values looked up: samples, or maxima of any level.
+/// How many nodes the searches of a map looked up. Nodes are samples, or maxima of any level.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct NodeCount {
     /// Nodes of all places together.
-    pub nodes: u64,
+    pub total: u64,
     /// Nodes of the place that took most.
     pub most: u32,
 }

@@ -9,8 +9,8 @@ use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::heights::brought_in;
 use crate::wgsl;
 
-/// A place or the one next to it along an axis: beyond the ends the last one, or the one
-/// that comes round.
+/// The index of a place along an axis: beyond the ends the last place, or where the axis
+/// wraps the one that comes round.
 pub(crate) fn beside(map: &ConeMap, axis: usize, i: i64) -> usize {
     brought_in(i, map.size[axis], map.wrap[axis]) as usize
 }
@@ -35,10 +35,10 @@ pub fn min3x3(map: &ConeMap) -> ConeMap {
     }
 }
 
-/// Makes a band of the 3 x 3 minimum.
-pub fn nine_program() -> Program {
+/// The program that makes a band of the 3 x 3 minimum.
+pub fn program() -> Program {
     Program::new(
-        "nine",
+        "min3x3",
         vec![wgsl!("heightfield/conemap/generate/min3x3.wgsl")],
     )
 }

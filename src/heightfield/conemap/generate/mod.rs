@@ -1,4 +1,7 @@
-//! Generators of cone maps: in f64 on the CPU, and on a device with the same result.
+//! Generators of cone maps, in f64 on the CPU and in f32 on a device, with the same result.
+//!
+//! [`generator`] lists the generators, and a [`method::Method`] is how one of them searches.
+//! A new generator is one entry in the list; a new method is one Rust file and one WGSL file.
 
 pub mod brute;
 pub mod cost;
@@ -6,15 +9,15 @@ pub mod cpu;
 pub mod falling;
 pub mod generator;
 pub mod grid_distance;
+pub mod method;
 pub mod min3x3;
 pub mod mips;
 pub mod planes;
-pub mod program;
 pub mod pyramid;
 pub mod quick;
 pub mod refine_f64;
 pub mod relaxed;
-pub mod scan;
+pub mod rings;
 pub mod search;
 pub mod slopes;
 pub mod task;

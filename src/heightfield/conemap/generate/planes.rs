@@ -1,10 +1,10 @@
 //! Planes that lie above all heights under a node, for smooth fields.
 //!
-//! A maximum says how high a node is, and not where. Along a smooth crest, where many
-//! places cost nearly the same, that leaves a search a doubt of the order of the node's
-//! size, and it descends to as many places as the crest is long. A plane above the
-//! heights leaves a doubt of the order of the size squared (by the curvature), and few
-//! nodes have to be opened.
+//! A maximum says how high a node is, but not where. Along a smooth crest, where many
+//! places cost nearly the same, this uncertainty is of the order of the node's size, and a
+//! search descends to as many places as the crest is long. The uncertainty of a plane above
+//! the heights is of the order of the size squared (by the curvature), and few nodes have to
+//! be opened.
 //!
 //! That no place under a node can narrow a cone of ratio R means `rise(v) <= |v| / R` for
 //! all steps v to it. With any unit vector n, `|v| >= n.v`; so it is enough that the
@@ -12,11 +12,11 @@
 //! rectangle, which its corners decide. n is the direction to the rectangle's centre.
 
 use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::grid_distance::{Aim, GridDistance, Places};
+use crate::heightfield::conemap::generate::grid_distance::{GridDistance, Places, Sector};
+use crate::heightfield::conemap::generate::method::Apex;
 use crate::heightfield::max_mip::MaxMip;
 
-/// How far below 0 the greatest of the linear function must be: rounding is less by far
-/// for coordinates under ten thousand and gradients that heights of 0..=1 can have.
+/// How far below 0 the maximum of the linear function must be. Rounding is far less for coordinates under ten thousand and gradients that heights of 0..=1 can have.
 const SURE: f64 = 1e-9;
 
 /// Coefficients of a plane `g[0] x + g[1] y + rest`.
@@ -63,19 +63,19 @@ impl Planes {
         planes[(y * width + x) as usize]
     }
 
-    /// Whether no place under a node can cost less than `best`, for a cone of apex
-    /// `height`. `false` where planes cannot tell.
+    /// Whether no place under a node, which are the places `to`, can cost less than `best`.
+    /// `false` where planes cannot tell.
     pub fn rule_out(
         &self,
-        (reach, cost): (&GridDistance, Cost),
-        (from, height): ([u32; 2], f64),
+        (distance, cost): (&GridDistance, Cost),
+        from: Apex,
         (level, at): (usize, [u32; 2]),
         to: Places,
         best: f64,
     ) -> bool {
         let plane = self.get(level, at);
-        let both = (steps(reach, 0, from, to), steps(reach, 1, from, to));
-        let (Some(x), Some(y)) = both else {
+        let both = [0, 1].map(|a| steps(distance, a, from.place[a], to));
+        let [Some(x), Some(y)] = both else {
             return false;
         };
         let steps = [x, y];
@@ -86,7 +86,7 @@ impl Planes {
         }
         let ratio = cost.ratio(best);
         let n = middle.map(|m| m / (length * ratio));
-        let mut most = plane.at(from) - height;
+        let mut most = plane.at(from.place) - from.height;
         for a in 0..2 {
             let slope = plane.g[a] - n[a];
             let Steps { low, high, turn } = steps[a];
@@ -111,9 +111,9 @@ struct Steps {
 
 /// The steps to the nearest image of a rectangle; `None` where parts of it are nearer at
 /// another one.
-fn steps(reach: &GridDistance, a: usize, from: [u32; 2], to: Places) -> Option<Steps> {
-    let axis = reach.axes[a];
-    let at = f64::from(from[a]);
+fn steps(distance: &GridDistance, a: usize, from: u32, to: Places) -> Option<Steps> {
+    let axis = distance.axes[a];
+    let at = f64::from(from);
     let (low, high) = (f64::from(to.low[a]) - at, f64::from(to.high[a]) - at);
     if !axis.wrap {
         return Some(Steps {
@@ -125,7 +125,7 @@ fn steps(reach: &GridDistance, a: usize, from: [u32; 2], to: Places) -> Option<S
     let n = f64::from(axis.count);
     let turn = n * (0.5 * (low + high) / n).round();
     let (low, high) = (low - turn, high - turn);
-    let near = reach.aim == Aim::Around && low >= -0.5 * n && high <= 0.5 * n;
+    let near = distance.sector == Sector::All && low >= -0.5 * n && high <= 0.5 * n;
     near.then_some(Steps { low, high, turn })
 }
 

@@ -1,8 +1,8 @@
-//! Where the levels of a pyramid lie in one buffer, and the programs that fill it.
-//! Twins: `wgsl/heightfield/conemap/generate/{pyramid,mips}.wgsl`.
+//! Where the levels of a pyramid of maxima lie in one buffer, and the program that fills it.
+//! Twin: `wgsl/heightfield/conemap/generate/pyramid.wgsl`.
 
 use crate::base::shader::Program;
-use crate::heightfield::conemap::generate::uniform::{MipUniform, PyramidUniform};
+use crate::heightfield::conemap::generate::uniform::PyramidUniform;
 use crate::heightfield::max_mip::{MaxMip, MipLevel};
 use crate::wgsl;
 
@@ -41,7 +41,7 @@ impl Tiles {
         }
     }
 
-    /// What the kernel is told for a level.
+    /// The parameters for making a level.
     pub fn uniform(&self, level: usize) -> PyramidUniform {
         PyramidUniform {
             below: self.levels[level - 1],
@@ -88,38 +88,10 @@ impl Tiles {
     }
 }
 
-/// What the kernel of cone mips is told for each level above a grid.
-pub fn mip_levels(size: [u32; 2]) -> Vec<MipUniform> {
-    let mut all = Vec::new();
-    let (mut below, mut below_at) = (size, 0);
-    while below != [1, 1] {
-        let size = below.map(|n| n.div_ceil(2));
-        let at = below_at + below[0] * below[1];
-        all.push(MipUniform {
-            below,
-            size,
-            below_at,
-            at,
-            pad0: 0,
-            pad1: 0,
-        });
-        (below, below_at) = (size, at);
-    }
-    all
-}
-
-/// Makes one level of tiles.
-pub fn tiles_program() -> Program {
+/// The program that makes one level of tiles.
+pub fn program() -> Program {
     Program::new(
         "pyramid",
         vec![wgsl!("heightfield/conemap/generate/pyramid.wgsl")],
-    )
-}
-
-/// Makes one level of a cone map's pyramid.
-pub fn mips_program() -> Program {
-    Program::new(
-        "mips",
-        vec![wgsl!("heightfield/conemap/generate/mips.wgsl")],
     )
 }

@@ -1,9 +1,9 @@
 //! Quick cone maps, in f64 (Valasek and Ban: Quick Cone Map Generation on the GPU,
 //! Eurographics 2022). Twin: `wgsl/heightfield/conemap/generate/quick.wgsl`.
 //!
-//! At each level of the maxima the eight neighbours of the node that holds the place are
-//! looked at. Together they cover everything: what a level leaves out, the next includes.
-//! The rules differ in where the maximum of a neighbour is taken to be:
+//! At each level of the maxima the search looks at the eight neighbours of the node that
+//! holds the place. Together they cover everything: what a level leaves out, the next
+//! includes. The rules differ in where they assume the maximum of a neighbour:
 //!
 //! - *naive* (Algorithm 1): at the neighbour's nearest point;
 //! - *improved* (Algorithm 2): at the nearest point of the part that no finer level has
@@ -14,41 +14,28 @@
 //!   lies straight ahead. Not conservative.
 //!
 //! Rectangles are on the unrolled plane, where a neighbour across a wrapping border has
-//! indices below 0 or beyond the last; distances to them are again the shortest on the
-//! wrapping grid, since another image of the same places may be nearer.
+//! indices below 0 or beyond the last. Distances to them are the shortest on the
+//! wrapping grid, because another image of the same places may be nearer.
 
+use crate::base::shader::Module;
 use crate::heightfield::conemap::generate::cost::Cost;
+use crate::heightfield::conemap::generate::grid_distance::{Interval, Neighbour, neighbours, node};
+use crate::heightfield::conemap::generate::method::{Apex, Method};
 use crate::heightfield::conemap::generate::search::Best;
-use crate::heightfield::heights::Axis;
-use crate::heightfield::max_mip::MaxMip;
+use crate::heightfield::conemap::generate::task::MapTask;
+use crate::heightfield::conemap::generate::uniform::SearchState;
+use crate::heightfield::heights::{Axis, Heights, Patches};
+use crate::wgsl;
 
-/// Where the maximum of a neighbour is taken to be.
+/// Where the maximum of a neighbour is assumed. The shader knows the rules by their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
+pub enum Quick {
     /// At its nearest point.
     Naive,
     /// At the nearest point that is new.
     Improved,
     /// At its centre.
     Center,
-}
-
-/// Places along an axis of the unrolled plane, both ends included; empty if the second
-/// is less.
-type Interval = [i64; 2];
-
-/// The places under a node of a level along an axis, by the node's index on the unrolled
-/// plane; `None` beyond a border. With it its index on the grid.
-pub fn node(axis: Axis, level: u32, i: i64) -> Option<(u32, Interval)> {
-    let n = i64::from(axis.count);
-    let nodes = ((n - 1) >> level) + 1;
-    if !axis.wrap && !(0..nodes).contains(&i) {
-        return None;
-    }
-    let (turn, own) = (i.div_euclid(nodes), i.rem_euclid(nodes));
-    let low = own << level;
-    let high = (low + (1 << level) - 1).min(n - 1);
-    Some((own as u32, [low + turn * n, high + turn * n]))
 }
 
 /// What the nodes next to the one that holds a place cover along an axis, with it.
@@ -67,21 +54,10 @@ fn block(axis: Axis, level: u32, from: u32) -> Interval {
     seen
 }
 
-/// Steps from a place to the nearest image of an interval.
-pub fn gap(axis: Axis, from: u32, at: Interval) -> u32 {
-    let from = i64::from(from);
-    let n = i64::from(axis.count);
-    let to = |turn: i64| {
-        let ([low, high], from) = (at, from + turn);
-        (low - from).max(from - high).max(0)
-    };
-    let direct = to(0);
-    let steps = if axis.wrap {
-        direct.min(to(n)).min(to(-n))
-    } else {
-        direct
-    };
-    steps as u32
+/// The squared distance to the nearest image of a rectangle.
+fn squared(axes: [Axis; 2], from: [u32; 2], node: [Interval; 2]) -> u32 {
+    let [x, y] = [0, 1].map(|a| axes[a].gap(from[a], node[a]));
+    x * x + y * y
 }
 
 /// The squared distance to the nearest part of a node that has not been seen.
@@ -101,8 +77,7 @@ fn unseen(
                 part[a][0] = part[a][0].max(seen[a][1].saturating_add(1));
             }
             if part[a][0] <= part[a][1] {
-                let [x, y] = [0, 1].map(|a| gap(axes[a], from[a], part[a]));
-                let squared = x * x + y * y;
+                let squared = squared(axes, from, part);
                 least = Some(least.map_or(squared, |l: u32| l.min(squared)));
             }
         }
@@ -123,60 +98,75 @@ fn twice_to_center(axis: Axis, from: u32, at: Interval) -> u32 {
     steps as u32
 }
 
-/// Lowers the best to the least cost of all neighbours of all levels.
-pub fn run(
-    mip: &MaxMip,
-    axes: [Axis; 2],
-    rule: Rule,
-    from: [u32; 2],
-    height: f64,
-    best: &mut Best,
-) {
-    let mut seen = from.map(|i| [i64::from(i); 2]);
-    for (level, maxima) in (0_u32..).zip(&mip.levels) {
-        let own = from.map(|i| i >> level);
-        for i in 0..9 {
-            let step = [i64::from(i % 3) - 1, i64::from(i / 3) - 1];
-            let at = |a: usize| node(axes[a], level, i64::from(own[a]) + step[a]);
-            let (Some((x, along)), Some((y, across))) = (at(0), at(1)) else {
-                continue;
-            };
-            // A node that is its own neighbour holds nothing new.
-            if [x, y] == own {
-                continue;
-            }
-            best.nodes += 1;
-            let rise = f64::from(maxima.at(x, y)) - height;
-            if rise <= 0.0 {
-                continue;
-            }
-            let place = [along, across];
-            // In quarters of a square texel, as centres lie between places.
-            let quarters = match rule {
-                Rule::Naive => {
-                    let [x, y] = [0, 1].map(|a| gap(axes[a], from[a], place[a]));
-                    Some(4 * (x * x + y * y))
+/// Distances are in half texels, because centres lie between places.
+const UNITS: f64 = 2.0;
+
+/// The cost of a distance in quarters of a square texel. Halving is exact.
+fn cost(quarters: u32, rise: f64) -> f64 {
+    Cost::Cone.of(quarters, UNITS * rise)
+}
+
+impl Method for Quick {
+    fn pyramids(&self, _: &Heights, _: Option<Patches>, values: &[f32]) -> Vec<Vec<f32>> {
+        vec![values.to_vec()]
+    }
+
+    fn modules(&self, task: &MapTask<'_>) -> Vec<Module> {
+        vec![
+            task.cost().module(UNITS),
+            wgsl!("heightfield/conemap/generate/least_cost.wgsl"),
+            wgsl!(
+                "heightfield/conemap/generate/quick.wgsl",
+                "QUICK_RULE" = f64::from(*self as u8)
+            ),
+        ]
+    }
+
+    fn search(&self, task: &MapTask<'_>, _: usize, from: Apex, best: &mut Best) {
+        let (axes, place) = (task.axes(), from.place);
+        let mut seen = place.map(|i| [i64::from(i); 2]);
+        for (level, maxima) in (0_u32..).zip(&task.mips[0].levels) {
+            for Neighbour { at, covers, step } in neighbours(axes, level, place) {
+                best.nodes += 1;
+                let rise = f64::from(maxima.at(at[0], at[1])) - from.height;
+                if rise <= 0.0 {
+                    continue;
                 }
-                Rule::Improved => unseen(axes, from, place, seen).map(|s| 4 * s),
-                Rule::Center => {
-                    let [x, y] = [0, 1].map(|a| {
-                        let straight = step[a] == 0;
-                        let twice = twice_to_center(axes[a], from[a], place[a]);
-                        if straight { 0 } else { twice }
-                    });
-                    Some(x * x + y * y)
+                if let Some(quarters) = self.quarters(axes, place, covers, step, seen) {
+                    best.cost = best.cost.min(cost(quarters, rise));
                 }
-            };
-            if let Some(quarters) = quarters {
-                best.cost = best.cost.min(cost(quarters, rise));
             }
+            seen = [0, 1].map(|a| block(axes[a], level, place[a]));
         }
-        seen = [0, 1].map(|a| block(axes[a], level, from[a]));
+    }
+
+    fn found_cost(&self, _: &MapTask<'_>, found: &SearchState, height: f64) -> f64 {
+        cost(found.squared, f64::from(found.top) - height)
     }
 }
 
-/// The cost of a distance in quarters of a square texel. Halving is exact.
-pub fn cost(quarters: u32, rise: f64) -> f64 {
-    let rise = 2.0 * rise;
-    Cost::Cone.of(quarters, rise)
+impl Quick {
+    /// Four times the squared distance at which a neighbour counts, `step` nodes away.
+    fn quarters(
+        self,
+        axes: [Axis; 2],
+        from: [u32; 2],
+        node: [Interval; 2],
+        step: [i64; 2],
+        seen: [Interval; 2],
+    ) -> Option<u32> {
+        let squared = match self {
+            Self::Naive => squared(axes, from, node),
+            Self::Improved => unseen(axes, from, node, seen)?,
+            Self::Center => {
+                let twice = |a: usize| match step[a] {
+                    0 => 0,
+                    _ => twice_to_center(axes[a], from[a], node[a]),
+                };
+                let [x, y] = [0, 1].map(twice);
+                return Some(x * x + y * y);
+            }
+        };
+        Some(4 * squared)
+    }
 }

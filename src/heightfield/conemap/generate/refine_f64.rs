@@ -1,42 +1,34 @@
 //! Ratios in f64 from what a device has found in f32.
 //!
-//! A device tells which place bounds a cone, as squared distance and height: whole, and
-//! one of the map's own numbers, so the ratio can be computed as if it had been found
-//! here. Where another place costs nearly as much, f32 may have preferred the wrong one,
-//! and the place is searched again.
+//! A device reports which place bounds a cone, as squared distance and height. The distance
+//! is a whole number and the height is one of the map's own numbers, so the ratio can be
+//! computed as if the CPU had found the place. Where another place costs nearly as much, f32
+//! may have preferred the wrong one; then the place is searched again on the CPU.
 
-use crate::heightfield::conemap::generate::generator::Generator;
 use crate::heightfield::conemap::generate::task::MapTask;
-use crate::heightfield::conemap::generate::uniform::Search;
-use crate::heightfield::conemap::generate::{quick, relaxed};
+use crate::heightfield::conemap::generate::uniform::SearchState;
 
-/// Whether f32 leaves open what bounds the cones of a place.
-pub fn unsettled<'a>(prepared: &MapTask<'_>, mut found: impl Iterator<Item = &'a Search>) -> bool {
-    // The note of a search along rays is something else.
-    prepared.generator != Generator::RelaxedSearch && found.any(|s| s.note != 0)
+/// Whether f32 leaves open what bounds any cone of a place.
+pub fn is_ambiguous(task: &MapTask<'_>, found: &[SearchState]) -> bool {
+    found.iter().any(|s| task.method.is_ambiguous(s))
 }
 
-/// The ratios of a place in f64, from what the device has found for each channel.
-pub fn settled(prepared: &MapTask<'_>, index: usize, found: &[Search; 4]) -> [f64; 4] {
-    let height = f64::from(prepared.values[index]);
-    let cost = prepared.cost();
-    if unsettled(prepared, found.iter()) {
-        return prepared.find(index).ratios;
+/// The ratios of a place in f64, from what the device has found for each cone.
+pub fn refined(task: &MapTask<'_>, index: usize, found: &[SearchState]) -> [f64; 4] {
+    if is_ambiguous(task, found) {
+        return task.find(index).ratios;
     }
-    found.map(|s| {
-        if s.top < 0.0 {
-            return cost.ratio(cost.widest());
-        }
-        let (top, squared) = (f64::from(s.top), s.squared);
-        let found = match prepared.generator {
-            Generator::RelaxedSearch => {
-                relaxed::exit_cost(squared, top, height, s.note, prepared.options.search_steps)
-            }
-            Generator::Naive | Generator::Improved | Generator::Center => {
-                quick::cost(squared, top - height)
-            }
-            _ => cost.of(squared, top - height),
+    let height = f64::from(task.values[index]);
+    let cost = task.cost();
+    let mut ratios = [0.0; 4];
+    for (ratio, s) in ratios.iter_mut().zip(found) {
+        let bounded = s.top >= 0.0;
+        let found = if bounded {
+            task.method.found_cost(task, s, height).min(cost.widest())
+        } else {
+            cost.widest()
         };
-        cost.ratio(found.min(cost.widest()))
-    })
+        *ratio = cost.ratio(found);
+    }
+    ratios
 }

@@ -3,24 +3,107 @@
 //!
 //! A node of the pyramid can be skipped if its maximum does not rise above the apex, or
 //! if a place as high as its maximum and as near as its nearest would cost no less than
-//! what is already known (research of 2024; METHOD 4). The eight neighbours come first.
+//! the best so far (docs/method.md, 4). The eight neighbours come first.
 //! From there the search climbs: at each level it looks at the three siblings of its own
 //! ancestor, cheapest first, and stops as soon as nothing outside that ancestor can
-//! matter. On rough fields that takes some tens of nodes per place whatever the size;
+//! matter. On rough fields that takes some tens of nodes per place at any size;
 //! on smooth ones it grows like the length of a crest, which planes above the heights
-//! keep in bounds ([`crate::heightfield::conemap::generate::planes`]; here alone, as they only save time).
+//! keep short ([`planes`](super::planes); only here, as they only save time).
 
+use crate::base::shader::Module;
 use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::grid_distance::{GridDistance, Places};
+use crate::heightfield::conemap::generate::falling;
+use crate::heightfield::conemap::generate::grid_distance::{
+    GridDistance, Places, Sector, neighbours,
+};
+use crate::heightfield::conemap::generate::method::{Apex, Method};
 use crate::heightfield::conemap::generate::planes::Planes;
+use crate::heightfield::conemap::generate::task::MapTask;
+use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::max_mip::MaxMip;
+use crate::wgsl;
+
+/// Branch and bound.
+pub struct BranchAndBound {
+    /// Which places each search looks at.
+    sectors: &'static [Sector],
+    /// Whether a cone is only limited by places behind which the surface falls.
+    falling_only: bool,
+}
+
+/// One search for places in all directions.
+pub const ALL: BranchAndBound = BranchAndBound {
+    sectors: &[Sector::All],
+    falling_only: false,
+};
+/// A search for each side, one cone each.
+pub const SIDES: BranchAndBound = BranchAndBound {
+    sectors: &Sector::SIDES,
+    falling_only: false,
+};
+/// A search for each quadrant, where the places that limit relaxed cones differ.
+pub const FALLING: BranchAndBound = BranchAndBound {
+    sectors: &Sector::QUADRANTS,
+    falling_only: true,
+};
+
+impl BranchAndBound {
+    fn distance(&self, task: &MapTask<'_>, search: usize) -> GridDistance {
+        GridDistance {
+            axes: task.axes(),
+            sector: self.sectors[search],
+            cells: task.generator.over_cells(),
+        }
+    }
+}
+
+impl Method for BranchAndBound {
+    fn sectors(&self) -> &'static [Sector] {
+        self.sectors
+    }
+
+    fn pyramids(&self, heights: &Heights, cells: Option<Patches>, values: &[f32]) -> Vec<Vec<f32>> {
+        if !self.falling_only {
+            return vec![values.to_vec()];
+        }
+        let quadrants = self.sectors.iter().filter_map(|sector| match sector {
+            Sector::Quadrant(up) => Some(falling::limits(heights, cells, values, *up)),
+            _ => None,
+        });
+        quadrants.collect()
+    }
+
+    fn uses_planes(&self) -> bool {
+        self.sectors == [Sector::All]
+    }
+
+    fn modules(&self, task: &MapTask<'_>) -> Vec<Module> {
+        vec![
+            task.cost().module(1.0),
+            wgsl!("heightfield/conemap/generate/least_cost.wgsl"),
+            self.distance(task, 0).module(),
+            wgsl!("heightfield/conemap/generate/search.wgsl"),
+        ]
+    }
+
+    fn search(&self, task: &MapTask<'_>, search: usize, from: Apex, best: &mut Best) {
+        let search = Search {
+            mip: &task.mips[task.pyramid(search)],
+            planes: task.planes.as_ref(),
+            distance: self.distance(task, search),
+            cost: task.cost(),
+            from,
+        };
+        search.run(best);
+    }
+}
 
 /// Nodes after which a search asks the planes, too. Most searches of rough fields end
 /// sooner, and planes would cost them more than they save; on smooth fields long searches
 /// are the rule, and planes take away most of them.
 const PATIENCE: u32 = 64;
 
-/// What is known so far.
+/// The best of a search so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Best {
     /// Least cost.
@@ -30,90 +113,60 @@ pub struct Best {
 }
 
 /// A search over one pyramid.
-pub struct Search<'a> {
-    /// Maxima of the heights that bound cones; where a place does not, less than 0.
-    pub mip: &'a MaxMip,
-    /// Planes above the same.
-    pub planes: Option<&'a Planes>,
-    /// Which places count.
-    pub reach: GridDistance,
-    /// What they cost.
-    pub cost: Cost,
+struct Search<'a> {
+    /// Maxima of the heights that bound cones; less than 0 for a place that does not.
+    mip: &'a MaxMip,
+    /// Planes above the same heights.
+    planes: Option<&'a Planes>,
+    distance: GridDistance,
+    cost: Cost,
+    from: Apex,
 }
 
 /// A node that is worth a visit, and the least that any place under it can cost.
 type Child = (f64, [u32; 2]);
 
 impl Search<'_> {
-    /// Lowers the best to the least cost for a cone over a place, whose apex is `height`.
-    pub fn run(&self, from: [u32; 2], height: f64, best: &mut Best) {
-        if f64::from(self.mip.top()) <= height {
+    /// Lowers the best to the least cost of all places.
+    fn run(&self, best: &mut Best) {
+        let most = f64::from(self.mip.top()) - self.from.height;
+        if most <= 0.0 {
             return;
         }
-        self.seed(from, height, best);
+        for neighbour in neighbours(self.distance.axes, 0, self.from.place) {
+            self.consider(neighbour.at, best);
+        }
         // Level 0 is done: the siblings of a place are neighbours of it.
         for level in 1..self.mip.levels.len() {
-            let own = from.map(|i| i >> level);
+            let own = self.from.place.map(|i| i >> level);
             let (low, high) = self.mip.places(level, own[0], own[1]);
-            if let Some(steps) = self.reach.outside(from, Places { low, high }) {
-                let rise = f64::from(self.mip.top()) - height;
-                if self.cost.of(steps * steps, rise) >= best.cost {
-                    return;
-                }
-            } else {
+            let outside = self.distance.outside(self.from.place, Places { low, high });
+            let Some(steps) = outside else { return };
+            if self.cost.of(steps * steps, most) >= best.cost {
                 return;
             }
             let parent = own.map(|i| i / 2);
-            self.children(from, height, level, parent, Some(own), best);
-        }
-    }
-
-    /// The eight neighbours.
-    fn seed(&self, from: [u32; 2], height: f64, best: &mut Best) {
-        let along = |a: usize, step: u32| {
-            let axis = self.reach.axes[a];
-            // Steps are -1, 0 and 1, moved up by one.
-            match (from[a] + step).checked_sub(1) {
-                Some(i) if i < axis.count => Some(i),
-                Some(_) => axis.wrap.then_some(0),
-                None => axis.wrap.then(|| axis.count - 1),
-            }
-        };
-        for dy in 0..3 {
-            for dx in 0..3 {
-                let (Some(x), Some(y)) = (along(0, dx), along(1, dy)) else {
-                    continue;
-                };
-                if [x, y] != from {
-                    self.offer(from, height, [x, y], best);
-                }
-            }
+            self.children(level, parent, Some(own), best);
         }
     }
 
     /// Takes one place into account.
-    fn offer(&self, from: [u32; 2], height: f64, at: [u32; 2], best: &mut Best) {
-        if let Some(cost) = self.bound(from, height, 0, at, best) {
+    fn consider(&self, at: [u32; 2], best: &mut Best) {
+        if let Some(cost) = self.bound(0, at, best) {
             best.cost = cost;
         }
     }
 
     /// The least that any place under a node can cost, if that is less than the best.
-    fn bound(
-        &self,
-        from: [u32; 2],
-        height: f64,
-        level: usize,
-        at: [u32; 2],
-        best: &mut Best,
-    ) -> Option<f64> {
+    fn bound(&self, level: usize, at: [u32; 2], best: &mut Best) -> Option<f64> {
         best.nodes += 1;
-        let rise = f64::from(self.mip.levels[level].at(at[0], at[1])) - height;
+        let rise = f64::from(self.mip.levels[level].at(at[0], at[1])) - self.from.height;
         if rise <= 0.0 {
             return None;
         }
         let (low, high) = self.mip.places(level, at[0], at[1]);
-        let squared = self.reach.squared(from, Places { low, high })?;
+        let to = Places { low, high };
+        let squared = self.distance.squared(self.from.place, to)?;
         let cost = self.cost.of(squared, rise);
         if cost >= best.cost {
             return None;
@@ -121,26 +174,21 @@ impl Search<'_> {
         if level > 0
             && best.nodes > PATIENCE
             && let Some(planes) = self.planes
+            && planes.rule_out(
+                (&self.distance, self.cost),
+                self.from,
+                (level, at),
+                to,
+                best.cost,
+            )
         {
-            let rules = (&self.reach, self.cost);
-            let to = Places { low, high };
-            if planes.rule_out(rules, (from, height), (level, at), to, best.cost) {
-                return None;
-            }
+            return None;
         }
         Some(cost)
     }
 
     /// Visits the children of a node, which lie on `level`, but for one; cheapest first.
-    fn children(
-        &self,
-        from: [u32; 2],
-        height: f64,
-        level: usize,
-        parent: [u32; 2],
-        without: Option<[u32; 2]>,
-        best: &mut Best,
-    ) {
+    fn children(&self, level: usize, parent: [u32; 2], without: Option<[u32; 2]>, best: &mut Best) {
         let size = self.mip.levels[level].size;
         let mut list: [Child; 4] = [(f64::INFINITY, [0; 2]); 4];
         let mut count = 0;
@@ -150,8 +198,8 @@ impl Search<'_> {
                 continue;
             }
             if level == 0 {
-                self.offer(from, height, at, best);
-            } else if let Some(cost) = self.bound(from, height, level, at, best) {
+                self.consider(at, best);
+            } else if let Some(cost) = self.bound(level, at, best) {
                 // Insertion keeps the cheapest first.
                 let place = list[..count].iter().take_while(|c| c.0 <= cost).count();
                 list.copy_within(place..count, place + 1);
@@ -162,7 +210,7 @@ impl Search<'_> {
         for (cost, at) in &list[..count] {
             // What was found since may have ruled it out.
             if *cost < best.cost {
-                self.children(from, height, level - 1, *at, None, best);
+                self.children(level - 1, *at, None, best);
             }
         }
     }

@@ -1,13 +1,8 @@
-//! Slopes at the samples, for the files that carry them beside the cones, on the CPU and on
-//! a device with the same result. Twin: `wgsl/heightfield/conemap/generate/slopes.wgsl`.
-//!
-//! In f32, as heights are: one difference, correctly rounded here and there, and a half.
+//! Slopes at the samples, for the files that carry them beside the cones.
 
 use rayon::prelude::*;
 
-use crate::base::shader::Program;
 use crate::heightfield::heights::Heights;
-use crate::wgsl;
 
 /// Rise per texel along both axes at each sample, by central differences; at a border
 /// that does not wrap by the difference to the one neighbour that there is.
@@ -40,12 +35,4 @@ fn per_step(heights: &Heights, axis: usize, i: i64) -> f32 {
     let last = i64::from(heights.size()[axis]) - 1;
     let inside = heights.wrap()[axis] || (i > 0 && i < last);
     if inside { 0.5 } else { 1.0 }
-}
-
-/// Makes the slopes of a band.
-pub fn slopes_program() -> Program {
-    Program::new(
-        "slopes",
-        vec![wgsl!("heightfield/conemap/generate/slopes.wgsl")],
-    )
 }

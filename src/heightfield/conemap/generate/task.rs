@@ -1,52 +1,54 @@
-//! A generator made ready for one height map: what it needs once, and the cones of one
-//! place, in f64.
+//! A generator prepared for one height map, and the search for the cones of one place in f64.
+//! Twin: `wgsl/heightfield/conemap/generate/task.wgsl`.
 
+use crate::base::shader::Program;
 use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::brute::Scan;
 use crate::heightfield::conemap::generate::cost::Cost;
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
-use crate::heightfield::conemap::generate::grid_distance::{Aim, GridDistance};
+use crate::heightfield::conemap::generate::method::{Apex, Method};
 use crate::heightfield::conemap::generate::planes::Planes;
-use crate::heightfield::conemap::generate::search::{Best, Search};
-use crate::heightfield::conemap::generate::{falling, quick, relaxed};
+use crate::heightfield::conemap::generate::search::Best;
+use crate::heightfield::conemap::generate::{min3x3, pyramid};
 use crate::heightfield::heights::{Axis, Heights, Patches};
 use crate::heightfield::max_mip::MaxMip;
+use crate::wgsl;
 
-/// A generator with all that it needs.
+/// A generator with everything that its searches read.
 pub struct MapTask<'a> {
-    /// Which.
+    /// Which generator.
     pub generator: Generator,
-    /// What it was told.
+    /// How it searches.
+    pub method: &'static dyn Method,
+    /// Its options.
     pub options: Options,
     /// The height map.
     pub heights: &'a Heights,
-    /// Places along each axis: samples or cells.
+    /// Places along each axis.
     pub size: [u32; 2],
     /// Heights of the samples, or apexes of the cells.
     pub values: Vec<f32>,
-    /// The highest of them.
-    pub top: f64,
-    /// Maxima of what bounds cones, for each of the directions that are searched one by
-    /// one; none for generators that need none.
+    /// Maxima of the heights that bound cones: none, one for all searches or one for each.
     pub mips: Vec<MaxMip>,
-    /// Planes above the heights, for searches all around.
+    /// Planes above the heights, where they help.
     pub planes: Option<Planes>,
+    /// The highest of all values.
+    top: f32,
 }
 
 /// The cones of one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
-    /// Ratios; all but the first are of use for a quad map only.
+    /// Ratios, as many as the map has channels.
     pub ratios: [f64; 4],
-    /// Nodes looked at.
+    /// Nodes that were looked up.
     pub nodes: u32,
 }
 
 impl<'a> MapTask<'a> {
-    /// Makes a generator ready. Patches matter to the walks.
+    /// Prepares a generator. Only generators over cells depend on the patches.
     ///
     /// # Errors
-    /// Options that it cannot be told.
+    /// Options out of range.
     pub fn new(
         generator: Generator,
         heights: &'a Heights,
@@ -54,36 +56,21 @@ impl<'a> MapTask<'a> {
         options: &Options,
     ) -> Result<Self, GenerateError> {
         options.check()?;
-        let (size, values) = if generator.over_cells() {
-            (heights.cells(patches), heights.apexes(patches))
-        } else {
-            (heights.size(), heights.data().to_vec())
-        };
-        let quadrants = Aim::QUADRANTS.into_iter().filter_map(|aim| match aim {
-            Aim::Quadrant(up) => Some(up),
-            _ => None,
-        });
-        let masked: Vec<Vec<f32>> = match generator {
-            Generator::RelaxedExact => quadrants
-                .map(|up| falling::of_samples(heights, up))
-                .collect(),
-            Generator::WalkRelaxed => quadrants
-                .map(|up| falling::of_cells(heights, patches, &values, up))
-                .collect(),
-            Generator::Brute | Generator::RelaxedSearch => Vec::new(),
-            _ => vec![values.clone()],
-        };
-        let mips = masked.into_iter().map(|limits| MaxMip::new(size, limits));
-        let mips: Vec<MaxMip> = mips.collect();
-        let around = matches!(generator, Generator::Exact | Generator::Walk);
+        let method = generator.facts().method;
+        let cells = generator.over_cells().then_some(patches);
+        let (size, values) = heights.places(cells);
+        let limits = method.pyramids(heights, cells, &values).into_iter();
+        let mips: Vec<MaxMip> = limits.map(|limits| MaxMip::new(size, limits)).collect();
+        let planes = mips.first().filter(|_| method.uses_planes());
         Ok(Self {
             generator,
+            method,
             options: *options,
             heights,
             size,
-            planes: mips.first().filter(|_| around).map(Planes::new),
+            planes: planes.map(Planes::new),
             mips,
-            top: f64::from(values.iter().copied().fold(0.0, f32::max)),
+            top: values.iter().copied().fold(0.0, f32::max),
             values,
         })
     }
@@ -97,7 +84,7 @@ impl<'a> MapTask<'a> {
         })
     }
 
-    /// What places cost.
+    /// How much places cost.
     pub fn cost(&self) -> Cost {
         if self.generator.over_cells() {
             let offset = self.options.offset;
@@ -107,104 +94,81 @@ impl<'a> MapTask<'a> {
         }
     }
 
-    /// The searches that the generator is made of, if it is made of searches: each
-    /// pyramid's number with the places that count.
-    pub fn aims(&self) -> Vec<(usize, Aim)> {
-        match self.generator {
-            Generator::Exact | Generator::Walk => vec![(0, Aim::Around)],
-            Generator::Quad => Aim::SIDES.map(|aim| (0, aim)).to_vec(),
-            Generator::RelaxedExact | Generator::WalkRelaxed => {
-                Aim::QUADRANTS.into_iter().enumerate().collect()
-            }
-            _ => Vec::new(),
-        }
+    /// The pyramid of a search, by its number.
+    pub fn pyramid(&self, search: usize) -> usize {
+        search.min(self.mips.len().saturating_sub(1))
     }
 
-    /// A place by its number, row by row.
-    pub fn place(&self, index: usize) -> [u32; 2] {
-        let width = self.size[0] as usize;
-        [(index % width) as u32, (index / width) as u32]
+    /// The highest value that can bound a cone of a search.
+    pub fn top(&self, search: usize) -> f32 {
+        self.mips
+            .get(self.pyramid(search))
+            .map_or(self.top, MaxMip::top)
     }
 
-    /// The cones of one place.
+    /// How many searches narrow each cone of a place.
+    pub fn searches_per_cone(&self) -> usize {
+        self.method.sectors().len() / self.generator.channels()
+    }
+
+    /// Searches for the cones of a place, which is given by its index, row by row.
     pub fn find(&self, index: usize) -> Found {
-        let from = self.place(index);
-        let height = f64::from(self.values[index]);
-        let cost = self.cost();
-        let mut best = Best {
-            cost: cost.widest(),
-            nodes: 0,
+        let width = self.size[0] as usize;
+        let from = Apex {
+            place: [(index % width) as u32, (index / width) as u32],
+            height: f64::from(self.values[index]),
         };
-        let mut ratios = [0.0; 4];
-        match self.generator {
-            Generator::Brute => self.scan().run(from, height, &mut best),
-            Generator::Naive | Generator::Improved | Generator::Center => {
-                let rule = self.rule();
-                quick::run(&self.mips[0], self.axes(), rule, from, height, &mut best);
+        let cost = self.cost();
+        let (mut ratios, mut nodes) = ([0.0; 4], 0);
+        let per_cone = self.searches_per_cone();
+        for (cone, ratio) in ratios[..self.generator.channels()].iter_mut().enumerate() {
+            let mut best = Best {
+                cost: cost.widest(),
+                nodes,
+            };
+            for search in cone * per_cone..(cone + 1) * per_cone {
+                self.method.search(self, search, from, &mut best);
             }
-            Generator::RelaxedSearch => {
-                let steps = self.options.search_steps;
-                relaxed::search(self.heights, &self.scan(), steps, from, height, &mut best);
-            }
-            Generator::Quad => {
-                for (ratio, aim) in ratios.iter_mut().zip(Aim::SIDES) {
-                    best.cost = cost.widest();
-                    self.search(0, aim).run(from, height, &mut best);
-                    *ratio = cost.ratio(best.cost);
-                }
-                let nodes = best.nodes;
-                return Found { ratios, nodes };
-            }
-            _ => {
-                for (mip, aim) in self.aims() {
-                    self.search(mip, aim).run(from, height, &mut best);
-                }
-            }
+            (*ratio, nodes) = (cost.ratio(best.cost), best.nodes);
         }
-        ratios[0] = cost.ratio(best.cost);
-        let nodes = best.nodes;
         Found { ratios, nodes }
-    }
-
-    /// How a quick generator places maxima.
-    pub fn rule(&self) -> quick::Rule {
-        match self.generator {
-            Generator::Naive => quick::Rule::Naive,
-            Generator::Center => quick::Rule::Center,
-            _ => quick::Rule::Improved,
-        }
-    }
-
-    fn scan(&self) -> Scan<'_> {
-        Scan {
-            axes: self.axes(),
-            values: &self.values,
-            top: self.top,
-        }
-    }
-
-    fn search(&self, mip: usize, aim: Aim) -> Search<'_> {
-        Search {
-            mip: &self.mips[mip],
-            planes: self.planes.as_ref(),
-            reach: GridDistance {
-                axes: self.axes(),
-                aim,
-                cells: self.generator.over_cells(),
-            },
-            cost: self.cost(),
-        }
     }
 
     /// The map of the ratios that were found.
     pub fn map(&self, ratios: Vec<f64>) -> ConeMap {
-        let walk = self.generator.over_cells();
         ConeMap {
             kind: self.generator.kind(),
             size: self.size,
             wrap: self.heights.wrap(),
-            offset: if walk { self.options.offset } else { 0.0 },
+            offset: match self.cost() {
+                Cost::Walk { offset } => offset,
+                Cost::Cone => 0.0,
+            },
             ratios,
         }
     }
+
+    /// The program that searches on a device.
+    pub fn program(&self) -> Program {
+        let mut modules = vec![wgsl!("heightfield/conemap/generate/task.wgsl")];
+        modules.extend(self.method.modules(self));
+        Program::new("generate", modules)
+    }
+}
+
+/// The program of a generator. It is the same for all heights.
+///
+/// # Panics
+/// Never: a map of one sample can always be made.
+pub fn program_of(generator: Generator) -> Program {
+    let one = Heights::new([1, 1], [false, false], vec![0.0]).expect("one sample is a map");
+    let task = MapTask::new(generator, &one, Patches::default(), &Options::default());
+    task.expect("the default options are in range").program()
+}
+
+/// Every program that a device makes cone maps with.
+pub fn every_program() -> Vec<Program> {
+    let shared = [pyramid::program(), min3x3::program()];
+    let generators = Generator::ALL.into_iter().map(program_of);
+    shared.into_iter().chain(generators).collect()
 }

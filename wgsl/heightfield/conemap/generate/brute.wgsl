@@ -1,7 +1,7 @@
-// Dummer's search: every place that a ring holds counts, by its distance and its height.
+// Dummer's search: every place on a ring counts, by its distance and its height.
 
-fn scan_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, Search>) -> u32 {
+fn ring_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, SearchState>) -> u32 {
     let squared = u32(step.x * step.x + step.y * step.y);
-    offer(squared, scan_height(place, step), s);
+    consider(squared, ring_height(place, step), s);
     return 1u;
 }

@@ -1,13 +1,13 @@
-// How wide a cone one higher place allows, in f32. Costs are only compared here; ratios
-// are computed in f64 by the twin, from the place that costs least.
+// How wide a cone one higher place allows, in f32. Costs are only compared here; the twin
+// computes ratios in f64 from the place that costs least.
 
-/// Whether cones stand over cells and leave room.
+/// Whether cones are over cells and leave room.
 override COST_WALK: bool;
 /// Units of distance in a texel.
 override COST_UNITS: f32;
 /// The cost at which nothing bounds a cone.
 override COST_WIDEST: f32;
-/// Costs this much apart, relative to them, compare rightly in spite of all rounding.
+/// Costs that differ by more than this, relative to them, compare correctly in spite of rounding.
 override COST_MARGIN: f32;
 /// A rise too small to matter: it costs more than the widest, wherever it is, and its
 /// square is still far from the least number.

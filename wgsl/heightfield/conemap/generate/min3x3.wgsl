@@ -1,39 +1,39 @@
-// The 3 x 3 minimum of a cone map (Bán and others 2024): each cone as narrow as the
-// narrowest of those of its place and the eight around it. One invocation per ratio.
+// The 3 x 3 minimum of a cone map (Bán and others 2024): each cone becomes as narrow as the
+// narrowest among its place and the eight around it. One invocation per ratio.
 //
-// Ratios are f64, which few devices have. As they are not negative their bits come in their
-// own order, and the least of them is found as pairs of whole numbers, to the last bit.
+// Ratios are f64, which few devices have. They are not negative, so their bits are in the
+// order of the ratios, and the least is found as pairs of whole numbers, to the last bit.
 
-struct NineUniform {
+struct Min3x3Uniform {
     /// Places of a row, and rows of the band.
     width: u32,
     rows: u32,
-    /// 1 if rows come round to their start.
+    /// 1 if the horizontal axis wraps.
     wrap: u32,
-    /// Ratios to a place.
+    /// Ratios per place.
     channels: u32,
 }
 
-@group(0) @binding(0) var<storage, read> nine_parameters: NineUniform;
+@group(0) @binding(0) var<storage, read> min3x3_parameters: Min3x3Uniform;
 /// High and low word of each ratio: the band, a row before it and one after it.
 @group(0) @binding(1) var<storage, read> wide: array<vec2<u32>>;
 /// The band alone.
 @group(0) @binding(2) var<storage, read_write> narrow: array<vec2<u32>>;
 /// The parameters, copied once.
-var<private> band: NineUniform;
+var<private> band: Min3x3Uniform;
 
-fn nine_load() {
-    band = nine_parameters;
+fn min3x3_load() {
+    band = min3x3_parameters;
 }
 
 /// The lesser of two ratios.
-fn nine_least(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
+fn min3x3_least(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
     return select(b, a, a.x < b.x || (a.x == b.x && a.y < b.y));
 }
 
 @compute @workgroup_size(8, 8)
-fn nine(@builtin(global_invocation_id) id: vec3<u32>) {
-    nine_load();
+fn min3x3(@builtin(global_invocation_id) id: vec3<u32>) {
+    min3x3_load();
     let row = band.width * band.channels;
     if id.x >= row || id.y >= band.rows {
         return;
@@ -47,9 +47,9 @@ fn nine(@builtin(global_invocation_id) id: vec3<u32>) {
     var least = wide[(id.y + 1u) * row + id.x];
     for (var y = 0u; y < 3u; y++) {
         let start = (id.y + y) * row + channel;
-        least = nine_least(least, wide[start + before * band.channels]);
-        least = nine_least(least, wide[start + x * band.channels]);
-        least = nine_least(least, wide[start + after * band.channels]);
+        least = min3x3_least(least, wide[start + before * band.channels]);
+        least = min3x3_least(least, wide[start + x * band.channels]);
+        least = min3x3_least(least, wide[start + after * band.channels]);
     }
     narrow[id.y * row + id.x] = least;
 }

@@ -1,9 +1,9 @@
-// Maxima of any size as tiles: for every node of a level the values of its four
-// children side by side. One dispatch makes one level; sizes halve rounding up, so that
+// Maxima of any size as tiles: for every node of a level, the values of its four
+// children side by side. One dispatch makes one level. Sizes halve rounding up, so that
 // no row or column is lost, and a child that does not exist is below every height.
 
 struct PyramidUniform {
-    /// Values along each axis of the level below, and of it all.
+    /// Values along each axis of the level below.
     below: vec2<u32>,
     /// Tiles along each axis of this level.
     size: vec2<u32>,

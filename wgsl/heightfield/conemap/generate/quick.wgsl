@@ -1,9 +1,9 @@
 // Quick cone maps: the eight neighbours of a place's node at every level of the maxima.
-// Together they cover everything, and each is taken to be as near as its rule says.
+// Together they cover everything, and the rule says how near each is taken to be.
 //
 // Rectangles are on the unrolled plane, where a neighbour across a wrapping border has
 // indices below 0 or beyond the last. Distances to them are the shortest on the wrapping
-// grid again, since another image of the same places may be nearer.
+// grid, because another image of the same places may be nearer.
 
 /// 0: naive, at the nearest point; 1: improved, at the nearest point that no finer level
 /// has seen; 2: at the centre.
@@ -122,7 +122,7 @@ fn quick_block(axis: u32, before: QuickNode, own: QuickNode, after: QuickNode) -
 }
 
 /// All neighbours of all levels at once: at most 8 times 13, less than a dispatch's.
-fn work(place: vec2<u32>, s: ptr<function, Search>) {
+fn work(place: vec2<u32>, s: ptr<function, SearchState>) {
     // Seen before: only the place itself. First corner, then last.
     var seen = vec4<i32>(vec2<i32>(place), vec2<i32>(place));
     for (var level = 0u; level < params.levels; level++) {
@@ -159,7 +159,7 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
                 }
                 let quarters = quick_quarters(place, x, y, vec2<i32>(i - 1, j - 1), seen);
                 if quarters != 0xffffffffu {
-                    offer(quarters, top, s);
+                    consider(quarters, top, s);
                 }
             }
         }

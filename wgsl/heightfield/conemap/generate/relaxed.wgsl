@@ -1,6 +1,6 @@
-// Relaxed cones by searching along rays (Listing 18-2 of Policarpo and Oliveira). What
+// Relaxed cones by a search along rays (Listing 18-2 of Policarpo and Oliveira). What
 // is kept of an exit is the sample that the ray entered at and the step at which it came
-// out; in f32 a step more or less now and then, as the rule is no exact one anyway.
+// out. In f32 that is now and then a step more or less, which the unsound rule tolerates.
 
 /// Height at which rays start, a little above the top.
 override RELAXED_START: f32;
@@ -18,7 +18,7 @@ fn exit_cost(squared: u32, entry: f32, step: u32) -> f32 {
 }
 
 /// The cost of what an earlier dispatch found.
-fn cost_kept(s: Search) -> f32 {
+fn cost_kept(s: SearchState) -> f32 {
     return exit_cost(s.squared, s.top, s.note);
 }
 
@@ -44,8 +44,8 @@ fn surface_height(p: vec2<f32>) -> f32 {
 
 /// Follows the ray through a sample to where it comes out. Each step counts as four
 /// rounds, one per sample read.
-fn scan_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, Search>) -> u32 {
-    let entry = scan_height(place, step);
+fn ring_visit(place: vec2<u32>, step: vec2<i32>, s: ptr<function, SearchState>) -> u32 {
+    let entry = ring_height(place, step);
     let rise = entry - apex;
     let squared = u32(step.x * step.x + step.y * step.y);
     // The exit lies farther and lower than the entry.

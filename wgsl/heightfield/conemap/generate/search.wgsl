@@ -30,7 +30,7 @@ fn by_distance(mask: u32, side: u32) -> u32 {
 
 /// Looks at the four children of a node. Places are taken into account at once; of nodes
 /// those worth a visit are returned, one bit each.
-fn examine(place: vec2<u32>, node: vec2<u32>, level: u32, s: ptr<function, Search>) -> u32 {
+fn examine(place: vec2<u32>, node: vec2<u32>, level: u32, s: ptr<function, SearchState>) -> u32 {
     let width = ((params.size.x - 1u) >> level) + 1u;
     let tops = tiles[params.at[level >> 2u][level & 3u] + node.y * width + node.x];
     let rises = tops - apex;
@@ -47,14 +47,14 @@ fn examine(place: vec2<u32>, node: vec2<u32>, level: u32, s: ptr<function, Searc
     let high = min(end + half, last);
     // The last nodes of a level may reach beyond the grid.
     let squared = vec4<u32>(
-        reach_squared(place, low, min(end, last)),
-        reach_squared(place, vec2<u32>(next.x, low.y), vec2<u32>(high.x, min(end.y, last.y))),
-        reach_squared(place, vec2<u32>(low.x, next.y), vec2<u32>(min(end.x, last.x), high.y)),
-        reach_squared(place, next, high),
+        distance_squared(place, low, min(end, last)),
+        distance_squared(place, vec2<u32>(next.x, low.y), vec2<u32>(high.x, min(end.y, last.y))),
+        distance_squared(place, vec2<u32>(low.x, next.y), vec2<u32>(min(end.x, last.x), high.y)),
+        distance_squared(place, next, high),
     );
     var mask = 0u;
     for (var i = 0u; i < 4u; i++) {
-        if rises[i] >= COST_LEAST_RISE && squared[i] != UNREACHED {
+        if rises[i] >= COST_LEAST_RISE && squared[i] != NO_DISTANCE {
             if cost_matters(cost_of(squared[i], rises[i])) {
                 mask |= 1u << i;
             }
@@ -66,7 +66,7 @@ fn examine(place: vec2<u32>, node: vec2<u32>, level: u32, s: ptr<function, Searc
     }
     for (var i = 0u; i < 4u; i++) {
         if (mask & (1u << i)) != 0u {
-            offer(squared[i], tops[i], s);
+            consider(squared[i], tops[i], s);
         }
     }
     return 0u;
@@ -92,7 +92,7 @@ fn tile_beside(axis: u32, place: u32) -> u32 {
 }
 
 /// Searches on until the end, or until its rounds are used up.
-fn work(place: vec2<u32>, s: ptr<function, Search>) {
+fn work(place: vec2<u32>, s: ptr<function, SearchState>) {
     // The level up to whose ancestor everything is done, and the node looked at last.
     var climbed = (*s).stage & 31u;
     var level = (*s).stage >> 5u;
@@ -120,8 +120,8 @@ fn work(place: vec2<u32>, s: ptr<function, Search>) {
         var skip = 0u;
         if (low | high) == 0u {
             // Nothing is left below: climb, if anything above can matter.
-            let steps = reach_outside(place, climbed);
-            if climbed >= params.levels || steps == UNREACHED
+            let steps = distance_outside(place, climbed);
+            if climbed >= params.levels || steps == NO_DISTANCE
                 || !cost_matters(cost_of(steps * steps, most)) {
                 (*s).stage = SEARCH_DONE;
                 return;

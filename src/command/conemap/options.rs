@@ -1,0 +1,309 @@
+//! Options that the verbs of `conemap` share: how heights are read, what the map of another
+//! program is, and how a map is written.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueHint};
+
+use crate::command::failure::usage;
+use crate::command::print::say;
+use crate::command::sink::Sink;
+use crate::command::size;
+use crate::heightfield::conemap::MapKind;
+use crate::heightfield::conemap::file::{
+    Bits, ForeignFormat, Layout, MapError, MapFile, MapFormat, RatioScale, Slopes, decode,
+    decode_bytes, encode, has_map,
+};
+use crate::heightfield::heights::{MOST_SAMPLES, wrap_name};
+use crate::heightfield::load::{LoadError, LoadOptions, Loaded, load};
+
+/// How heights are read.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Reading {
+    /// Which axes wrap
+    #[arg(long, value_name = "AXES", default_value = "none", value_parser = wraps())]
+    pub wrap: [bool; 2],
+
+    /// Read depths instead of heights
+    #[arg(long)]
+    pub invert: bool,
+
+    /// Scale the lowest height to 0 and the highest to 1
+    #[arg(long)]
+    pub normalize: bool,
+
+    /// Columns and rows of a raw file whose name does not say them
+    #[arg(long, value_name = "WxH", value_parser = samples)]
+    pub size: Option<[u32; 2]>,
+}
+
+impl Reading {
+    /// Reads heights, and says what was left out of them.
+    pub fn load(&self, argument: &OsStr) -> Result<Loaded> {
+        let options = LoadOptions {
+            wrap: self.wrap,
+            invert: self.invert,
+            normalize: self.normalize,
+            size: self.size,
+        };
+        let loaded = load(argument, &options).map_err(of_load)?;
+        if let Some(note) = &loaded.note {
+            say(&format!("note: {note}"));
+        }
+        Ok(loaded)
+    }
+
+    /// An option that was given and is only for heights; `wraps` if `--wrap` has another use.
+    pub fn given(&self, wraps: bool) -> Option<&'static str> {
+        first_given(&[
+            (self.wrap != [false; 2] && !wraps, "--wrap"),
+            (self.invert, "--invert"),
+            (self.normalize, "--normalize"),
+            (self.size.is_some(), "--size"),
+        ])
+    }
+}
+
+/// The first option of a list that was given.
+fn first_given(options: &[(bool, &'static str)]) -> Option<&'static str> {
+    options
+        .iter()
+        .find(|(given, _)| *given)
+        .map(|(_, name)| *name)
+}
+
+fn samples(text: &str) -> Result<[u32; 2], String> {
+    let fits = |s: &[u32; 2]| s.iter().all(|n| *n <= MOST_SAMPLES);
+    let read = size::read(text).ok().filter(fits);
+    read.ok_or_else(|| {
+        format!("must be columns x rows, each from 1 to {MOST_SAMPLES}, like 512x256")
+    })
+}
+
+/// A parser of words that stand for values; each value comes with its word and its help.
+pub fn words<T: Clone + Send + Sync + 'static>(
+    list: impl IntoIterator<Item = (T, &'static str, &'static str)>,
+) -> impl TypedValueParser<Value = T> {
+    let list: Vec<_> = list.into_iter().collect();
+    let shown = list.iter().map(|(_, word, help)| match *help {
+        "" => PossibleValue::new(*word),
+        help => PossibleValue::new(*word).help(help),
+    });
+    let shown: Vec<_> = shown.collect();
+    PossibleValuesParser::new(shown).try_map(move |chosen| {
+        let found = list.iter().find(|(_, word, _)| *word == chosen);
+        found.map(|(value, ..)| value.clone()).ok_or("unknown word")
+    })
+}
+
+/// `none`, `x`, `y` or `xy`.
+pub fn wraps() -> impl TypedValueParser<Value = [bool; 2]> {
+    let values = [
+        ([false, false], "both axes end"),
+        ([true, false], "rows wrap"),
+        ([false, true], "columns wrap"),
+        ([true, true], "the map is a tile"),
+    ];
+    words(values.map(|(wrap, help)| (wrap, wrap_name(wrap), help)))
+}
+
+/// What a map of another program is.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Foreign {
+    /// Read a PNG of another program as a map of this layout
+    #[arg(long, value_name = "LAYOUT", value_parser = layouts())]
+    from: Option<Layout>,
+
+    /// How its numbers stand for ratios [default: sqrt, for relief linear]
+    #[arg(long, value_name = "HOW", value_parser = ratio_scales(), requires = "from")]
+    from_ratio: Option<RatioScale>,
+}
+
+impl Foreign {
+    /// Reads a map, and says what is unknown about it. `wrap` is for maps of other programs.
+    pub fn decode(&self, path: &Path, wrap: [bool; 2]) -> Result<MapFile> {
+        // If the file cannot be read, `decode` reports it below.
+        if self.is_given() && has_map(path).unwrap_or(false) {
+            return Err(usage(format!(
+                "{} has a label that says what its cones are, and --from is for the maps of other programs; leave it out",
+                path.display()
+            )));
+        }
+        let foreign = self.from.map(|layout| ForeignFormat {
+            layout,
+            kind: match layout {
+                Layout::Relief => MapKind::Relaxed,
+                Layout::Quad => MapKind::Quad,
+                _ => MapKind::Samples,
+            },
+            ratio: self.from_ratio.unwrap_or(MapFormat::new(layout).ratio),
+            wrap,
+        });
+        let file = decode(path, foreign.as_ref()).map_err(of_map)?;
+        if let Some(why) = file.unknown() {
+            say(&format!("note: {} {why}", path.display()));
+        }
+        Ok(file)
+    }
+
+    /// Whether the file is said to be a map of another program.
+    pub fn is_given(&self) -> bool {
+        self.from.is_some()
+    }
+}
+
+/// How a map is written.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Writing {
+    /// Channels of a PNG [default: depends on the kind of map]
+    #[arg(long, value_name = "LAYOUT", value_parser = layouts())]
+    layout: Option<Layout>,
+
+    /// Bits per channel of a PNG [default: 8, for pair 16]
+    #[arg(long, value_name = "BITS", value_parser = bits())]
+    bits: Option<Bits>,
+
+    /// How the numbers of a PNG stand for ratios [default: sqrt, for relief linear]
+    #[arg(long, value_name = "HOW", value_parser = ratio_scales())]
+    ratio: Option<RatioScale>,
+
+    /// Height of 1 in texture widths, for the normals of relief [default: 0.25]
+    #[arg(long, value_name = "WIDTHS", value_parser = depth)]
+    depth: Option<f64>,
+
+    /// What the slopes of dummer mean [default: whole]
+    #[arg(long, value_name = "WHAT", value_parser = slopes())]
+    slopes: Option<Slopes>,
+}
+
+impl Writing {
+    /// The format for a file's name and a kind of map.
+    pub fn format(&self, output: &Path, kind: MapKind) -> Result<MapFormat> {
+        let ending = output.extension().and_then(|e| e.to_str()).unwrap_or("");
+        let is_png = ending.eq_ignore_ascii_case("png") || output.as_os_str() == "-";
+        let layout = if ending.eq_ignore_ascii_case("exr") {
+            Layout::Full
+        } else if is_png {
+            self.layout.unwrap_or(Layout::usual(kind))
+        } else {
+            return Err(usage(format!(
+                "`{}` must end in .png or .exr, which is the format to write; - writes PNG to standard output",
+                output.display()
+            )));
+        };
+        let given = first_given(&[
+            (self.layout.is_some(), "--layout"),
+            (self.bits.is_some(), "--bits"),
+            (self.ratio.is_some(), "--ratio"),
+            (self.depth.is_some(), "--depth"),
+            (self.slopes.is_some(), "--slopes"),
+        ]);
+        if let (Layout::Full, Some(option)) = (layout, given) {
+            return Err(usage(format!(
+                "an EXR holds everything in 32 bits; leave out {option}, or write a .png"
+            )));
+        }
+        layout.check(kind).map_err(of_map)?;
+        for (is_given, option, whose, owner) in [
+            (self.depth.is_some(), "--depth", "normals", Layout::Relief),
+            (self.slopes.is_some(), "--slopes", "slopes", Layout::Dummer),
+        ] {
+            if is_given && layout != owner {
+                let (owner, layout) = (owner.name(), layout.name());
+                return Err(usage(format!(
+                    "{option} is for the {whose} of {owner}, and the layout is {layout}; leave it out, or add --layout {owner}"
+                )));
+            }
+        }
+        let usual = MapFormat::new(layout);
+        Ok(MapFormat {
+            layout,
+            bits: self.bits.unwrap_or(usual.bits),
+            ratio: self.ratio.unwrap_or(usual.ratio),
+            depth: self.depth.unwrap_or(usual.depth),
+            slopes: self.slopes.unwrap_or(usual.slopes),
+        })
+    }
+}
+
+/// Writes a map and reads it back: how much of its ratios the file keeps, in words.
+pub fn write(file: &MapFile, format: &MapFormat, sink: Sink) -> Result<String> {
+    let bytes = encode(file, format).map_err(of_map)?;
+    let again = decode_bytes(&bytes).map_err(anyhow::Error::msg);
+    let again = again.context("the map could not be read back")?;
+    sink.finish(&bytes)?;
+    let [was, is] = [file, &again].map(MapFile::mean_share);
+    let share = if was > 0.0 { is / was } else { 1.0 };
+    // Rounded down, but for a loss that nobody could notice.
+    let share = if share > 0.999_999 { 1.0 } else { share };
+    let share = (share * 1e4).floor() / 1e2;
+    Ok(format!(
+        "mean ratio {is:.4} of the width, {share} % of what it was"
+    ))
+}
+
+fn depth(text: &str) -> Result<f64, String> {
+    let read: Option<f64> = text.parse().ok().filter(|d| (1e-3..=1e3).contains(d));
+    read.ok_or_else(|| "must be a number from 0.001 to 1000, like 0.25".into())
+}
+
+/// The layouts of PNGs.
+fn layouts() -> impl TypedValueParser<Value = Layout> {
+    let png = Layout::ALL.into_iter().filter(|l| *l != Layout::Full);
+    words(png.map(|l| (l, l.name(), l.facts().about)))
+}
+
+fn bits() -> impl TypedValueParser<Value = Bits> {
+    words([(Bits::Eight, "8", ""), (Bits::Sixteen, "16", "")])
+}
+
+fn slopes() -> impl TypedValueParser<Value = Slopes> {
+    words(Slopes::ALL.map(|slopes| {
+        let help = match slopes {
+            Slopes::Whole => "slopes, as Dummer's shader takes them",
+            Slopes::Half => "half slopes, as Dummer's program stores them",
+        };
+        (slopes, slopes.name(), help)
+    }))
+}
+
+fn ratio_scales() -> impl TypedValueParser<Value = RatioScale> {
+    words(RatioScale::ALL.map(|scale| (scale, scale.name(), "")))
+}
+
+/// The file option of `make` and `convert`.
+#[derive(Args, Clone, Debug)]
+pub struct Output {
+    /// Where to write: a .png or .exr file, or - for PNG on standard output
+    #[arg(short, long, value_name = "MAP", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+}
+
+/// The name of a file in messages.
+pub fn shown(path: &Path) -> String {
+    match path.to_str() {
+        Some("-") => "standard output".into(),
+        _ => path.display().to_string(),
+    }
+}
+
+/// An error of loading: wrong usage if the argument is wrong.
+fn of_load(e: LoadError) -> anyhow::Error {
+    if e.is_usage() {
+        usage(e.to_string())
+    } else {
+        e.into()
+    }
+}
+
+/// An error of a map: wrong usage if an option is wrong.
+pub fn of_map(e: MapError) -> anyhow::Error {
+    if e.is_usage() {
+        usage(e.to_string())
+    } else {
+        e.into()
+    }
+}

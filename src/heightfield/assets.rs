@@ -1,0 +1,357 @@
+//! What a heightfield names outside itself: heights, cone maps, paints and textures.
+//!
+//! Heights and cone maps take long to make. [`Assets`] loads or makes each of them once and
+//! keeps the last one of each kind until what it was made from changes. Clones share what is kept.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use bytemuck::cast_slice;
+use glam::DVec2;
+
+use super::conemap::generate::generator::Generator;
+use super::height_surface::{HeightSurface, HeightSurfaceError};
+use super::heights::{Patches, cells};
+use super::load::PatternSpec;
+use super::paint::{Colors, Paint};
+use super::placement::Placement;
+use super::settings::HeightfieldSettings;
+use super::source::Source;
+use super::texture::Texture;
+use super::tracer::settings::{Make, PrepareError, Supply, on_cpu, without_cones};
+use super::tracer::{Tracer, TracerKind};
+use crate::base::key::Fault;
+
+/// What a surface is made from.
+type SurfaceKey = (Source, Patches, [u32; 2]);
+/// What a tracer's cones are made from: surface, tracer, map and offset.
+type ConesKey = (SurfaceKey, TracerKind, String, f64);
+/// What a paint is made from: a generator's map over a surface, with an offset.
+type PaintKey = (SurfaceKey, Generator, f64);
+
+/// Loaded heights, made cone maps and read textures.
+#[derive(Clone, Debug, Default)]
+pub struct Assets {
+    surfaces: Last<SurfaceKey, Ground>,
+    cones: Last<ConesKey, Option<Supply>>,
+    paints: Last<PaintKey, Paint>,
+    textures: Last<PathBuf, Texture>,
+}
+
+/// A surface, and a note about the file that its heights are from.
+#[derive(Debug)]
+struct Ground {
+    surface: Arc<HeightSurface>,
+    note: Option<String>,
+}
+
+/// A cone map that is made before the first pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preparation {
+    /// Who makes it.
+    pub generator: Generator,
+    /// Places of the map along each axis.
+    pub places: [u32; 2],
+}
+
+/// A heightfield with everything loaded and made.
+#[derive(Clone, Debug)]
+pub struct Ready {
+    /// Heights and maxima.
+    pub surface: Arc<HeightSurface>,
+    /// What traces rays, with its cones.
+    pub tracer: Arc<dyn Tracer>,
+    /// What colours it.
+    pub colors: Colors,
+    /// Where it stands.
+    pub placement: Placement,
+    /// The tracer's name.
+    pub name: &'static str,
+}
+
+impl Assets {
+    /// Reads the files that the settings name, and checks that they fit together. Heights
+    /// by name are made later, as they never fail.
+    ///
+    /// # Errors
+    /// A file cannot be read, holds something else, or does not fit.
+    pub fn load(&self, settings: &HeightfieldSettings) -> Result<(), Fault> {
+        if settings.reads_heights() {
+            self.surface(settings)?;
+        }
+        self.texture(settings)?;
+        if settings.reads_cones() {
+            let surface = self.surface(settings)?;
+            match self.cones(settings, &surface, &mut on_cpu) {
+                Ok(supply) => {
+                    settings.tracing.tracer(&surface, (*supply).as_ref(), 0.0)?;
+                }
+                Err(PrepareError::Fault(fault)) => return Err(fault),
+                // No generator runs for a map that is read.
+                Err(PrepareError::Generate(_)) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes the cone maps by `make`.
+    ///
+    /// # Errors
+    /// A file does not fit, or `make` fails.
+    pub fn prepare(
+        &self,
+        settings: &HeightfieldSettings,
+        make: Make<'_>,
+    ) -> Result<(), PrepareError> {
+        let surface = self.surface(settings)?;
+        self.cones(settings, &surface, make)?;
+        self.paint(settings, &surface, make).map(|_| ())
+    }
+
+    /// Everything that a scene needs; cone maps that were not prepared are made on the CPU.
+    /// `grain` is half a pixel's width at distance 1, where pixels are finest.
+    ///
+    /// # Errors
+    /// As [`Assets::prepare`].
+    pub fn ready(&self, settings: &HeightfieldSettings, grain: f64) -> Result<Ready, PrepareError> {
+        let surface = self.surface(settings)?;
+        let cones = self.cones(settings, &surface, &mut on_cpu)?;
+        let paint = self.paint(settings, &surface, &mut on_cpu)?;
+        self.assembled(settings, surface, (*cones).as_ref(), paint, grain)
+    }
+
+    /// As [`Assets::ready`], with maps of no cones in place of those that would have to be
+    /// made. The programs are the same.
+    ///
+    /// # Errors
+    /// As [`Assets::load`].
+    pub fn outline(
+        &self,
+        settings: &HeightfieldSettings,
+        grain: f64,
+    ) -> Result<Ready, PrepareError> {
+        let surface = self.surface(settings)?;
+        let tracing = &settings.tracing;
+        let cones = tracing.cones(&surface, &settings.source.folder, &mut without_cones)?;
+        let paint = |by| -> Result<_, PrepareError> {
+            let map = tracing.made(by, &surface, &mut without_cones)?;
+            Ok(Arc::new(Paint::new(&map)))
+        };
+        let paint = settings.paint.map(paint).transpose()?;
+        self.assembled(settings, surface, cones.as_ref(), paint, grain)
+    }
+
+    /// The cone maps that the settings need; none where the heights cannot be loaded.
+    pub fn preparations(&self, settings: &HeightfieldSettings) -> Vec<Preparation> {
+        let one = |generator| {
+            let places = self.places(settings, generator)?;
+            Some(Preparation { generator, places })
+        };
+        settings.generators().into_iter().filter_map(one).collect()
+    }
+
+    /// The most steps that a ray can take; `None` where the heights cannot be loaded.
+    pub fn most_steps(&self, settings: &HeightfieldSettings) -> Option<u32> {
+        let surface = self.surface(settings).ok()?;
+        Some(settings.most_steps(surface.domain().map(i32::unsigned_abs)))
+    }
+
+    /// Notes about the named files: what was left out of them, and what is taken on trust.
+    pub fn notes(&self, settings: &HeightfieldSettings) -> Vec<String> {
+        if settings.files().is_empty() {
+            return Vec::new();
+        }
+        // What fails here fails again, with a sentence, where it is needed.
+        let Ok(ground) = self.ground(settings) else {
+            return Vec::new();
+        };
+        let mut notes = Vec::from_iter(ground.note.clone());
+        if settings.reads_cones()
+            && let Ok(supply) = self.cones(settings, &ground.surface, &mut on_cpu)
+        {
+            notes.extend(supply.iter().filter_map(|s| s.note.clone()));
+        }
+        if let Ok(Some(texture)) = self.texture(settings) {
+            let path = settings.source.folder.join(&settings.texture);
+            let note = texture.note();
+            notes.extend(note.map(|note| format!("{} {note}", path.display())));
+        }
+        notes
+    }
+
+    /// The numbers of the named files' heights and colours. Heights by name have none: their
+    /// name decides them.
+    pub fn contents(&self, settings: &HeightfieldSettings) -> Vec<u8> {
+        let mut all = Vec::new();
+        if settings.reads_heights()
+            && let Ok(surface) = self.surface(settings)
+        {
+            all.extend_from_slice(cast_slice(surface.heights().data()));
+        }
+        if let Ok(Some(texture)) = self.texture(settings) {
+            all.extend(texture.buffer().1);
+        }
+        all
+    }
+
+    fn assembled(
+        &self,
+        settings: &HeightfieldSettings,
+        surface: Arc<HeightSurface>,
+        cones: Option<&Supply>,
+        paint: Option<Arc<Paint>>,
+        grain: f64,
+    ) -> Result<Ready, PrepareError> {
+        let [w, h] = surface.domain().map(f64::from);
+        let placement = settings.placement(DVec2::new(w, h));
+        let pixel = placement.texel / (2.0 * grain);
+        let colors = match (paint, self.texture(settings)?) {
+            (Some(paint), _) => Colors::Cones(paint),
+            (None, Some(texture)) => Colors::Texture(texture),
+            (None, None) => Colors::Height,
+        };
+        Ok(Ready {
+            tracer: settings.tracing.tracer(&surface, cones, pixel)?,
+            colors,
+            placement,
+            surface,
+            name: settings.tracing.tracer.name(),
+        })
+    }
+
+    /// Places of a generator's map along each axis.
+    fn places(&self, settings: &HeightfieldSettings, generator: Generator) -> Option<[u32; 2]> {
+        // A named pattern tells its size before its heights are made.
+        let size = match PatternSpec::read(&settings.source.field) {
+            Some(pattern) => pattern.ok()?.size,
+            None => self.surface(settings).ok()?.heights().size(),
+        };
+        Some(if generator.over_cells() {
+            cells(size, settings.source.wrap.axes(), settings.patches)
+        } else {
+            size
+        })
+    }
+
+    fn surface(&self, settings: &HeightfieldSettings) -> Result<Arc<HeightSurface>, Fault> {
+        Ok(self.ground(settings)?.surface.clone())
+    }
+
+    fn ground(&self, settings: &HeightfieldSettings) -> Result<Arc<Ground>, Fault> {
+        let make = |(source, patches, tiles): &SurfaceKey| {
+            let loaded = source.load()?;
+            let made = HeightSurface::new(loaded.heights, *patches, *tiles);
+            Ok(Ground {
+                surface: Arc::new(made.map_err(|e| tiles_fault(&e))?),
+                note: loaded.note,
+            })
+        };
+        self.surfaces.get(surface_key(settings), make)
+    }
+
+    fn texture(&self, settings: &HeightfieldSettings) -> Result<Option<Arc<Texture>>, Fault> {
+        if !settings.is_textured() {
+            return Ok(None);
+        }
+        let path = settings.source.folder.join(&settings.texture);
+        let read = self.textures.get(path, |path| Texture::read(path));
+        read.map(Some)
+            .map_err(|why| Fault::new("scene.texture", why))
+    }
+
+    fn cones(
+        &self,
+        settings: &HeightfieldSettings,
+        surface: &HeightSurface,
+        make: Make<'_>,
+    ) -> Result<Arc<Option<Supply>>, PrepareError> {
+        let t = &settings.tracing;
+        let key = (surface_key(settings), t.tracer, t.map.clone(), t.offset);
+        self.cones
+            .get(key, |_| t.cones(surface, &settings.source.folder, make))
+    }
+
+    fn paint(
+        &self,
+        settings: &HeightfieldSettings,
+        surface: &HeightSurface,
+        make: Make<'_>,
+    ) -> Result<Option<Arc<Paint>>, PrepareError> {
+        let Some(by) = settings.paint else {
+            return Ok(None);
+        };
+        let tracing = &settings.tracing;
+        let key = (surface_key(settings), by, tracing.offset);
+        let made = self.paints.get(key, |_| -> Result<_, PrepareError> {
+            if tracing.generator() == Some(by)
+                && let Some(supply) = &*self.cones(settings, surface, make)?
+            {
+                return Ok(Paint::new(&supply.map));
+            }
+            Ok(Paint::new(&tracing.made(by, surface, make)?))
+        });
+        made.map(Some)
+    }
+}
+
+fn surface_key(settings: &HeightfieldSettings) -> SurfaceKey {
+    (settings.source.clone(), settings.patches, settings.tiles)
+}
+
+/// A fault of `scene.tiles`.
+pub(super) fn tiles_fault(e: &HeightSurfaceError) -> Fault {
+    Fault::new("scene.tiles", e.to_string())
+}
+
+/// The last value that was made, with what it was made from.
+#[derive(Debug)]
+struct Last<K, V>(Arc<Mutex<Option<(K, Arc<V>)>>>);
+
+impl<K: PartialEq, V> Last<K, V> {
+    /// The value of a key: the kept one, or what `make` makes. A failure keeps the old one.
+    fn get<E>(&self, key: K, make: impl FnOnce(&K) -> Result<V, E>) -> Result<Arc<V>, E> {
+        // A panic while making leaves what was kept before.
+        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((of, value)) = &*last
+            && *of == key
+        {
+            return Ok(value.clone());
+        }
+        let value = Arc::new(make(&key)?);
+        *last = Some((key, value.clone()));
+        Ok(value)
+    }
+}
+
+impl<K, V> Default for Last<K, V> {
+    fn default() -> Self {
+        Self(Arc::default())
+    }
+}
+
+impl<K, V> Clone for Last<K, V> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_made_once_and_again_when_its_key_changes() {
+        let last = Last::<u32, u32>::default();
+        let mut made = 0;
+        for (key, times) in [(1, 1), (1, 1), (2, 2), (1, 3)] {
+            let value = last.clone().get(key, |k| {
+                made += 1;
+                Ok::<u32, ()>(10 * k)
+            });
+            assert_eq!(value, Ok(Arc::new(10 * key)));
+            assert_eq!(made, times);
+        }
+        assert_eq!(last.get(3, |_| Err("no")), Err("no"));
+        assert_eq!(last.get(1, |_| Err("no")), Ok(Arc::new(10)));
+    }
+}

@@ -1,0 +1,112 @@
+//! A cone map together with what its file knows of it.
+
+use sha2::{Digest, Sha256};
+
+use crate::heightfield::conemap::file::format::{Layout, MapFormat, RatioScale};
+use crate::heightfield::conemap::{ConeMap, MapKind};
+use crate::heightfield::heights::{Heights, Patches};
+
+/// A channel of a file that is only used for shading, as shares of 0..=1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShadingChannel {
+    /// What it holds.
+    pub name: &'static str,
+    /// Its numbers, row by row.
+    pub shares: Vec<f32>,
+}
+
+/// What the numbers of a map do not say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// Samples of the heights along each axis.
+    pub samples: [u32; 2],
+    /// What lies between them; only maps over cells depend on it.
+    pub patches: Patches,
+    /// Texels that a ratio of 1 in the file means.
+    pub scale: f64,
+    /// [`digest`] of the heights; unknown if another program wrote the file.
+    pub digest: Option<String>,
+    /// What made the map; unknown if another program wrote the file.
+    pub generator: Option<String>,
+}
+
+/// SHA-256 of the size and the bits of heights, in hexadecimal, which identifies them.
+/// Wrapping is not part of it.
+pub fn digest(heights: &Heights) -> String {
+    let mut hash = Sha256::new();
+    for n in heights.size() {
+        hash.update(n.to_le_bytes());
+    }
+    for z in heights.data() {
+        hash.update(z.to_le_bytes());
+    }
+    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// A cone map with what its file knows of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapFile {
+    /// The cones.
+    pub map: ConeMap,
+    /// A height for each place, if the file has them: of the sample, or of the cell's
+    /// highest point.
+    pub heights: Option<Vec<f32>>,
+    /// Slopes or normals that were read with it.
+    pub shading: Vec<ShadingChannel>,
+    /// How whole numbers stood for the ratios when they were read, here or before they were
+    /// converted to floats; `None` for fresh ratios. Written as such numbers, of any bits,
+    /// they become again what they were.
+    pub origin: Option<RatioScale>,
+    /// How the map was read, or will be written.
+    pub format: MapFormat,
+    /// What the file says of the map.
+    pub label: Label,
+}
+
+impl MapFile {
+    /// A fresh map of some heights. `generator` is the word for what made it.
+    pub fn new(map: ConeMap, heights: &Heights, patches: Patches, generator: &str) -> Self {
+        let (_, places) = heights.places(map.kind.over_cells().then_some(patches));
+        let label = Label {
+            samples: heights.size(),
+            patches,
+            scale: scale(heights.size()),
+            digest: Some(digest(heights)),
+            generator: Some(generator.into()),
+        };
+        Self {
+            map,
+            heights: Some(places),
+            shading: Vec::new(),
+            origin: None,
+            format: MapFormat::new(Layout::Full),
+            label,
+        }
+    }
+
+    /// Mean ratio in units of the scale, with ratios above 1 counted as 1: cones wider than
+    /// the whole texture are of no use, and would outweigh all others.
+    pub fn mean_share(&self) -> f64 {
+        let ratios = self.map.ratios.iter();
+        let shares: f64 = ratios.map(|r| (r / self.label.scale).min(1.0)).sum();
+        shares / self.map.ratios.len().max(1) as f64
+    }
+}
+
+/// Texels that a ratio of 1 in a file means: the longer axis.
+pub(crate) fn scale(samples: [u32; 2]) -> f64 {
+    f64::from(samples[0].max(samples[1]))
+}
+
+/// Places of a map along each axis.
+pub(crate) fn places(
+    samples: [u32; 2],
+    wrap: [bool; 2],
+    kind: MapKind,
+    patches: Patches,
+) -> [u32; 2] {
+    match kind.over_cells() {
+        true => crate::heightfield::heights::cells(samples, wrap, patches),
+        false => samples,
+    }
+}

@@ -1,0 +1,46 @@
+//! The reference tracer: it solves every cell on the ray's way exactly.
+//!
+//! It uses no apex, no cone and no pyramid to decide what to look at. All other tracers are
+//! measured against it, and it is tested against closed forms. It has no shader of its own: on
+//! a GPU the cone walk with ratios of 0 visits the same cells.
+
+use std::sync::Arc;
+
+use crate::base::shader::Module;
+use crate::base::work::Work;
+use crate::heightfield::height_surface::HeightSurface;
+use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, Tracer};
+use crate::heightfield::tracer::grid::{grid_leave, grid_over, grid_solve};
+
+/// Solves cell by cell.
+#[derive(Clone, Debug)]
+pub struct ReferenceTracer {
+    surface: Arc<HeightSurface>,
+}
+
+impl ReferenceTracer {
+    /// The reference tracer of a surface.
+    pub fn new(surface: Arc<HeightSurface>) -> Self {
+        Self { surface }
+    }
+}
+
+impl Tracer for ReferenceTracer {
+    fn surface(&self) -> &HeightSurface {
+        &self.surface
+    }
+
+    fn advance(&self, ray: &LocalRay, trace: &mut Trace, _work: &mut Work) -> Step {
+        let surface = &*self.surface;
+        let node = surface.node(trace.cell, 0);
+        let over = grid_over(ray, trace, &node);
+        if grid_solve(surface, ray, trace, over.to) {
+            return Step::Hit;
+        }
+        grid_leave(surface, ray, trace, &node, &over, over.exit)
+    }
+
+    fn own_modules(&self) -> Vec<Module> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,52 @@
+//! What would be run for a frame, told without a GPU.
+
+use std::fmt::Write as _;
+
+use super::program;
+use crate::base::shader::Program;
+use crate::heightfield::conemap::generate::task::program_of;
+use crate::heightfield::tracer::settings::PrepareError;
+use crate::plan::{Extras, Pass, Plan};
+use crate::scene::Assets;
+
+/// The passes, programs, modules and constants of a frame with extras.
+///
+/// # Errors
+/// A file that the plan names cannot be read or does not fit.
+pub fn explain(plan: &Plan, assets: &Assets, extras: Extras) -> Result<String, PrepareError> {
+    let plan = &*plan.lean(extras);
+    let solid = plan.scene.outline(&plan.viewpoint(), assets)?;
+    let mut text = String::new();
+    let [w, h] = plan.size;
+    // Writing to a string cannot fail, here and below.
+    let _ = writeln!(text, "{w} x {h}, mode {}", plan.march.mode.name());
+    let _ = writeln!(text, "{}", solid.twin().describe());
+    let mut programs: Vec<Program> = Vec::new();
+    text.push_str("passes\n");
+    let prepared = plan
+        .scene
+        .preparations(assets)
+        .into_iter()
+        .map(Pass::Prepare);
+    for pass in prepared.chain(plan.passes(extras)) {
+        let limit = match pass {
+            Pass::March(level) => level.steps.to_string(),
+            Pass::Trace => plan.ray_steps(assets).to_string(),
+            Pass::Prepare(_) | Pass::Color => "-".into(),
+        };
+        let [w, h] = pass.cells(plan.size);
+        let _ = writeln!(text, "  {:<12} {w:>6} x {h:<6} steps {limit}", pass.name());
+        let program = match pass {
+            Pass::Prepare(map) => program_of(map.generator),
+            _ => program(plan, &solid, pass, extras),
+        };
+        if !programs.contains(&program) {
+            programs.push(program);
+        }
+    }
+    text.push_str("programs\n");
+    for program in &programs {
+        let _ = write!(text, "  {}\n{}", program.entry, program.describe());
+    }
+    Ok(text)
+}

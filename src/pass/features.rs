@@ -1,0 +1,46 @@
+//! The features of a look that can be absent.
+//!
+//! A feature is a twin pair, `NAME.rs` and `wgsl/pass/NAME.wgsl`, a stand-in
+//! `wgsl/pass/NAME_off.wgsl` with the same functions, and one predicate. Both executors read the predicate:
+//! the GPU joins the stand-in, and the CPU's function returns at once.
+
+use crate::base::shader::Module;
+use crate::plan::look::Look;
+use crate::wgsl;
+
+/// Makes the enum of all features out of one list: name, module, stand-in, predicate.
+macro_rules! features {
+    ($($(#[$doc:meta])* $name:ident: $on:literal, $off:literal, $is_on:expr);* $(;)?) => {
+        /// A feature of a look that can be absent.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum LookFeature { $($(#[$doc])* $name),* }
+
+        impl LookFeature {
+            /// All features.
+            pub const ALL: &[Self] = &[$(Self::$name),*];
+
+            /// Whether a look has the feature.
+            pub fn is_on(self, look: &Look) -> bool {
+                let is_on: fn(&Look) -> bool = match self { $(Self::$name => $is_on),* };
+                is_on(look)
+            }
+
+            /// Its module, or the stand-in.
+            pub fn module(self, on: bool) -> Module {
+                match (self, on) {
+                    $((Self::$name, true) => wgsl!($on),
+                    (Self::$name, false) => wgsl!($off)),*
+                }
+            }
+        }
+    };
+}
+
+features![
+    /// Shadows of the key light.
+    Shadow: "pass/shadow.wgsl", "pass/shadow_off.wgsl", |look| look.shadow;
+    /// Ambient occlusion.
+    Occlusion: "pass/occlusion.wgsl", "pass/occlusion_off.wgsl", |look| look.occlusion > 0.0;
+    /// Exponential fog.
+    Fog: "pass/fog.wgsl", "pass/fog_off.wgsl", |look| look.fog > 0.0;
+];

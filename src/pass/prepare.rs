@@ -1,0 +1,56 @@
+//! The pass before all others: cone maps that a scene needs.
+
+use std::time::Instant;
+
+use super::progress::{Progress, Watch};
+use crate::heightfield::assets::Preparation;
+use crate::heightfield::conemap::ConeMap;
+use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
+use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::tracer::settings::PrepareError;
+use crate::plan::Plan;
+use crate::scene::Assets;
+
+/// A maker of cone maps that tells the share that is done, and stops when it is told `false`.
+pub type Maker<'a> = &'a mut dyn FnMut(
+    Generator,
+    &Heights,
+    Patches,
+    &Options,
+    &mut dyn FnMut(f64) -> bool,
+) -> Result<ConeMap, GenerateError>;
+
+/// Makes what a plan needs by `maker`, and keeps it in the assets. Returns the milliseconds that each map took:
+/// none for a kept one.
+///
+/// # Errors
+/// A file does not fit, the maker fails, or `watch` returns `false`.
+pub fn prepare(
+    plan: &Plan,
+    assets: &Assets,
+    maker: Maker<'_>,
+    watch: Watch<'_>,
+) -> Result<Vec<(Preparation, f64)>, PrepareError> {
+    let mut taken = Vec::new();
+    let make = &mut |generator, heights: &Heights, patches, options: &Options| {
+        let start = Instant::now();
+        let mut told = |share: f64| {
+            let pass = format!("cones {:.0} %", 100.0 * share);
+            watch(&Progress { pass, done: 0.0 })
+        };
+        let made = maker(generator, heights, patches, options, &mut told);
+        taken.push((generator, start.elapsed().as_secs_f64() * 1e3));
+        made
+    };
+    plan.scene.prepare(assets, make)?;
+    let time = |map: Preparation| {
+        let of = taken.iter().find(|(by, _)| *by == map.generator);
+        (map, of.map_or(0.0, |(_, ms)| *ms))
+    };
+    Ok(plan
+        .scene
+        .preparations(assets)
+        .into_iter()
+        .map(time)
+        .collect())
+}

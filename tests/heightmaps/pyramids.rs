@@ -1,0 +1,154 @@
+//! What is made from heights and cones besides the maps: maxima, planes, mips, the 3 x 3
+//! minimum, slopes, and the ratios that devices read.
+
+use conemarch::heightfield::conemap::WIDEST;
+use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
+use conemarch::heightfield::conemap::generate::min3x3::min3x3;
+use conemarch::heightfield::conemap::generate::mips::{self, rounded_down};
+use conemarch::heightfield::conemap::generate::planes::Planes;
+use conemarch::heightfield::conemap::generate::slopes::slopes;
+use conemarch::heightfield::height_surface::{HeightSurface, TracerParameters};
+use conemarch::heightfield::heights::{Heights, Patches};
+use conemarch::heightfield::max_mip::MaxMip;
+use conemarch::heightfield::pattern::Pattern;
+
+use crate::fields::{WRAPS, field, make, plain, small};
+
+#[test]
+fn planes_lie_above_all_heights() {
+    for (name, heights) in small() {
+        let mip = MaxMip::new(heights.size(), heights.data().to_vec());
+        let planes = Planes::new(&mip);
+        for level in 1..mip.levels.len() {
+            let [w, h] = mip.levels[level].size;
+            for at in (0..h).flat_map(|y| (0..w).map(move |x| [x, y])) {
+                let plane = planes.get(level, at);
+                let (low, high) = mip.places(level, at[0], at[1]);
+                let mut touches = f64::INFINITY;
+                for y in low[1]..=high[1] {
+                    for x in low[0]..=high[0] {
+                        let room = plane.at([x, y]) - heights.at(x.into(), y.into());
+                        assert!(room >= -1e-12, "{name}: level {level}, node {at:?}");
+                        touches = room.min(touches);
+                    }
+                }
+                // The lowest planes lie on their heights.
+                assert!(level > 1 || touches < 1e-12, "{name}: {touches}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_least_of_nine_is_the_least_around_a_place() {
+    for wrap in WRAPS {
+        let heights = field(Pattern::Spikes, [7, 5], wrap);
+        for generator in [Generator::Exact, Generator::Quad, Generator::Walk] {
+            let options = Options {
+                min3x3: true,
+                ..Options::default()
+            };
+            let raw = plain(generator, &heights);
+            let map = make(generator, &heights, Patches::default(), &options);
+            assert_eq!(map, min3x3(&raw));
+            let channels = generator.channels() as i64;
+            let [w, h] = raw.size.map(i64::from);
+            for (i, ratio) in (0..).zip(&map.ratios) {
+                let (place, c) = (i / channels, i % channels);
+                let around = (-1..2).flat_map(|y| (-1..2).map(move |x| (x, y)));
+                let around = around.filter_map(|(dx, dy)| {
+                    let (mut x, mut y) = (place % w + dx, place / w + dy);
+                    if wrap[0] {
+                        x = x.rem_euclid(w);
+                    }
+                    if wrap[1] {
+                        y = y.rem_euclid(h);
+                    }
+                    let inside = (0..w).contains(&x) && (0..h).contains(&y);
+                    inside.then(|| raw.ratios[((y * w + x) * channels + c) as usize])
+                });
+                let least = around.fold(f64::INFINITY, f64::min);
+                assert_eq!(*ratio, least, "{generator:?} {wrap:?} {i}");
+            }
+        }
+    }
+}
+
+#[test]
+fn mips_have_the_highest_apex_and_the_narrowest_cone_of_all_below() {
+    for size in [[1, 1], [1, 7], [9, 5], [16, 16], [33, 20]] {
+        let heights = field(Pattern::Fbm, size, [false, true]);
+        for generator in [Generator::Exact, Generator::Quad] {
+            let map = plain(generator, &heights);
+            let channels = generator.channels();
+            let levels = mips::mips(heights.data(), &map).unwrap();
+            assert_eq!(levels.last().unwrap().size, [1, 1]);
+            for (n, level) in levels.iter().enumerate() {
+                let [w, h] = level.size;
+                assert_eq!([w, h], size.map(|s| s.div_ceil(1 << n)));
+                for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
+                    let under = |i: u32| [(i % size[0]) >> n, (i / size[0]) >> n] == [x, y];
+                    let places = (0..size[0] * size[1]).filter(|i| under(*i));
+                    let places: Vec<usize> = places.map(|i| i as usize).collect();
+                    let at = (y * w + x) as usize;
+                    let high = places
+                        .iter()
+                        .map(|i| heights.data()[*i])
+                        .fold(0.0, f32::max);
+                    assert_eq!(level.heights[at], high);
+                    for c in 0..channels {
+                        let ratios = places.iter().map(|i| map.ratios[i * channels + c]);
+                        let least = ratios.fold(f64::INFINITY, f64::min);
+                        assert_eq!(level.ratios[at * channels + c], least);
+                    }
+                }
+            }
+        }
+        let map = plain(Generator::Exact, &heights);
+        assert_eq!(mips::mips(&heights.data()[1..], &map), None);
+    }
+}
+
+#[test]
+fn ratios_are_stored_rounded_down() {
+    let heights = field(Pattern::Noise, [64, 64], [false, false]);
+    let mut below = 0;
+    for r in plain(Generator::Exact, &heights).ratios {
+        let stored = rounded_down(r);
+        assert!(
+            f64::from(stored) <= r && f64::from(stored.next_up()) > r,
+            "{r}"
+        );
+        below += usize::from(f64::from(stored) < r);
+    }
+    assert!(below > 2000, "too few ratios need rounding: {below}");
+    // So they reach a device, too.
+    let map = plain(Generator::Walk, &heights);
+    let relief = HeightSurface::new(heights, Patches::Bilinear, [1, 1]).unwrap();
+    let buffers = relief.buffers(Some(&map), TracerParameters::default());
+    let (_, bytes) = buffers.iter().find(|(name, _)| *name == "ratios").unwrap();
+    let there: &[f32] = bytemuck::cast_slice(bytes);
+    assert_eq!(there.len(), map.ratios.len());
+    for (there, ratio) in there.iter().zip(&map.ratios) {
+        assert!(f64::from(*there) <= *ratio && f64::from(there.next_up()) > *ratio);
+    }
+    assert_eq!(f64::from(rounded_down(WIDEST)), WIDEST);
+}
+
+#[test]
+fn slopes_are_those_of_a_plane() {
+    // h = (2 x + 3 y) / 64 on 8 x 6 samples: one slope everywhere, at borders too.
+    let data = (0..48).map(|i| (2 * (i % 8) + 3 * (i / 8)) as f32 / 64.0);
+    let heights = Heights::new([8, 6], [false, false], data.collect()).unwrap();
+    for s in slopes(&heights) {
+        assert_eq!(s, [2.0 / 64.0, 3.0 / 64.0]);
+    }
+    // Where the axes wrap, the far sample is next.
+    let heights = Heights::new([8, 6], [true, true], heights.data().to_vec()).unwrap();
+    assert_eq!(
+        slopes(&heights)[0],
+        [(2.0 - 14.0) / 128.0, (3.0 - 15.0) / 128.0]
+    );
+    let flat = Heights::new([1, 1], [false, true], vec![0.5]).unwrap();
+    assert_eq!(slopes(&flat)[0], [0.0; 2]);
+}

@@ -1,0 +1,202 @@
+//! The rules of the source tree: imports point downward, twins share a path, files are short.
+//!
+//! Each rule is a function from a path and a text to violations, so that it can be tried on
+//! an example. A test collects the violations of all files before it fails.
+#![allow(
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "a test may panic, and is read by its name"
+)]
+
+mod common {
+    pub mod files;
+}
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use common::files::files_below;
+
+/// The rooms of `src/`, lowest first. Rooms on the same line do not import each other.
+const FLOORS: [&[&str]; 9] = [
+    &["base"],
+    &["formula", "heightfield"],
+    &["scene"],
+    &["plan"],
+    &["preset", "pass"],
+    &["picture"],
+    &["gpu", "cpu"],
+    &["measure"],
+    &["command"],
+];
+/// The most lines of a source file.
+const MOST_LINES: usize = 420;
+
+fn floor(room: &str) -> Option<usize> {
+    FLOORS.iter().position(|rooms| rooms.contains(&room))
+}
+
+/// Asserts that a rule finds nothing in the sources.
+fn assert_kept(rule: fn(&str, &str) -> Vec<String>) {
+    let files = files_below("src").into_iter();
+    let found: Vec<String> = files.flat_map(|(path, text)| rule(&path, &text)).collect();
+    assert!(found.is_empty(), "violations:\n{}", found.join("\n"));
+}
+
+/// The code of a file: without comments and without its test module, which stands last.
+fn code(text: &str) -> String {
+    let product = text.split("#[cfg(test)]").next().unwrap();
+    let lines = product.lines().map(|line| line.split("//").next().unwrap());
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// The first names of the paths in a text such as `{base::view, pass::{self, look}}; ...`, or
+/// the one name that the text starts with.
+fn first_names(text: &str) -> Vec<String> {
+    let mut depth = 0;
+    let mut outer = String::new();
+    for c in text.chars() {
+        depth += i32::from(c == '{') - i32::from(c == '}');
+        match depth {
+            0 => break,
+            1 => outer.push(c),
+            _ => {}
+        }
+    }
+    // Without braces nothing was kept.
+    let paths = outer
+        .strip_prefix('{')
+        .map_or(vec![text], |list| list.split(',').collect());
+    let name = |path: &str| {
+        let end = path.find(|c: char| !c.is_alphanumeric() && c != '_');
+        path[..end.unwrap_or(path.len())].to_string()
+    };
+    paths.into_iter().map(|path| name(path.trim())).collect()
+}
+
+/// Paths of a file in `src/ROOM/` that name a room which is not below its own.
+fn upward_paths(path: &str, text: &str) -> Vec<String> {
+    let parts: Vec<&str> = path
+        .split(['/', '.'])
+        .filter(|p| !["mod", "rs"].contains(p))
+        .collect();
+    let ["src", room, ..] = parts[..] else {
+        panic!("{path} is not in src");
+    };
+    if ["lib", "main"].contains(&room) {
+        return Vec::new();
+    }
+    let Some(own) = floor(room) else {
+        return vec![format!("{path}: the room `{room}` has no floor")];
+    };
+    // As many `super::` as there are modules around the file lead to the root.
+    let text = code(text).replace(&"super::".repeat(parts.len() - 1), "crate::");
+    let names: BTreeSet<String> = text
+        .split("crate::")
+        .skip(1)
+        .flat_map(first_names)
+        .collect();
+    let upward = |name: &String| name != room && floor(name).is_some_and(|other| other >= own);
+    let upward = names.into_iter().filter(upward);
+    upward
+        .map(|name| format!("{path}: `{room}` must not name `{name}`"))
+        .collect()
+}
+
+/// A Rust file that has a twin names the WGSL file at its own path, and that file exists.
+fn broken_twins(path: &str, text: &str) -> Vec<String> {
+    let twin = path.replace("src/", "wgsl/").replace(".rs", ".wgsl");
+    let docs: String = text
+        .lines()
+        .map_while(|line| line.strip_prefix("//!"))
+        .collect();
+    let fault = match (
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(&twin).exists(),
+        docs.contains(&twin),
+        docs.contains("Twin: `wgsl/"),
+    ) {
+        (true, false, _) => "the docs do not name it",
+        (false, true, _) => "it does not exist",
+        (false, _, true) => "the docs name a twin at another path",
+        _ => return Vec::new(),
+    };
+    vec![format!("{path}: of the twin {twin}, {fault}")]
+}
+
+fn too_long(path: &str, text: &str) -> Vec<String> {
+    let lines = text.lines().count();
+    let fault = format!("{path}: {lines} lines, at most {MOST_LINES}");
+    Vec::from_iter((lines > MOST_LINES).then_some(fault))
+}
+
+#[test]
+fn imports_point_downward() {
+    assert_kept(upward_paths);
+}
+
+#[test]
+fn twins_share_a_path() {
+    assert_kept(broken_twins);
+}
+
+#[test]
+fn no_file_is_too_long() {
+    assert_kept(too_long);
+}
+
+#[test]
+fn upward_paths_are_found_in_every_form() {
+    let of = |text: &str| {
+        let found = upward_paths("src/scene/distance.rs", text);
+        found
+            .iter()
+            .map(|f| f.split('`').nth(3).unwrap().to_string())
+            .collect::<Vec<_>>()
+    };
+    for downward in [
+        "use crate::base::view::View;\nuse crate::{formula::Formula, scene::Solid, wgsl};",
+        "use super::Solid;\n// as crate::plan does\n/// See [`crate::gpu`].",
+        "fn f() {}\n#[cfg(test)]\nmod tests { use crate::plan::Plan; }",
+    ] {
+        assert_eq!(of(downward), [""; 0], "{downward}");
+    }
+    for upward in [
+        "use crate::plan::Plan;",
+        "use crate::{base::{self, view}, plan};",
+        "use crate::{\n    base::view,\n    plan::{camera, look},\n};",
+        "fn f(plan: &crate::plan::Plan) {}",
+        "use super::super::plan::Plan;",
+    ] {
+        assert_eq!(of(upward), ["plan"], "{upward}");
+    }
+    let two = of("use crate::{plan::Plan, gpu};\nuse crate::gpu::device;");
+    assert_eq!(two, ["gpu", "plan"]);
+    for (path, text, found) in [
+        // A neighbour on the same floor is not below.
+        ("src/cpu/mod.rs", "use super::gpu::render;", 1),
+        ("src/cpu/mod.rs", "use super::picture::frame;", 0),
+        ("src/attic/mod.rs", "", 1),
+        ("src/lib.rs", "use crate::command::line;", 0),
+    ] {
+        assert_eq!(upward_paths(path, text).len(), found, "{path}: {text}");
+    }
+}
+
+#[test]
+fn broken_twins_and_long_files_are_found() {
+    for (path, docs, found) in [
+        ("src/pass/trace.rs", "Twin: `wgsl/pass/trace.wgsl`.", 0),
+        ("src/pass/trace.rs", "Rays.", 1),
+        ("src/pass/trace.rs", "Twin: `wgsl/pass/march.wgsl`.", 1),
+        ("src/pass/rays.rs", "Rays.", 0),
+        ("src/pass/rays.rs", "Twin: `wgsl/pass/trace.wgsl`.", 1),
+        ("src/pass/rays.rs", "Twin: `wgsl/pass/rays.wgsl`.", 1),
+    ] {
+        let docs = format!("//! {docs}\n");
+        assert_eq!(broken_twins(path, &docs).len(), found, "{path}: {docs}");
+    }
+    for lines in [MOST_LINES, MOST_LINES + 1] {
+        let found = too_long("src/a.rs", &"\n".repeat(lines));
+        assert_eq!(found.len(), lines - MOST_LINES);
+    }
+}

@@ -1,0 +1,174 @@
+//! Every program that can be made: of presets, of scenes with each key moved, in all modes,
+//! with and without each feature of the look, and of the generators of cone maps.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use conemarch::base::shader::Program;
+use conemarch::formula::Formula;
+use conemarch::heightfield::conemap::generate::task::every_program;
+use conemarch::pass::LookFeature;
+use conemarch::plan::march::MODES;
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset::BUILTIN;
+use conemarch::scene::Scene;
+use rayon::prelude::*;
+use toml::Value;
+use wgpu::naga::{self, valid::Capabilities};
+
+use super::common::plans::{distance, preset, program, solid};
+
+/// Switches a feature of the look, by the key that does and nothing else.
+pub fn switch(plan: &mut Plan, feature: LookFeature, on: bool) {
+    let old = plan.look.clone();
+    let wanted = |f: &LookFeature| if *f == feature { on } else { f.is_on(&old) };
+    let values = [Value::Boolean(on), Value::Float(f64::from(u8::from(on)))];
+    for index in 0..old.clone().keys().len() {
+        for value in &values {
+            plan.look = old.clone();
+            let fits = plan.look.keys()[index].slot.set(value).is_ok();
+            if fits
+                && LookFeature::ALL
+                    .iter()
+                    .all(|f| f.is_on(&plan.look) == wanted(f))
+            {
+                return;
+            }
+        }
+    }
+    panic!("no key switches {feature:?}");
+}
+
+/// All values worth trying for a key: the other state of a switch, every word of a list of
+/// words, and a triple away from zero.
+fn values(now: &Value, expects: &str) -> Vec<Value> {
+    match now {
+        Value::Boolean(b) => vec![Value::Boolean(!b)],
+        Value::Array(list) if list.len() == 3 => {
+            vec![Value::Array([3.0, 5.0, 7.0].map(Value::Float).to_vec())]
+        }
+        Value::String(_) => {
+            let quoted = expects.split('"').skip(1).step_by(2);
+            quoted.map(|w| Value::String(w.into())).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Adds the scene once more for each value of each of its keys that could choose a feature.
+fn add_each_key_moved(scene: &Scene, all: &mut Vec<Scene>) {
+    for index in 0..scene.clone().keys().len() {
+        let tried = {
+            let mut copy = scene.clone();
+            let key = &copy.keys()[index];
+            values(&key.slot.get(), &key.slot.expects())
+        };
+        for value in tried {
+            let mut moved = scene.clone();
+            let fits = moved.keys()[index].slot.set(&value).is_ok();
+            if fits && !all.contains(&moved) {
+                all.push(moved);
+            }
+        }
+    }
+}
+
+/// Every kind of scene and every formula, with its features: of a formula up to three at a
+/// time, of a heightfield, which has many tracers, one.
+fn scenes() -> Vec<Scene> {
+    let mut all = Vec::new();
+    for mut scene in Scene::all() {
+        let mut times = 3;
+        // Small: what is joined does not depend on how many samples there are.
+        if let Scene::Heightfield(settings) = &mut scene {
+            settings.source.field = "fbm:16x16".into();
+            times = 1;
+        }
+        let mut moved = vec![scene];
+        for _ in 0..times {
+            for one in moved.clone() {
+                add_each_key_moved(&one, &mut moved);
+            }
+        }
+        all.extend(moved);
+    }
+    // Few iterations and many: what could overflow is guarded.
+    for formula in Formula::all() {
+        let limits = [2, 1000].into_iter();
+        all.extend(limits.map(|most| distance(formula.clone(), Some(most))));
+    }
+    all
+}
+
+/// All plans: presets and scenes, in every mode and with every feature of the look. The
+/// modes and the looks of a heightfield are tried apart.
+fn plans() -> Vec<Plan> {
+    let presets = BUILTIN.iter().map(|(name, _)| preset(name, &[]));
+    let first = presets.chain(scenes().into_iter().map(Plan::new));
+    let mut all = Vec::new();
+    for plan in first {
+        for (_, mode) in MODES {
+            for look in 0..1 << LookFeature::ALL.len() {
+                let apart = matches!(plan.scene, Scene::Heightfield(_));
+                if apart && look > 0 && *mode != plan.march.mode {
+                    continue;
+                }
+                let mut one = plan.clone();
+                one.march.mode = *mode;
+                for (at, feature) in LookFeature::ALL.iter().enumerate() {
+                    switch(&mut one, *feature, look & (1 << at) > 0);
+                }
+                all.push(one);
+            }
+        }
+    }
+    all
+}
+
+/// All different programs of a plan's passes, with work counted or not and normals kept or
+/// not.
+pub fn programs_of(plan: &Plan) -> Vec<Program> {
+    let solid = solid(plan);
+    let mut all: Vec<Program> = Vec::new();
+    for pass in plan.passes(Extras::default()) {
+        for [count, normals] in [[false; 2], [true, false], [false, true], [true; 2]] {
+            let extras = Extras {
+                count,
+                normals,
+                ..Extras::default()
+            };
+            let program = program(plan, &solid, pass, extras);
+            if !all.contains(&program) {
+                all.push(program);
+            }
+        }
+    }
+    all
+}
+
+/// A valid program.
+pub struct Made {
+    /// The program.
+    pub program: Program,
+    /// What naga makes of it.
+    pub module: naga::Module,
+}
+
+/// All different programs by entry and listing.
+///
+/// # Panics
+/// When one is not valid in f32 with exactly its constants.
+pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
+    let mut found = BTreeMap::new();
+    let of_plans = plans().into_iter().flat_map(|plan| programs_of(&plan));
+    for program in every_program().into_iter().chain(of_plans) {
+        let listing = format!("{}\n{}", program.entry, program.describe());
+        found.entry(listing).or_insert(program);
+    }
+    let made = |(listing, program): (String, Program)| {
+        let valid = program.validate(Capabilities::default());
+        let (module, _) = valid.unwrap_or_else(|e| panic!("{e}\n{listing}"));
+        (listing, Made { program, module })
+    };
+    found.into_par_iter().map(made).collect()
+});

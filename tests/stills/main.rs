@@ -1,0 +1,225 @@
+//! Whole pictures: the two executors against each other on every built-in preset, every mode
+//! against the truth, the work that modes do, and devices that are chosen, lost or stopped.
+//!
+//! The GPU computes in f32, the CPU in f64; both run the same passes.
+#![allow(
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "a test fails by panicking, and has no readers of its interface"
+)]
+
+#[path = "../adapter/mod.rs"]
+mod adapter;
+#[path = "../common"]
+#[allow(dead_code, reason = "other crates use the rest")]
+mod common {
+    pub mod folder;
+    pub mod plans;
+}
+mod device;
+
+use adapter::{COUNTED, LEVELS, on_cpu, render};
+use common::plans::{compared, preset, sized};
+use conemarch::base::srgb::srgb;
+use conemarch::base::work::State;
+use conemarch::measure::compare::{Report, quantile};
+use conemarch::measure::truth::truth;
+use conemarch::pass::look::tone;
+use conemarch::picture::frame::Frame;
+use conemarch::plan::march::{MODES, Mode};
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset::BUILTIN;
+use conemarch::scene::Assets;
+use glam::DVec3;
+
+/// The views that are measured.
+const BENCHMARKS: [&str; 5] = [
+    "bench-far",
+    "bench-graze",
+    "bench-inside",
+    "bench-outside",
+    "bench-thin",
+];
+
+/// Two frames of a plan side by side: depth, and the shown picture in steps of 1/255,
+/// median and 95 %.
+#[derive(Debug)]
+struct Apart {
+    report: Report,
+    shade: [f64; 2],
+}
+
+fn apart(plan: &Plan, frame: &Frame, reference: &Frame) -> Apart {
+    let exposure = plan.look.exposure.exp2();
+    let shown = |c: [f32; 3]| srgb(tone(exposure, DVec3::from_array(c.map(f64::from))));
+    let pairs = frame.radiance.iter().zip(&reference.radiance);
+    let mut shades: Vec<f64> = pairs
+        .map(|(a, b)| 255.0 * (shown(*a) - shown(*b)).abs().max_element())
+        .collect();
+    shades.sort_by(f64::total_cmp);
+    Apart {
+        report: compared(frame, reference, plan),
+        shade: [0.5, 0.95].map(|q| quantile(&shades, q)),
+    }
+}
+
+/// Share of pixels that may be a hit on one side only. f32 decides otherwise than f64
+/// where a ray grazes the hit threshold within a rounding: a matter of silhouettes, and
+/// measured as none at all on twelve presets.
+const MASK: f64 = 1e-3;
+/// Footprints between the depths of the median pixel. The noise of the f32 estimate is
+/// about 1e-7, footprints are 1e-4 and more: measured up to 0.004.
+const DEPTH: f64 = 0.05;
+/// Steps of 1/255 in the median pixel; measured up to 0.01.
+const SHADE: f64 = 0.25;
+/// Steps of 1/255 in 95 of 100 pixels: under what an eye sees; measured up to 0.7. The
+/// rest are edges of shadows and folds, where a rounding decides.
+const SHADE_MOST: f64 = 2.0;
+
+/// Which bounds two frames break.
+fn faults(apart: &Apart) -> Vec<&'static str> {
+    let bounds = [
+        ("mask", apart.report.mask, MASK),
+        ("depth", apart.report.depth_error[0], DEPTH),
+        ("shade", apart.shade[0], SHADE),
+        ("most shades", apart.shade[1], SHADE_MOST),
+    ];
+    // A NaN breaks every bound.
+    let broken = bounds
+        .iter()
+        .filter(|(_, v, bound)| v.is_nan() || v >= bound);
+    broken.map(|(name, _, _)| *name).collect()
+}
+
+#[test]
+fn the_two_executors_agree_on_every_preset() {
+    for (name, _) in BUILTIN {
+        let plan = sized(name, [320, 180]);
+        let frame = render(&plan, Extras::default());
+        let reference = on_cpu(&plan, Extras::default());
+        let apart = apart(&plan, &frame, &reference);
+        assert_eq!(faults(&apart), [""; 0], "{name}: {apart:?}");
+        // A picture, and not an empty one that agrees with another.
+        let [_, hit, unconverged] = frame.census();
+        assert!(hit > 10_000, "{name}: {hit} hits");
+        // More than a few rays that end nowhere is a fault of the preset.
+        assert!(unconverged < 60, "{name}: {unconverged} unconverged");
+    }
+}
+
+/// The same comparison of plans that differ a little: each bound can be broken.
+#[test]
+fn the_comparison_notices_small_changes() {
+    let size = [160, 90];
+    let plan = sized("mandelbox", size);
+    let frame = render(&plan, Extras::default());
+    let against = |plan: &Plan, frame: &Frame, other: &Plan| {
+        faults(&apart(plan, frame, &on_cpu(other, Extras::default())))
+    };
+    let scaled = preset("mandelbox", &["scene.scale=2.001", "image.size=[160, 90]"]);
+    assert_eq!(against(&plan, &frame, &scaled), ["depth", "most shades"]);
+    let mut moved = plan.clone();
+    moved.camera.eye *= 1.01;
+    assert!(against(&plan, &frame, &moved).contains(&"mask"));
+    // A little more light, where no sky covers half the picture.
+    let plan = sized("bench-inside", size);
+    let frame = render(&plan, Extras::default());
+    let mut lit = plan.clone();
+    lit.look.fill *= 1.05;
+    let found = against(&plan, &frame, &lit);
+    assert_eq!(found[0], "shade", "{found:?}");
+}
+
+/// Cones and relaxed rays with a shell err no more than classical sphere tracing with
+/// the same hit rule does, and the slides' rule errs more: on every bench view.
+#[test]
+fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
+    // Room for one pixel of 14 400 that f32 decides otherwise.
+    let allowed = 1e-4;
+    for name in BENCHMARKS {
+        let mut plan = sized(name, [160, 90]);
+        let truth = truth(&plan, &Assets::default(), &mut |_| true).unwrap();
+        let mut wrong = |mode| {
+            plan.march.mode = mode;
+            let frame = render(&plan, LEVELS);
+            let report = compared(&frame, &truth.frame, &plan);
+            let starts: u64 = report.start_violations.iter().map(|v| v.1).sum();
+            (report.behind + report.holes, starts)
+        };
+        let (safe, safe_starts) = wrong(Mode::Safe);
+        let (ray, _) = wrong(Mode::Ray);
+        let (slides, slides_starts) = wrong(Mode::SlidesDeep);
+        assert!(safe <= ray + allowed, "{name}: safe {safe}, ray {ray}");
+        assert!(slides > ray + 0.01, "{name}: slides {slides}, ray {ray}");
+        // No cell starts behind the skin of the truth; with the slides' rule, hundreds of
+        // pixels do.
+        assert_eq!(safe_starts, 0, "{name}");
+        assert!(slides_starts > 500, "{name}: {slides_starts}");
+    }
+}
+
+#[test]
+fn every_mode_renders_on_both_executors() {
+    let mut plan = sized("bench-outside", [96, 54]);
+    for (name, mode) in MODES {
+        plan.march.mode = *mode;
+        let pair = [
+            render(&plan, Extras::default()),
+            on_cpu(&plan, Extras::default()),
+        ];
+        for frame in &pair {
+            let known = |s: &u8| State::from_code(u32::from(*s)).is_some();
+            assert!(frame.state.iter().all(known));
+            assert!(frame.census()[1] > 1000, "{name}: {:?}", frame.census());
+            let mut light = frame.radiance.iter().flatten();
+            assert!(light.all(|x| x.is_finite() && *x >= 0.0));
+        }
+        // The modes differ; the executors do not, whatever the mode.
+        assert_eq!(faults(&apart(&plan, &pair[0], &pair[1])), [""; 0], "{name}");
+    }
+}
+
+#[test]
+fn a_comparison_with_itself_is_nothing_and_with_a_shift_is_not() {
+    let plan = sized("bench-outside", [160, 90]);
+    let frame = render(&plan, LEVELS);
+    let same = compared(&frame, &frame, &plan);
+    assert_eq!(same.depth_error, [0.0; 4]);
+    let shares = |r: &Report| {
+        let sides = [r.behind, r.front, r.behind8, r.front8];
+        [&sides[..], &[r.holes, r.false_hits, r.mask]].concat()
+    };
+    assert_eq!((shares(&same), same.unconverged), (vec![0.0; 7], 0.0));
+    let starts: Vec<(u32, u64)> = [16, 8, 4, 2].map(|d| (d, 0)).to_vec();
+    assert_eq!(same.start_violations, starts);
+    // A few pixels to the side: every kind of error occurs.
+    let mut shifted = frame.clone();
+    shifted.depth.rotate_left(4);
+    shifted.state.rotate_left(4);
+    let other = compared(&shifted, &frame, &plan);
+    assert!(other.depth_error[0] > 0.1, "{other:?}");
+    assert!(shares(&other).iter().all(|x| *x > 0.0), "{other:?}");
+    // The shares of holes and false hits add up to that of the mask.
+    assert!((other.holes + other.false_hits - other.mask).abs() < 1e-12);
+}
+
+/// What the program claims of its work, on the benchmarks at their own size. Counts of
+/// evaluations are the same on every machine but for the rounding of its arithmetic.
+#[test]
+fn cones_need_far_fewer_evaluations_than_rays() {
+    let mut logs = [0.0, 0.0];
+    for name in BENCHMARKS {
+        let mut plan = preset(name, &[]);
+        let [ray, relaxed, safe] = [Mode::Ray, Mode::RayRelaxed, Mode::Safe].map(|mode| {
+            plan.march.mode = mode;
+            render(&plan, COUNTED).work_per_pixel().unwrap().0
+        });
+        let what = format!("{name}: {ray} {relaxed} {safe}");
+        assert!(relaxed < 0.97 * ray, "{what}");
+        assert!(ray > 1.5 * safe && relaxed > 1.5 * safe, "{what}");
+        logs[0] += (ray / safe).ln();
+        logs[1] += (relaxed / safe).ln();
+    }
+    let [ray, relaxed] = logs.map(|sum: f64| (sum / 5.0).exp());
+    assert!(ray > 2.5 && relaxed > 2.0, "{ray} {relaxed}");
+}

@@ -1,0 +1,125 @@
+//! Palette, sky, surfaces and their light agree.
+
+use bytemuck::bytes_of;
+use conemarch::base::view::{Beam, footprint};
+use conemarch::pass::{LookFeature, fog, look, occlusion, shadow};
+use conemarch::plan::Plan;
+use conemarch::scene::{Hit, Solid};
+use glam::DVec3;
+
+use super::beams::beam;
+use super::common::plans::{distance, distance_solid, light, scene};
+use super::common::probe::{Probe, probe};
+use super::common::setups::{four, probe_of, seen_from};
+use super::compare::{Allowed, MOVED, Twins, questions};
+use super::{balls, three};
+
+/// Adds the look of a plan to what a probe binds.
+fn with_look(mut probe: Probe, plan: &Plan) -> Probe {
+    let look = light(plan).uniform();
+    probe.modules.push(look::module());
+    probe
+        .parameters
+        .push(("look_parameters", bytes_of(&look).to_vec()));
+    probe
+}
+
+/// A plan with a change.
+fn changed(plan: &Plan, change: fn(&mut Plan)) -> Plan {
+    let mut moved = plan.clone();
+    change(&mut moved);
+    moved
+}
+
+#[test]
+fn palette_pigment_and_sky_agree() {
+    let plan = seen_from([4.0, -9.0, 6.0], scene("kind = 'slab'"));
+    let asked = questions(7, |random| {
+        let x = random.between(-1.0, 4.0);
+        let sky = random.direction();
+        let pigment = DVec3::new(random.unit(), random.unit(), random.unit());
+        [DVec3::X * x, sky, pigment].map(|v| four(v, 0.0))
+    });
+    let light = light(&plan);
+    let quantities = [("palette_at sky pigment_color", 0.01, Allowed(1e-6, 1e-5))];
+    let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+        pairs.add_vector("palette_at", a[0], light.palette_at(f64::from(q[0][0])));
+        pairs.add_vector("sky", a[1], light.sky(three(q[1])));
+        pairs.add_vector("pigment_color", a[2], light.pigment_color(three(q[2])));
+    });
+    let mut bare = Probe::default();
+    bare.modules.push(probe!("look"));
+    let probe = |change| with_look(bare.clone(), &changed(&plan, change));
+    let cycles = probe(|p| p.look.palette_cycles *= MOVED);
+    let sky = probe(|p| {
+        p.look.sky_high *= MOVED;
+        p.look.sky_low *= MOVED;
+    });
+    let moved = [("palette_at pigment_color", cycles), ("sky", sky)];
+    twins.assert_agree("look", &probe(|_| ()), &moved);
+}
+
+#[test]
+fn surfaces_and_their_light_agree() {
+    let eye = DVec3::new(1.0, -6.0, 2.5);
+    let mut plan = seen_from(eye, distance(balls(1.0), Some(1)));
+    plan.look.fog = 1.0;
+    plan.look.light_size = 20.0;
+    plan.look.occlusion_reach = 0.3;
+    let asked = questions(8, |random| {
+        // Points on the sphere about the largest ball, seen from the eye.
+        let normal = random.direction();
+        let point = normal * random.between(1.001, 1.3) - eye;
+        let (t, grain) = (point.length(), 0.002);
+        [four(point, t), four(point / t, grain), four(normal, 0.0)]
+    });
+    let (scene, light) = (distance_solid(&plan), light(&plan));
+    let quantities = [
+        ("normal", 0.1, Allowed(5e-5, 5e-4)),
+        ("pigment", 0.1, Allowed(2e-6, 3e-5)),
+        ("shadow", 0.1, Allowed(1e-6, 5e-5)),
+        ("occlusion", 0.1, Allowed(1e-5, 1e-4)),
+        ("fog", 0.1, Allowed(1e-6, 1e-5)),
+    ];
+    let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+        let ray = Beam {
+            origin: DVec3::ZERO,
+            grain: f64::from(q[1][3]),
+            r0: 0.0,
+            k: 0.0,
+            ..beam(q)
+        };
+        let t = f64::from(q[0][3]);
+        let hit = Hit {
+            t,
+            ..Hit::default()
+        };
+        let at = scene.surface(&ray, &hit);
+        let (point, normal, grain) = (three(q[0]), three(q[2]), footprint(&ray, t));
+        let shaded = shadow::shadow(&scene, &light, point, normal, grain).open;
+        let hidden = occlusion::occlusion(&scene, &light, point, normal, grain);
+        let fogged = fog::fog(&light, DVec3::new(0.2, 0.5, 0.9), ray.axis, t);
+        pairs.add_vector("normal", a[0], at.normal);
+        pairs.add_vector("pigment", a[1], at.pigment);
+        pairs.add("shadow", a[0][3], shaded);
+        pairs.add("occlusion", a[1][3], hidden);
+        pairs.add_vector("fog", a[2], fogged);
+    });
+    let probe = |change| {
+        let plan = changed(&plan, change);
+        let mut lit = probe_of(&plan, probe!("lit"));
+        lit.modules
+            .extend(LookFeature::ALL.iter().map(|feature| feature.module(true)));
+        with_look(lit, &plan)
+    };
+    let moved = [
+        (
+            "normal pigment",
+            probe(|p| p.camera.eye += DVec3::splat(0.05)),
+        ),
+        ("shadow", probe(|p| p.look.light_size *= MOVED)),
+        ("occlusion", probe(|p| p.look.occlusion *= MOVED)),
+        ("fog", probe(|p| p.look.fog *= MOVED)),
+    ];
+    twins.assert_agree("balls", &probe(|_| ()), &moved);
+}

@@ -1,0 +1,255 @@
+//! The shaders and their twins in Rust compute the same values, f32 on the GPU against f64
+//! on the CPU.
+//!
+//! Values are compared by quantile, never by the largest error: next to a fold or a
+//! threshold f32 may well take the other side. Each comparison is made once more with one
+//! parameter moved by a ten-thousandth, and must then fail.
+#![allow(
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "a test may panic, and is read by its name"
+)]
+
+#[path = "../adapter/mod.rs"]
+mod adapter;
+mod beams;
+#[path = "../common"]
+#[allow(dead_code, reason = "other crates use the rest")]
+mod common {
+    pub mod plans;
+    pub mod probe;
+    pub mod random;
+    pub mod setups;
+}
+mod compare;
+mod looks;
+
+use common::plans::{mandelbox, scene};
+use common::probe::{Numbers, Probe, probe};
+use common::random::Random;
+use common::setups::{formula_probe, four, narrow, probe_of, seen_from};
+use compare::{Allowed, MOVED, Twins, questions};
+use conemarch::base::cone::ConeRule;
+use conemarch::formula::Formula;
+use conemarch::formula::balls::Balls;
+use conemarch::formula::mandelbox::{Estimate, Mandelbox};
+use glam::DVec3;
+use toml::Value;
+
+/// The three first numbers of four, as f64.
+fn three(v: [f32; 4]) -> DVec3 {
+    DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]))
+}
+
+/// Balls with the sizes that can be set multiplied.
+fn balls(factor: f64) -> Formula {
+    Formula::Balls(Balls {
+        ball_radius: factor,
+        box_size: 0.7 * factor,
+        rod_radius: 0.05 * factor,
+    })
+}
+
+/// Every formula, and Mandelboxes with each of their features.
+fn formulas() -> Vec<Formula> {
+    let rotated = Mandelbox {
+        rotation: DVec3::new(20.0, -35.0, 50.0),
+        ..mandelbox(2.0)
+    };
+    let julia = Mandelbox {
+        julia: true,
+        julia_constant: DVec3::new(0.7, -0.4, 1.1),
+        ..mandelbox(2.0)
+    };
+    let classic = Mandelbox {
+        estimate: Estimate::Classic,
+        ..mandelbox(2.0)
+    };
+    let boxes = [
+        mandelbox(2.0),
+        mandelbox(-1.5),
+        mandelbox(3.0),
+        rotated,
+        julia,
+        classic,
+    ];
+    let boxes = boxes.map(Formula::Mandelbox);
+    Formula::all().into_iter().chain(boxes).collect()
+}
+
+/// The formula once for each of its numbers, multiplied.
+fn moved(formula: &Formula) -> Vec<Formula> {
+    let mut all = Vec::new();
+    for index in 0..formula.clone().keys().len() {
+        let mut one = formula.clone();
+        let number = one.keys()[index].slot.get();
+        if let Value::Float(x) = number {
+            one.keys()[index]
+                .slot
+                .set(&Value::Float(x * MOVED))
+                .unwrap();
+            all.push(one);
+        }
+    }
+    all
+}
+
+/// The errors that are allowed of a formula's estimate and traps.
+fn allowed(formula: &Formula) -> [Allowed; 2] {
+    match formula {
+        Formula::Balls(_) => [Allowed(2e-7, 2e-6); 2],
+        _ => [Allowed(2e-6, 6e-5), Allowed(6e-7, 6e-4)],
+    }
+}
+
+#[test]
+fn formulas_agree() {
+    const ITERATIONS: u32 = 6;
+    for formula in formulas() {
+        let bounds = formula.bounds();
+        let reach = 1.2 * bounds.half.max_element().min(bounds.radius);
+        let most = f64::from(ITERATIONS);
+        let asked = questions(1, |random| {
+            [four(random.cube(reach), most), [0.0; 4], [0.0; 4]]
+        });
+        let [estimate, trap] = allowed(&formula);
+        let quantities = [("estimate", 0.01, estimate), ("trap", 0.01, trap)];
+        let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+            let p = three(q[0]);
+            pairs.add("estimate", a[0][0], formula.estimate(p, ITERATIONS).0);
+            pairs.add_vector("trap", a[1], formula.trap(p, ITERATIONS));
+        });
+        let what = format!("{formula:?}");
+        twins.assert_agree(&what, &formula_probe(formula.clone(), ITERATIONS), &[]);
+        // Some parameter is seen in the estimate, and one in the traps if they read any.
+        let reads = |other: &Formula| {
+            let differ = |q: &Numbers| {
+                let p = three(q[0]);
+                formula.trap(p, ITERATIONS) != other.trap(p, ITERATIONS)
+            };
+            asked.iter().any(differ)
+        };
+        let (mut unseen, all) = (vec!["estimate"], moved(&formula));
+        if all.iter().any(reads) {
+            unseen.push("trap");
+        }
+        for other in all {
+            if !unseen.is_empty() {
+                let wrong = twins.wrong("moved", &formula_probe(other, ITERATIONS));
+                unseen.retain(|name| !wrong.contains(name));
+            }
+        }
+        assert_eq!(
+            unseen, [""; 0],
+            "{what}: no moved parameter is seen in these"
+        );
+    }
+}
+
+/// Fronts, samples, balls and chords, most of them near the edge of progress.
+fn cones(count: usize, near: f64, seed: u64) -> Vec<Numbers> {
+    let mut random = Random::new(seed);
+    let of = |i: usize| {
+        let t = narrow(10.0_f64.powf(random.between(-2.0, 2.0)));
+        let k = narrow(2.0 * random.unit().powi(2)).max(1e-4);
+        // Every other sample is taken ahead of the front.
+        let front = if i.is_multiple_of(2) {
+            t
+        } else {
+            t * random.between(0.7, 1.0)
+        };
+        let d = k * t * (1.0 + near * random.between(-1.0, 1.0));
+        [four(DVec3::new(front, t, d), k), [0.0; 4], [0.0; 4]]
+    };
+    (0..count).map(of).collect()
+}
+
+fn cone_probe() -> Probe {
+    Probe {
+        modules: vec![ConeRule::Exact.module(), probe!("cone")],
+        parameters: Vec::new(),
+    }
+}
+
+#[test]
+fn the_cone_step_agrees() {
+    let asked = cones(8192, 0.9, 2);
+    let quantities = [("front", 1e-9, Allowed(2e-7, 1e-6))];
+    let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+        let [front, t, d, k] = q[0].map(f64::from);
+        pairs.add("front", a[0][0], ConeRule::Exact.cone_front(front, t, d, k));
+    });
+    let scaled = |name| cone_probe().with_constant_scaled(name, 1.0 / MOVED);
+    let mut slides = cone_probe();
+    slides.modules[0] = ConeRule::Slides.module();
+    let moved = [scaled("CONE_TRUST"), scaled("CONE_ROUND_DOWN"), slides];
+    let moved = moved.map(|probe| ("front", probe));
+    twins.assert_agree("cone", &cone_probe(), &moved);
+}
+
+/// The front that one empty ball proves, without regard to rounding.
+fn exact_front(front: f64, t: f64, d: f64, k: f64) -> f64 {
+    let q = d * d - t * t * (k * k - 0.25 * k.powi(4));
+    let middle = t * (1.0 - 0.5 * k * k);
+    if d <= 0.0 || q < 0.0 || middle - q.sqrt() > front {
+        return front;
+    }
+    front.max(middle + q.sqrt())
+}
+
+#[test]
+fn f32_never_claims_more_than_the_exact_front() {
+    // The ball's radius within a hundred-thousandth of k t, the edge of progress.
+    let asked = cones(100_000, 1e-5, 3);
+    let beyond = |probe: Probe| {
+        let told = probe.ask(&asked);
+        let past = told.iter().zip(&asked).filter(|(a, q)| {
+            let [front, t, d, k] = q[0].map(f64::from);
+            f64::from(a[0][0]) > exact_front(front, t, d, k)
+        });
+        past.count()
+    };
+    assert_eq!(beyond(cone_probe()), 0);
+    // Without its two factors f32 does claim more.
+    let mut raw = cone_probe();
+    for constant in &mut raw.modules[0].constants {
+        constant.1 = 1.0;
+    }
+    assert!(beyond(raw) > 10);
+}
+
+#[test]
+fn rays_and_cones_of_the_view_agree() {
+    let asked = questions(4, |random| {
+        let x = random.between(0.0, 1366.0).floor();
+        let y = random.between(0.0, 768.0).floor();
+        let divisor = random.between(1.0, 6.0).floor().exp2();
+        [four(DVec3::new(x, y, divisor), 0.0), [0.0; 4], [0.0; 4]]
+    });
+    let of = |fov: f64| {
+        let mut plan = seen_from([4.0, -9.0, 6.0], scene("kind = 'slab'"));
+        plan.camera.fov = fov;
+        plan.size = [1366, 768];
+        plan
+    };
+    let allowed = Allowed(3e-7, 1e-6);
+    let quantities = [("axes", 1.0, allowed), ("chords grains", 0.0, allowed)];
+    for fov in [1.0, 48.5, 170.0] {
+        let view = of(fov).view();
+        let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+            let [x, y, d, _] = q[0].map(|n| n as u32);
+            let (ray, cone) = (view.view_ray([x, y]), view.view_cone([x / d, y / d], d));
+            pairs.add_vector("axes", a[0], ray.axis);
+            pairs.add_vector("axes", a[1], cone.axis);
+            pairs.add("chords", a[2][0], cone.k);
+            pairs.add("grains", a[0][3], ray.grain);
+            pairs.add("grains", a[1][3], cone.grain);
+            assert_eq!((a[2][1], a[2][2]), (0.0, 0.0));
+        });
+        let probe = |fov| probe_of(&of(fov), probe!("view"));
+        // In so narrow a view as one of 1 degree all axes are nearly one.
+        let seen = ["chords grains", "axes chords grains"][usize::from(fov > 1.0)];
+        let moved = [(seen, probe(fov * MOVED))];
+        twins.assert_agree(&format!("{fov} degrees"), &probe(fov), &moved);
+    }
+}
