@@ -1,7 +1,6 @@
-//! The parts that run on the CPU: `cargo bench --bench cpu`.
+//! Times of what runs on the CPU: `cargo bench --bench cpu`.
 //!
-//! Time for each call of the functions that truth, comparisons and the CPU executor are
-//! made of.
+//! These functions make up the CPU executor, the truth and the comparisons.
 
 use conemarch::scene::Assets;
 use std::hint::black_box;

@@ -1,8 +1,8 @@
-//! What each switch of a preset costs: `cargo bench --bench switches`.
+//! What single settings cost: `cargo bench --bench switches`.
 //!
-//! Renders the default preset with one switch changed at a time, in turn with the
-//! unchanged one, and prints the ratio of medians for march and trace and for colour.
-//! A ratio of 1 for a switch that is off is what "costs nothing" means.
+//! Renders the default preset and the same with one setting changed, in turn, and prints the
+//! ratios of the median times for march and trace, and for colour. A feature costs nothing if
+//! its ratio is 1 while it is off.
 
 use anyhow::{Result, bail};
 use conemarch::command::executor::Executor;
@@ -13,7 +13,7 @@ use conemarch::preset;
 use conemarch::scene::Assets;
 use conemarch::scene::distance::DistanceSettings;
 
-/// A changed setting: its name, and how it is made from the plan.
+/// A changed setting: its name, and a function that changes it.
 type Switch = (&'static str, fn(&mut Plan, &mut Extras));
 
 const SWITCHES: &[Switch] = &[
@@ -34,7 +34,7 @@ const SWITCHES: &[Switch] = &[
     ("rotation by 1 degree", |p, _| rotate(p, 1.0)),
 ];
 
-/// Warm runs that a median is taken of.
+/// Warm runs, of which the median is taken.
 const RUNS: usize = 21;
 
 fn rotate(plan: &mut Plan, degrees: f64) {
@@ -58,6 +58,7 @@ fn main() -> Result<()> {
         let (mut changed, mut extras) = (plan.clone(), Extras::default());
         change(&mut changed, &mut extras);
         let mut ratios = [Vec::new(), Vec::new()];
+        // The first run compiles.
         for run in 0..=RUNS {
             let base = times(&executor.render(
                 &plan,
@@ -78,14 +79,14 @@ fn main() -> Result<()> {
             r[r.len() / 2]
         });
         if !(march.is_finite() && color.is_finite()) {
-            bail!("{name}: a pass took no time at all");
+            bail!("{name}: the clock measured no time for a pass");
         }
         println!("| {name} | {march:.2} | {color:.2} |");
     }
     Ok(())
 }
 
-/// March and trace, and colour, in milliseconds.
+/// Milliseconds of march and trace, and of colour.
 fn times(frame: &Frame) -> [f64; 2] {
     let color = frame.passes.last().map_or(0.0, |p| p.wall_ms);
     [frame.march_ms, color]
