@@ -85,12 +85,10 @@ impl Parts<'_> {
     /// # Errors
     /// There is none, it is of another kind, or it was made for another surface.
     pub fn map(&self) -> Result<Arc<ConeMap>, TraceError> {
-        let name = self.kind.name();
-        let Some(cones) = self.cones else {
-            return Err(TraceError::Missing(name));
-        };
-        check_map(name, self.kind.facts().kinds, self.surface, &cones.map)?;
-        Ok(cones.map.clone())
+        let missing = TraceError::Missing(self.kind.name());
+        let map = &self.cones.ok_or(missing)?.map;
+        check_map(self.kind, self.surface, map)?;
+        Ok(map.clone())
     }
 }
 
