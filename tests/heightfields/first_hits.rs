@@ -183,8 +183,8 @@ fn cones_are_not_wider_than_they_may_be() {
 #[test]
 fn rays_of_no_numbers_end() {
     let all = exact(&cases()[3].surface);
-    use std::f64::{INFINITY, NAN};
-    let odd = [NAN, INFINITY, -INFINITY, 1e300, 0.0, 1e-300, 5.0, -0.0];
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    let odd = [nan, inf, -inf, 1e300, 0.0, 1e-300, 5.0, -0.0];
     let mut random = Random::new(6);
     let mut any = || odd[(random.unit() * 8.0) as usize];
     for _ in 0..3000 {

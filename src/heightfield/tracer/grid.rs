@@ -230,8 +230,8 @@ impl GridRay<'_> {
     pub fn land(&mut self, s: f64) {
         let found = self.cell(s);
         let mut enter = self.trace.enter;
-        for axis in 0..2 {
-            let cell = self.onward(axis, found[axis]);
+        for (axis, cell) in found.into_iter().enumerate() {
+            let cell = self.onward(axis, cell);
             self.trace.cell[axis] = cell;
             // A ray along an axis crosses no line of the other one.
             if self.ray.axis[axis].abs() >= FLAT {

@@ -75,7 +75,7 @@ pub fn make(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
 pub fn make_with_nodes(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
     let nodes = match parts.cones.and_then(|cones| cones.nodes.clone()) {
         Some(nodes) => nodes,
-        None => node_cones(&parts.surface, &*parts.map()?)?,
+        None => node_cones(parts.surface, &*parts.map()?)?,
     };
     with(parts, Some(nodes))
 }
