@@ -76,7 +76,7 @@ fn comparisons(c: &mut Criterion) {
                 black_box(&one),
                 &two,
                 &plan,
-                &plan.solid(&Assets::default()).unwrap(),
+                &plan.solid(&Assets::default()).expect("no files are named"),
             )
         });
     });

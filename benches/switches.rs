@@ -11,7 +11,7 @@ use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset;
 use conemarch::scene::Assets;
-use conemarch::scene::distance::DistanceSettings;
+use conemarch::scene::distance_settings::DistanceSettings;
 
 /// A changed setting: its name, and a function that changes it.
 type Switch = (&'static str, fn(&mut Plan, &mut Extras));

@@ -94,7 +94,7 @@ impl Executor {
     ) -> Result<Frame, RenderError> {
         match self {
             Self::Gpu(renderer) => renderer.render(plan, assets, extras, watch),
-            Self::Cpu => cpu::render(plan, assets, extras, watch),
+            Self::Cpu => Ok(cpu::render(plan, assets, extras, watch)?),
         }
     }
 

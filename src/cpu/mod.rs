@@ -9,11 +9,10 @@ use rayon::prelude::*;
 
 use crate::base::view::View;
 use crate::base::work::{State, Work};
-use crate::gpu::RenderError;
 use crate::heightfield::conemap::generate::cpu::generate;
 use crate::pass::look::Light;
 use crate::pass::march::{Ended, march};
-use crate::pass::prepare::prepare;
+use crate::pass::prepare::{FrameError, prepare};
 use crate::pass::progress::{Progress, Watch};
 use crate::pass::{color, trace};
 use crate::picture::frame::Frame;
@@ -40,14 +39,14 @@ struct Proofs {
 /// Renders a plan. It must pass [`Plan::check`]. The assets keep what is loaded and made for it.
 ///
 /// # Errors
-/// [`RenderError::Cancelled`] if `watch` returns `false`. A named file cannot be read or does
+/// [`FrameError::Cancelled`] if `watch` returns `false`. A named file cannot be read or does
 /// not fit, or a cone map cannot be made.
 pub fn render(
     plan: &Plan,
     assets: &Assets,
     extras: Extras,
     watch: Watch<'_>,
-) -> Result<Frame, RenderError> {
+) -> Result<Frame, FrameError> {
     let plan = &*plan.lean(extras);
     let prepared = prepare(plan, assets, &mut generate, watch)?;
     let job = Job {
@@ -75,7 +74,7 @@ struct Render<'a> {
 }
 
 impl Task for Render<'_> {
-    type Output = Result<Frame, RenderError>;
+    type Output = Result<Frame, FrameError>;
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let Job { plan, extras, .. } = *self.job;
@@ -129,7 +128,7 @@ struct Run<'a, S> {
 type Sum = (u64, u64);
 
 impl<S: Solid> Run<'_, S> {
-    fn march(&mut self, at: usize, level: Level, bands: &mut Bands) -> Result<Sum, RenderError> {
+    fn march(&mut self, at: usize, level: Level, bands: &mut Bands) -> Result<Sum, FrameError> {
         let cells = level.cells(self.job.plan.size);
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
         let one = |cell| {
@@ -160,7 +159,7 @@ impl<S: Solid> Run<'_, S> {
         Ok(sum)
     }
 
-    fn trace(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
+    fn trace(&mut self, bands: &mut Bands) -> Result<Sum, FrameError> {
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
         let limit = self.job.ray_steps;
         let one = |pixel| {
@@ -191,7 +190,7 @@ impl<S: Solid> Run<'_, S> {
         Ok(sum)
     }
 
-    fn color(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
+    fn color(&mut self, bands: &mut Bands) -> Result<Sum, FrameError> {
         let (solid, view, hits) = (self.solid, &self.view, &self.hits);
         let light = &self.job.light;
         let width = self.job.plan.size[0] as usize;
@@ -249,7 +248,7 @@ impl Bands<'_> {
         cells: [u32; 2],
         one: impl Fn([u32; 2]) -> T + Sync,
         mut keep: impl FnMut(usize, T),
-    ) -> Result<(), RenderError> {
+    ) -> Result<(), FrameError> {
         let [width, height] = cells.map(|n| n as usize);
         // At least a few rows for every thread.
         let least = 4 * rayon::current_num_threads();
@@ -271,7 +270,7 @@ impl Bands<'_> {
                 done: self.before + self.share * last as f64 / height as f64,
             };
             if !(self.watch)(&progress) {
-                return Err(RenderError::Cancelled);
+                return Err(FrameError::Cancelled);
             }
         }
         Ok(())
@@ -286,7 +285,7 @@ pub fn sample(
     plan: &Plan,
     assets: &Assets,
     pixels: &[[u32; 2]],
-) -> Result<Vec<(Hit, State)>, RenderError> {
+) -> Result<Vec<(Hit, State)>, FrameError> {
     let sample = Sample {
         view: plan.view(),
         limit: plan.ray_steps(assets),
@@ -329,7 +328,7 @@ mod tests {
             p.pass != "trace"
         };
         let ended = render(&plan, &Assets::default(), Extras::default(), watch);
-        assert!(matches!(ended, Err(RenderError::Cancelled)));
+        assert!(matches!(ended, Err(FrameError::Cancelled)));
         let (pass, done) = told.last().expect("told");
         assert_eq!(pass, "trace");
         // In the second of three passes.

@@ -7,6 +7,7 @@ use crate::gpu::device::DeviceError;
 use crate::gpu::kernel::KernelError;
 use crate::heightfield::conemap::generate::generator::GenerateError;
 use crate::heightfield::tracer::settings::PrepareError;
+use crate::pass::prepare::FrameError;
 
 /// Why there is no frame, or no cone map.
 #[derive(Debug, Error)]
@@ -66,6 +67,15 @@ impl From<PrepareError> for RenderError {
                 Err(e) => Self::Prepare(GenerateError::Device(e).into()),
             },
             other => Self::Prepare(other),
+        }
+    }
+}
+
+impl From<FrameError> for RenderError {
+    fn from(error: FrameError) -> Self {
+        match error {
+            FrameError::Prepare(error) => error.into(),
+            FrameError::Cancelled => Self::Cancelled,
         }
     }
 }

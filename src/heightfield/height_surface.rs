@@ -1,5 +1,6 @@
 //! A height surface: heights, the patches between them, their tiles, and the pyramid of maxima
-//! over the cells. All tracers read it. Twin: `wgsl/heightfield/heights.wgsl`.
+//! over the cells. All tracers read it. Shaders read it by
+//! `wgsl/heightfield/heights.wgsl`.
 //!
 //! The surface is the top of a solid block, which fills `0 <= z <= surface` over the domain. The
 //! domain has `cells * tiles` cells and starts at the origin. Outside of it there is nothing, so

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use thiserror::Error;
+
 use super::progress::{Progress, Watch};
 use crate::heightfield::assets::Preparation;
 use crate::heightfield::conemap::ConeMap;
@@ -10,6 +12,26 @@ use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::plan::Plan;
 use crate::scene::Assets;
+
+/// Why there is no frame, on any executor.
+#[derive(Debug, Error)]
+pub enum FrameError {
+    /// An asset of the scene could not be loaded or made.
+    #[error(transparent)]
+    Prepare(PrepareError),
+    /// The caller asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl From<PrepareError> for FrameError {
+    fn from(error: PrepareError) -> Self {
+        match error {
+            PrepareError::Generate(GenerateError::Cancelled) => Self::Cancelled,
+            other => Self::Prepare(other),
+        }
+    }
+}
 
 /// Makes a cone map. It reports the share that is done, and stops if the answer is `false`.
 pub type Maker<'a> = &'a mut dyn FnMut(

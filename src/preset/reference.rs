@@ -130,7 +130,7 @@ mod tests {
             .iter()
             .find(|k| k.name == "iterations")
             .expect("a formula's key");
-        let most = crate::scene::distance::MOST_ITERATIONS.to_string();
+        let most = crate::scene::distance_settings::MOST_ITERATIONS.to_string();
         assert!(key.help.ends_with(&format!("up to {most}")), "{}", key.help);
     }
 }

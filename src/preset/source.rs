@@ -54,6 +54,21 @@ pub struct Preset {
 }
 
 impl Preset {
+    /// Reads a preset from its text. Errors name it as `origin`; files that it names are relative
+    /// to the current folder.
+    ///
+    /// # Errors
+    /// The text or an override is wrong.
+    pub fn read(text: &str, origin: &str, overrides: &[Override]) -> Result<Self, PresetError> {
+        let source = Source {
+            name: origin.into(),
+            text: text.into(),
+            origin: origin.into(),
+            folder: PathBuf::new(),
+        };
+        source.read(overrides)
+    }
+
     /// Reads the files that the preset names, and keeps them in the assets.
     ///
     /// # Errors
@@ -62,6 +77,17 @@ impl Preset {
     pub fn load_assets(&self, assets: &Assets) -> Result<(), PresetError> {
         let loaded = self.reading.plan.scene.load(assets);
         loaded.map_err(|fault| self.reading.blame(fault))
+    }
+}
+
+impl Source {
+    fn read(self, overrides: &[Override]) -> Result<Preset, PresetError> {
+        let reading = read_in(&self.folder, &self.text, &self.origin, overrides)?;
+        Ok(Preset {
+            name: self.name,
+            plan: reading.plan.clone(),
+            reading,
+        })
     }
 }
 
@@ -81,13 +107,7 @@ fn named(argument: &Path) -> Option<&'static str> {
 /// The name is unknown, the file cannot be read or carries no preset, or the preset or
 /// an override is wrong.
 pub fn load(argument: impl AsRef<Path>, overrides: &[Override]) -> Result<Preset, PresetError> {
-    let source = find(argument.as_ref())?;
-    let reading = read_in(&source.folder, &source.text, &source.origin, overrides)?;
-    Ok(Preset {
-        name: source.name,
-        plan: reading.plan.clone(),
-        reading,
-    })
+    find(argument.as_ref())?.read(overrides)
 }
 
 /// Finds the text of the preset that an argument names.

@@ -12,6 +12,7 @@
 
 mod contract;
 pub mod distance;
+pub mod distance_settings;
 pub mod heightfield;
 mod settings;
 pub mod slab;
@@ -25,7 +26,8 @@ use crate::heightfield::assets::Preparation;
 use crate::heightfield::settings::HeightfieldSettings;
 use crate::heightfield::tracer::settings::{Make, PrepareError};
 pub use contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use distance::{Distance, DistanceSettings};
+use distance::Distance;
+use distance_settings::DistanceSettings;
 use heightfield::Heightfield;
 pub use settings::{MOST_SHADOW_STEPS, SceneSettings, Viewpoint};
 use slab::{Slab, SlabSettings};

@@ -1,9 +1,22 @@
 //! Errors of presets and overrides: the place, the key, the value, and what to write instead.
 
-use conemarch::preset::{Override, PresetError, read, read_with, write};
+use conemarch::plan::Plan;
+use conemarch::preset::{Override, Preset, PresetError, write};
+use conemarch::scene::Assets;
 use toml::Value;
 
 use super::presets::{all_keys, get, least, toml, with};
+
+/// Reads a preset with overrides, and the files that it names.
+fn read_with(text: &str, origin: &str, sets: &[Override]) -> Result<Plan, PresetError> {
+    let preset = Preset::read(text, origin, sets)?;
+    preset.load_assets(&Assets::default())?;
+    Ok(preset.plan)
+}
+
+fn read(text: &str, origin: &str) -> Result<Plan, PresetError> {
+    read_with(text, origin, &[])
+}
 
 #[test]
 fn no_key_takes_what_is_no_value_for_anything_and_says_where() {
@@ -77,7 +90,7 @@ fn errors_name_line_key_value_and_what_would_do() {
 
 /// As above, of the rest of a scene of heights.
 const HEIGHTFIELD_ERRORS: &str = r#"
-tiles = [1, 2] => p.toml:3: scene.tiles = [1, 2]: the map is repeated along y, where it does not wrap
+tiles = [1, 2] => p.toml:3: scene.tiles = [1, 2]: the map is repeated along y, but it does not wrap there
 field = "fbm:9000x1" => p.toml:3: scene.field = "fbm:9000x1": `9000x1` is no size
 field = "hills" => p.toml:3: scene.field = "hills": hills: there is no such file or field; fields are fbm
 field = "none/there.png" => p.toml:3: scene.field = "none/there.png": none/there.png:

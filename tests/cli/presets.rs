@@ -4,7 +4,7 @@ use conemarch::base::key::Key;
 use conemarch::plan::Plan;
 use conemarch::preset::{BUILTIN, Override, builtin, load, read, read_with, write};
 use conemarch::scene::Scene;
-use conemarch::scene::distance::DistanceSettings;
+use conemarch::scene::distance_settings::DistanceSettings;
 use conemarch::scene::slab::SlabSettings;
 use proptest::prelude::*;
 use toml::Value;

@@ -11,7 +11,8 @@ use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::preset::{Override, load, read};
-use conemarch::scene::distance::{Distance, DistanceSettings};
+use conemarch::scene::distance::Distance;
+use conemarch::scene::distance_settings::DistanceSettings;
 use conemarch::scene::{AnySolid, Assets, Scene};
 use glam::DVec3;
 

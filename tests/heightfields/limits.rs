@@ -86,7 +86,7 @@ fn shadows_reach_across_the_block_from_wherever_they_are_seen() {
 #[test]
 fn no_ray_of_an_exact_tracer_lacks_steps() {
     // Spikes seen along their tips: some rays pass by hundreds of them.
-    let scene = "field = 'spikes:256x256'\nwrap = 'both'\ntiles = [16, 16]\ndepth = 0.02";
+    let scene = "field = 'spikes:256x256'\nwrap = 'xy'\ntiles = [16, 16]\ndepth = 0.02";
     let depths = Extras {
         depth_only: true,
         ..Extras::default()

@@ -27,7 +27,7 @@ pub const SCENES: [&str; 7] = [
     "field = 'spikes:40x40'\ndepth = 4",
     "field = 'spikes:24x17'\ndepth = 4\nsurface = 'boxes'",
     "field = 'fbm:31x24'\nwrap = 'y'\nturn = [25, -40, 60]",
-    "field = 'stones:16x11'\nwrap = 'both'\ntiles = [2, 3]\ndepth = 1.5",
+    "field = 'stones:16x11'\nwrap = 'xy'\ntiles = [2, 3]\ndepth = 1.5",
     "field = 'noise:7x5'\nwrap = 'x'\ntiles = [3, 1]\nturn = [25, -40, 60]\nsurface = 'boxes'",
 ];
 

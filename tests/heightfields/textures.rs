@@ -156,7 +156,7 @@ fn jpeg_and_webp_are_read_by_their_content() {
 
 /// A plan of a small map of noise with a texture.
 fn plan(texture: &str, wrap: &str, surface: &str) -> Plan {
-    let tiles = if wrap == "both" { [2, 1] } else { [1, 1] };
+    let tiles = if wrap == "xy" { [2, 1] } else { [1, 1] };
     let mut plan = crate::plan(&format!(
         "field = 'noise:7x5,seed=3'\nwrap = '{wrap}'\ntiles = {tiles:?}\nsurface = '{surface}'
         texture = '{texture}'"
@@ -173,8 +173,8 @@ fn both_executors_color_alike_and_by_the_texture() {
     for (wrap, surface) in [
         ("none", "bilinear"),
         ("none", "boxes"),
-        ("both", "bilinear"),
-        ("both", "boxes"),
+        ("xy", "bilinear"),
+        ("xy", "boxes"),
     ] {
         let [here, there] = both(&plan(&file, wrap, surface), Extras::default());
         let wrong = apart(&here, &there, 0.01);

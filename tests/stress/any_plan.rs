@@ -76,7 +76,7 @@ fn heightfield() -> impl Strategy<Value = Scene> {
         ("none", [1, 1]),
         ("x", [2, 1]),
         ("y", [1, 2]),
-        ("both", [2, 2]),
+        ("xy", [2, 2]),
     ];
     let wrap = prop::sample::select(wrap.to_vec());
     let source = (1_u32..=24, 1_u32..=24, 0_u32..100);

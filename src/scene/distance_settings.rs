@@ -1,0 +1,116 @@
+//! The settings of a scene given by a distance estimate.
+
+use super::distance::Distance;
+use super::{AnySolid, Assets, Scene, SceneSettings, Viewpoint};
+use crate::base::key::{AutoCount, Fault, Key};
+use crate::formula::Formula;
+use crate::heightfield::tracer::settings::PrepareError;
+use crate::keys;
+
+/// The settings of a distance scene: a formula and its iteration limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DistanceSettings {
+    /// The formula and its parameters.
+    pub formula: Formula,
+    /// Iteration limit; `None` for as many as the finest footprint needs.
+    pub iterations: Option<u32>,
+}
+
+/// The largest iteration limit.
+pub const MOST_ITERATIONS: u32 = 1000;
+/// The largest step limit of a shadow ray. Each step iterates the formula, and Mesa's software
+/// Vulkan ends loops after 65 535 rounds.
+const MOST_SHADOW_STEPS: u32 = 512;
+
+impl DistanceSettings {
+    /// Every formula with its defaults.
+    pub fn all() -> Vec<Self> {
+        Formula::all().into_iter().map(Self::from).collect()
+    }
+
+    /// The iteration limit: the given one, or as many as the finest footprint needs.
+    fn limit(&self, from: &Viewpoint) -> u32 {
+        // A quarter of the hit threshold: too little to see in a comparison.
+        let eps = 0.25 * from.stepping.detail * self.finest_footprint(from);
+        let auto = || self.formula.iterations(eps).min(MOST_ITERATIONS);
+        self.iterations.unwrap_or_else(auto)
+    }
+
+    /// The smallest footprint that any hit can have: in a corner of the image, at the
+    /// nearest point that a ray could hit.
+    fn finest_footprint(&self, from: &Viewpoint) -> f64 {
+        let bounds = self.formula.bounds();
+        let (raw, _) = self.formula.estimate(from.eye, MOST_ITERATIONS);
+        let clear = bounds
+            .distance(from.eye)
+            .max(raw / self.formula.lipschitz());
+        // On the surface the footprint would be zero.
+        let least = 1e-7 * bounds.farthest(from.eye);
+        from.grain * clear.max(least)
+    }
+}
+
+impl From<Formula> for DistanceSettings {
+    fn from(formula: Formula) -> Self {
+        Self {
+            formula,
+            iterations: None,
+        }
+    }
+}
+
+impl From<Formula> for Scene {
+    fn from(formula: Formula) -> Self {
+        DistanceSettings::from(formula).into()
+    }
+}
+
+impl SceneSettings for DistanceSettings {
+    fn kind(&self) -> &'static str {
+        "distance"
+    }
+
+    fn formula(&self) -> Option<&'static str> {
+        Some(self.formula.name())
+    }
+
+    fn keys(&mut self) -> Vec<Key<'_>> {
+        let mut keys = self.formula.keys();
+        keys.extend(keys![
+            "iterations" = AutoCount(&mut self.iterations, 1, MOST_ITERATIONS),
+                "iteration limit; auto is as many as the finest footprint needs, up to 1000";
+        ]);
+        keys
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        self.formula.check()
+    }
+
+    fn solid(&self, from: &Viewpoint, _: &Assets) -> Result<AnySolid, PrepareError> {
+        let formula = self.formula.clone();
+        let solid = Distance::new(formula, self.limit(from), from.eye, from.stepping);
+        Ok(AnySolid::Distance(solid))
+    }
+
+    fn lipschitz(&self) -> f64 {
+        self.formula.lipschitz()
+    }
+
+    fn most_shadow_steps(&self) -> u32 {
+        MOST_SHADOW_STEPS
+    }
+
+    /// The estimate's noise in f32 is about 2e-8 of the coordinates (docs/method.md, 6), and
+    /// the coordinates of any orbit are as large as the bounds. A footprint below a hundred
+    /// times this noise is damaged.
+    fn precision_warning(&self, from: &Viewpoint) -> Option<String> {
+        let finest = self.finest_footprint(from);
+        let floor = 2e-6 * self.formula.bounds().half.max_element();
+        (finest < 0.99 * floor).then(|| {
+            format!(
+                "the finest footprint, {finest:.1e}, is below the f32 limit of about {floor:.0e}, so the nearest details are noise. Move the camera away, or render with --device cpu"
+            )
+        })
+    }
+}
