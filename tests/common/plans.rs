@@ -10,7 +10,7 @@ use conemarch::pass::look::Light;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::{Extras, Pass, Plan};
-use conemarch::preset::{Override, load, read};
+use conemarch::preset::{Override, load};
 use conemarch::scene::distance::Distance;
 use conemarch::scene::distance_settings::DistanceSettings;
 use conemarch::scene::{AnySolid, Assets, Scene};
@@ -29,10 +29,21 @@ pub fn sized(name: &str, [w, h]: [u32; 2]) -> Plan {
     preset(name, &[&format!("image.size=[{w}, {h}]")])
 }
 
-/// A scene, given by the keys of its section.
+/// A scene without a formula, given by the keys of its section. Nothing is checked but the
+/// range of each value.
 pub fn scene(keys: &str) -> Scene {
-    let plan = read(&format!("[scene]\n{keys}\n"), "a scene");
-    plan.unwrap_or_else(|e| panic!("{keys}: {e}")).scene
+    let mut table: toml::Table = keys.parse().unwrap_or_else(|e| panic!("{keys}: {e}"));
+    let kind = table.remove("kind").expect("a kind");
+    let mut scenes = Scene::all().into_iter();
+    let scene = scenes.find(|s| Some(s.kind()) == kind.as_str());
+    let mut scene = scene.expect("a kind of scene");
+    for (name, value) in table {
+        let mut keys = scene.keys();
+        let key = keys.iter_mut().find(|key| key.name == name);
+        let set = key.expect("a key of the scene").slot.set(&value);
+        set.unwrap_or_else(|e| panic!("{name} = {value}: {e}"));
+    }
+    scene
 }
 
 /// A scene of a formula with its own iteration limit, or the automatic one.
