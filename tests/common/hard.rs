@@ -340,7 +340,7 @@ pub fn limits() -> Vec<Case> {
 /// The bench views with their Lipschitz constant multiplied.
 fn sloped(factor: f64) -> Vec<Case> {
     let one = |name: &str| {
-        let mut plan = load(&format!("bench-{name}"), &[]).expect("built in").plan;
+        let mut plan = load(format!("bench-{name}"), &[]).expect("built in").plan;
         plan.size = SIZE;
         if let Subject::Distance {
             shape: Formula::Mandelbox(m),
