@@ -55,7 +55,7 @@ pub struct Frame {
     /// Radial distance from the eye; infinity for sky, the distance reached where a
     /// limit stopped the ray.
     pub depth: Vec<f32>,
-    /// What each pixel is, as [`State`] codes.
+    /// What each pixel is, as [`State`](crate::base::work::State) codes.
     pub state: Vec<u8>,
     /// Pixels, of any state but sky, whose shadow's ray reached its limit: how much light
     /// they get is a guess.
