@@ -131,10 +131,10 @@ fn devices_of_blanks_and_of_no_adapter() {
 fn what_does_not_fit_into_memory_is_refused_with_a_size_that_does() {
     let folder = Folder::new();
     let huge = "--device cpu --size 65536x65536";
-    let says = "65536x65536|GiB of memory|--size ";
+    let says = "65536x65536|iB of memory|--size ";
     fails(&folder, &[(&format!("render mandelbox {huge}"), 1, says)]);
     for verb in ["error", "steps", "calibrate"] {
-        let says = "bench-far|GiB of memory|would fit";
+        let says = "bench-far|iB of memory|would fit";
         fails(
             &folder,
             &[(&format!("bench {verb} bench-far {huge}"), 1, says)],
