@@ -24,7 +24,8 @@ fn main() -> Result<()> {
 
     let mut file = std::fs::File::create("still.png").context("still.png")?;
     let shades = Shades::new(Layer::Color, &frame, &plan);
-    write_png(&mut file, &shades, BitDepth::Eight, &preset::write(&plan))?;
+    let text = preset::write(&plan);
+    write_png(&mut file, &shades, BitDepth::Eight, &plan.title, &text)?;
     println!("still.png is written");
     Ok(())
 }

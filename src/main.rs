@@ -7,11 +7,11 @@ fn main() -> ExitCode {
     conemarch::command::line::run()
 }
 
-/// Keeps a Vulkan layer of Mesa from looking for a desktop where there is none.
+/// Switches a Vulkan layer of Mesa off if there is no desktop.
 ///
-/// It would print `error: XDG_RUNTIME_DIR is invalid or not set in the environment.`
-/// twice on every render without a desktop, where an error should be an error. What it
-/// would do, put the desktop's adapter first, has no meaning there.
+/// Without a desktop it would print `error: XDG_RUNTIME_DIR is invalid or not set in the
+/// environment.` twice on every render, though nothing failed. Its purpose is to put the
+/// desktop's adapter first.
 #[allow(unsafe_code, reason = "no safe way to set a variable; see below")]
 fn keep_drivers_quiet() {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());

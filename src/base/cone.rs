@@ -1,26 +1,27 @@
-//! The exact cone step (docs/method.md, 2), and the slides' rule beside it.
+//! The cone step: how far one empty ball carries a cone's front (docs/method.md, 2).
 //!
-//! Given rays proven free up to a front and one ball known to be empty, how far are
-//! they proven free now? The answer is maximal for one ball, needs no tolerance at
-//! the test for progress, and is independent of what the ball came from.
+//! The *front* of a cone is the distance up to which all of its rays are proven to meet
+//! nothing. An empty ball about a point of the axis may prove more. The exact rule gives
+//! the farthest front that one ball proves, whatever the ball came from. The rule of the
+//! 2012 slides is kept for comparison.
 //! Twins: `wgsl/base/cone.wgsl` and `wgsl/base/cone_slides.wgsl`.
 
 use crate::base::shader::Module;
 use crate::wgsl;
 
-/// Share of a ball's radius that f32 may trust: raw f32 claims progress without
-/// `d > k t` in about one of a thousand steps close to it.
+/// Share of a ball's radius that f32 may trust. The whole radius claims progress without
+/// `d > k t` in about one of a thousand steps near that limit.
 pub const CONE_TRUST: f64 = 1.0 - 1.0 / 1_048_576.0;
-/// Factor that makes a stored f32 front one of a proven lower bound.
+/// Factor that keeps a front below the exact one when it is rounded to f32.
 pub const CONE_ROUND_DOWN: f64 = 1.0 - 1.0 / 4_194_304.0;
 
-/// Which rule carries a front forward.
+/// The rule that carries a front forward.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ConeRule {
     /// The exact step: no ray of the cone can pass a surface.
     #[default]
     Exact,
-    /// `t += d` while `d > k t`, as in the 2012 slides: leaves gaps, for comparison.
+    /// `t += d` while `d > k t`, as in the 2012 slides. It leaves gaps.
     Slides,
 }
 
@@ -37,8 +38,8 @@ impl ConeRule {
         }
     }
 
-    /// The new proven front of a cone of chord `k` from one empty ball of radius `d`
-    /// about the axis point at `t`; `front` itself if the ball proves nothing.
+    /// The new front of a cone of chord `k` from one empty ball of radius `d` about the axis
+    /// point at `t`. It is `front` itself if the ball proves nothing.
     pub fn cone_front(self, front: f64, t: f64, d: f64, k: f64) -> f64 {
         match self {
             Self::Exact => exact(front, t, d, k),

@@ -1,26 +1,26 @@
-//! The keys of a preset, said once.
+//! The keys of presets.
 //!
-//! Every part of a Plan lists its settings as [`Key`]s: a name, a sentence, and a
-//! slot that knows how to read, check and write one value. Reading presets, writing
-//! them, `--set`, the reference of the documentation and interactive controls all
-//! go through the same list.
+//! Every part of a Plan lists its settings as [`Key`]s. A key has a name, a help text and
+//! a [`Slot`] that reads, checks and writes one value. Presets, `--set` and the reference
+//! page `docs/presets.md` all use these lists. [`settings!`](crate::settings) declares a
+//! part with its fields, defaults and keys at once.
 
 use glam::DVec3;
 use toml::Value;
 
 /// A place for one value of a preset.
 pub trait Slot {
-    /// The present value, as a preset says it.
+    /// The current value as TOML.
     fn get(&self) -> Value;
-    /// Takes a value over; `None` leaves the present one and means that it does not fit.
+    /// Sets the value. Returns `None` and changes nothing if it does not fit.
     fn put(&mut self, value: &Value) -> Option<()>;
-    /// What the slot takes, in words.
+    /// Describes the values that fit.
     fn expects(&self) -> String;
 
-    /// Takes a value over.
+    /// Sets the value.
     ///
     /// # Errors
-    /// The value does not fit; [`Slot::expects`].
+    /// The value does not fit. The error is [`Slot::expects`].
     fn set(&mut self, value: &Value) -> Result<(), String> {
         self.put(value).ok_or_else(|| self.expects())
     }
@@ -30,9 +30,9 @@ pub trait Slot {
 pub struct Key<'a> {
     /// Its name in presets and `--set`.
     pub name: &'static str,
-    /// What it means, in a sentence.
+    /// What it means.
     pub help: &'static str,
-    /// Where its value lives.
+    /// Where its value is stored.
     pub slot: Box<dyn Slot + 'a>,
 }
 
@@ -47,7 +47,7 @@ impl<'a> Key<'a> {
     }
 }
 
-/// Lists keys as `"name" = slot, "help";`.
+/// Makes a list of [`Key`]s from lines of the form `"name" = slot, "help";`.
 #[macro_export]
 macro_rules! keys {
     ($($name:literal = $slot:expr, $help:literal;)*) => {
@@ -55,17 +55,54 @@ macro_rules! keys {
     };
 }
 
-/// A value that is impossible together with others, found after reading.
+/// Declares one part of a Plan: the struct, its defaults and its keys.
+///
+/// A line has the form `field: Type = default, Slot(limits), "help";`. The key is called like
+/// the field, and the help text also documents the field.
+#[macro_export]
+macro_rules! settings {
+    (
+        $(#[$doc:meta])*
+        pub struct $part:ident {
+            $($name:ident: $type:ty = $default:expr, $slot:ident($($limit:expr),*), $help:literal;)*
+        }
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $part {
+            $(#[doc = $help] pub $name: $type,)*
+        }
+
+        impl Default for $part {
+            fn default() -> Self {
+                Self { $($name: $default),* }
+            }
+        }
+
+        impl $part {
+            /// Its keys, in the order of its fields.
+            pub fn keys(&mut self) -> Vec<$crate::base::key::Key<'_>> {
+                vec![$($crate::base::key::Key::new(
+                    stringify!($name),
+                    $slot(&mut self.$name $(, $limit)*),
+                    $help,
+                )),*]
+            }
+        }
+    };
+}
+
+/// A value that contradicts another one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// Section and key to point at, as `section.key`.
+    /// The key at fault, as `section.key`.
     pub key: String,
-    /// What is wrong and what would do.
+    /// What is wrong, and a valid alternative.
     pub why: String,
 }
 
 impl Fault {
-    /// A fault at `section.key`.
+    /// A fault of the key `section.key`.
     pub fn new(key: impl Into<String>, why: impl Into<String>) -> Self {
         Self {
             key: key.into(),
@@ -74,7 +111,7 @@ impl Fault {
     }
 }
 
-/// A finite number of a TOML value. An integer serves as a float.
+/// The finite number in a TOML value. An integer is also a number.
 pub fn number(value: &Value) -> Option<f64> {
     let x = match value {
         Value::Float(x) => *x,
@@ -94,7 +131,7 @@ fn count_in(value: &Value, low: u32, high: u32) -> Option<u32> {
     (low..=high).contains(&n).then_some(n)
 }
 
-/// As many values as an array has, each read alike.
+/// Reads an array of `N` values.
 fn array<T: Copy + Default, const N: usize>(
     value: &Value,
     read: impl Fn(&Value) -> Option<T>,
@@ -107,7 +144,7 @@ fn array<T: Copy + Default, const N: usize>(
     Some(out)
 }
 
-/// `"auto"` as `None`, or what `read` reads.
+/// Reads `"auto"` as `None`, and any other value by `read`.
 fn auto<T>(value: &Value, read: impl Fn(&Value) -> Option<T>) -> Option<Option<T>> {
     match value.as_str() {
         Some("auto") => Some(None),
@@ -115,19 +152,11 @@ fn auto<T>(value: &Value, read: impl Fn(&Value) -> Option<T>) -> Option<Option<T
     }
 }
 
-fn auto_value(value: Option<Value>) -> Value {
-    value.unwrap_or_else(|| Value::String("auto".into()))
+fn auto_value<T: Into<Value>>(value: Option<T>) -> Value {
+    value.map_or_else(|| "auto".into(), Into::into)
 }
 
-fn integer(n: u32) -> Value {
-    Value::Integer(n.into())
-}
-
-fn triple(v: &DVec3) -> Value {
-    Value::Array(v.to_array().map(Value::Float).to_vec())
-}
-
-/// How a number in a sentence reads best.
+/// A number in a sentence. Very small and very large ones get an exponent.
 fn plain(x: f64) -> String {
     if x == 0.0 || (1e-3..1e6).contains(&x.abs()) {
         format!("{x}")
@@ -145,7 +174,7 @@ pub struct Number<'a>(pub &'a mut f64, pub f64, pub f64);
 
 impl Slot for Number<'_> {
     fn get(&self) -> Value {
-        Value::Float(*self.0)
+        (*self.0).into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         *self.0 = number_in(value, self.1, self.2)?;
@@ -161,7 +190,7 @@ pub struct Count<'a>(pub &'a mut u32, pub u32, pub u32);
 
 impl Slot for Count<'_> {
     fn get(&self) -> Value {
-        integer(*self.0)
+        (*self.0).into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         *self.0 = count_in(value, self.1, self.2)?;
@@ -172,12 +201,12 @@ impl Slot for Count<'_> {
     }
 }
 
-/// `"auto"`, kept as `None`, or what [`Count`] takes.
+/// A whole number in a closed range, or `"auto"`, which is stored as `None`.
 pub struct AutoCount<'a>(pub &'a mut Option<u32>, pub u32, pub u32);
 
 impl Slot for AutoCount<'_> {
     fn get(&self) -> Value {
-        auto_value(self.0.map(integer))
+        auto_value(*self.0)
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         *self.0 = auto(value, |v| count_in(v, self.1, self.2))?;
@@ -188,12 +217,12 @@ impl Slot for AutoCount<'_> {
     }
 }
 
-/// `"auto"`, kept as `None`, or what [`Number`] takes.
+/// A number in a closed range, or `"auto"`, which is stored as `None`.
 pub struct AutoNumber<'a>(pub &'a mut Option<f64>, pub f64, pub f64);
 
 impl Slot for AutoNumber<'_> {
     fn get(&self) -> Value {
-        auto_value(self.0.map(Value::Float))
+        auto_value(*self.0)
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         *self.0 = auto(value, |v| number_in(v, self.1, self.2))?;
@@ -209,7 +238,7 @@ pub struct Switch<'a>(pub &'a mut bool);
 
 impl Slot for Switch<'_> {
     fn get(&self) -> Value {
-        Value::Boolean(*self.0)
+        (*self.0).into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         *self.0 = value.as_bool()?;
@@ -225,7 +254,7 @@ pub struct Triple<'a>(pub &'a mut DVec3, pub f64, pub f64);
 
 impl Slot for Triple<'_> {
     fn get(&self) -> Value {
-        triple(self.0)
+        self.0.to_array().to_vec().into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         *self.0 = array(value, |v| number_in(v, self.1, self.2))?.into();
@@ -237,7 +266,8 @@ impl Slot for Triple<'_> {
     }
 }
 
-/// A list of numbers or of triples: how many, and each number in a closed range.
+/// A list of numbers or of triples. The range limits the length of the list, the two numbers
+/// limit each number in it.
 pub struct List<'a, T>(
     pub &'a mut Vec<T>,
     pub std::ops::RangeInclusive<usize>,
@@ -246,7 +276,7 @@ pub struct List<'a, T>(
 );
 
 impl<T> List<'_, T> {
-    /// As many values as the list takes, each read alike.
+    /// Reads all values of a list whose length fits.
     fn all(&self, value: &Value, read: impl Fn(&Value) -> Option<T>) -> Option<Vec<T>> {
         let list = value.as_array().filter(|a| self.1.contains(&a.len()))?;
         list.iter().map(read).collect()
@@ -259,7 +289,7 @@ impl<T> List<'_, T> {
 
 impl Slot for List<'_, f64> {
     fn get(&self) -> Value {
-        Value::Array(self.0.iter().map(|x| Value::Float(*x)).collect())
+        self.0.clone().into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         *self.0 = self.all(value, |v| number_in(v, self.2, self.3))?;
@@ -272,7 +302,8 @@ impl Slot for List<'_, f64> {
 
 impl Slot for List<'_, DVec3> {
     fn get(&self) -> Value {
-        Value::Array(self.0.iter().map(triple).collect())
+        let triples = self.0.iter().map(|v| v.to_array().to_vec());
+        triples.collect::<Vec<_>>().into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         let one = |v: &Value| Some(array(v, |x| number_in(x, self.2, self.3))?.into());
@@ -286,12 +317,12 @@ impl Slot for List<'_, DVec3> {
     }
 }
 
-/// Image width and height in pixels, each from 1.
+/// Width and height of an image in pixels, each from 1 to a limit.
 pub struct Size<'a>(pub &'a mut [u32; 2], pub u32);
 
 impl Slot for Size<'_> {
     fn get(&self) -> Value {
-        Value::Array(self.0.map(integer).to_vec())
+        self.0.to_vec().into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         Counts(self.0, 1, self.1).put(value)
@@ -306,7 +337,7 @@ pub struct Counts<'a>(pub &'a mut [u32; 2], pub u32, pub u32);
 
 impl Slot for Counts<'_> {
     fn get(&self) -> Value {
-        Value::Array(self.0.map(integer).to_vec())
+        self.0.to_vec().into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         *self.0 = array(value, |v| count_in(v, self.1, self.2))?;
@@ -318,13 +349,13 @@ impl Slot for Counts<'_> {
     }
 }
 
-/// One word of a few.
+/// One word of a list. Each word stands for a value.
 pub struct Word<'a, T: 'static>(pub &'a mut T, pub &'static [(&'static str, T)]);
 
 impl<T: Copy + PartialEq> Slot for Word<'_, T> {
     fn get(&self) -> Value {
         let word = self.1.iter().find(|(_, v)| v == self.0);
-        Value::String(word.map_or("", |(w, _)| w).into())
+        word.map_or("", |(w, _)| w).into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         let mut words = self.1.iter();
@@ -337,12 +368,12 @@ impl<T: Copy + PartialEq> Slot for Word<'_, T> {
     }
 }
 
-/// Free text on one line.
+/// One line of text.
 pub struct Text<'a>(pub &'a mut String);
 
 impl Slot for Text<'_> {
     fn get(&self) -> Value {
-        Value::String(self.0.clone())
+        self.0.clone().into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         let fits = |t: &&str| t.len() <= 200 && !t.contains(char::is_control);

@@ -1,4 +1,11 @@
-//! What all other rooms stand on: the keys of settings, WGSL modules, rays and cones.
+//! The ground that all other rooms stand on.
+//!
+//! - [`key`]: the keys of presets
+//! - [`shader`]: WGSL programs joined from files
+//! - [`view`]: the camera's rays and cones
+//! - [`cone`]: how far an empty ball carries a cone
+//! - [`work`]: what a pixel is, and what it cost
+//! - [`srgb`]: linear colours to and from sRGB
 
 pub mod cone;
 pub mod key;

@@ -1,11 +1,11 @@
-//! WGSL composed by joining files.
+//! WGSL programs joined from files.
 //!
-//! A [`Module`] is one file of `wgsl/` with the values of its override constants; a
-//! [`Program`] is a list of modules and an entry point. WGSL lets a name be used
-//! before it is declared, so joining is concatenation: no preprocessor, no
-//! templates, no order to keep. A feature that a scene lacks is a module that is not
-//! joined, or a stand-in with the same names.
+//! A [`Module`] is one file of `wgsl/` with the values of its override constants. A
+//! [`Program`] is a list of modules with an entry point. WGSL allows a name to be used before
+//! its declaration, so the files are simply concatenated, in any order. Where a scene lacks
+//! a feature, a stand-in with the same functions is joined instead.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use thiserror::Error;
@@ -14,7 +14,7 @@ use wgpu::naga;
 /// One WGSL file and the values of the override constants that it declares.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Module {
-    /// Path of the file, relative to the repository's root.
+    /// Path of the file from the root of the repository.
     pub path: &'static str,
     /// Text of the file.
     pub source: &'static str,
@@ -22,7 +22,7 @@ pub struct Module {
     pub constants: Vec<(&'static str, f64)>,
 }
 
-/// Makes a [`Module`] of a file below `wgsl/`, its text compiled in.
+/// Makes a [`Module`] from a file in `wgsl/`. The text is compiled in.
 #[macro_export]
 macro_rules! wgsl {
     ($path:literal $(, $name:literal = $value:expr)* $(,)?) => {
@@ -34,22 +34,22 @@ macro_rules! wgsl {
     };
 }
 
-/// Joined modules and the entry point that is run.
+/// Joined modules with an entry point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
-    /// Name of the compute entry point, which is also the program's name.
+    /// Name of the compute entry point, and of the program.
     pub entry: &'static str,
     /// The joined modules, in order.
     pub modules: Vec<Module>,
 }
 
-/// What can be wrong with a program's text.
+/// What can be wrong with a program.
 #[derive(Debug, Error)]
 pub enum ShaderError {
-    /// The text does not parse, or does not validate.
+    /// The text does not parse or does not validate.
     #[error("{path}:{line}: {message} (program `{entry}`)")]
     Text {
-        /// The file that the error is in.
+        /// The file with the error.
         path: String,
         /// Its line, from 1.
         line: usize,
@@ -76,7 +76,7 @@ impl Program {
         Self { entry, modules }
     }
 
-    /// The joined text, every module ending its last line.
+    /// The joined text. Each module ends with a line break.
     pub fn source(&self) -> String {
         let mut text = String::new();
         for module in &self.modules {
@@ -90,15 +90,12 @@ impl Program {
 
     /// All override constants with their values.
     pub fn constants(&self) -> Vec<(&'static str, f64)> {
-        let all = self
-            .modules
-            .iter()
-            .flat_map(|m| m.constants.iter().copied());
-        all.collect()
+        let all = self.modules.iter().flat_map(|m| &m.constants);
+        all.copied().collect()
     }
 
-    /// The file and the line in it that a line of the joined text comes from, both
-    /// lines counted from 1.
+    /// The file and the line in it that a line of the joined text comes from. Lines count
+    /// from 1.
     pub fn locate(&self, line: usize) -> (&'static str, usize) {
         let mut left = line.max(1);
         for module in &self.modules {
@@ -111,8 +108,8 @@ impl Program {
         ("end of program", left)
     }
 
-    /// Parses and validates the joined text, and checks that the constants given are
-    /// the constants declared.
+    /// Parses and validates the joined text, and checks that exactly the declared constants
+    /// have values.
     pub fn validate(
         &self,
         capabilities: naga::valid::Capabilities,
@@ -125,7 +122,7 @@ impl Program {
         let mut validator =
             naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
         let info = validator.validate(&module).map_err(|e| {
-            // The first span is the whole function's; the shortest is the fault's.
+            // The first span is the whole function, the shortest one is the fault.
             let spans = e.spans().filter(|(span, _)| span.is_defined());
             let fault = spans.min_by_key(|(s, _)| s.to_range().map_or(usize::MAX, |r| r.len()));
             let line = fault.map_or(1, |(s, _)| s.location(&source).line_number as usize);
@@ -148,32 +145,22 @@ impl Program {
     }
 
     fn check_constants(&self, module: &naga::Module) -> Result<(), ShaderError> {
-        let given = self.constants();
-        let declared: Vec<&str> = module
-            .overrides
-            .iter()
-            .filter_map(|(_, o)| o.name.as_deref())
-            .collect();
-        let fault = |name: &str, fault| ShaderError::Constant {
-            entry: self.entry,
-            name: name.to_string(),
-            fault,
-        };
-        for name in &declared {
-            if !given.iter().any(|(n, _)| n == name) {
-                return Err(fault(name, "missing"));
-            }
-        }
-        for (name, _) in &given {
-            if !declared.contains(name) {
-                return Err(fault(name, "unknown"));
-            }
-        }
-        Ok(())
+        let declared = module.overrides.iter();
+        let declared: BTreeSet<_> = declared.filter_map(|(_, o)| o.name.as_deref()).collect();
+        let given: BTreeSet<_> = self.constants().into_iter().map(|(name, _)| name).collect();
+        let missing = declared.difference(&given).map(|name| (name, "missing"));
+        let unknown = given.difference(&declared).map(|name| (name, "unknown"));
+        let mut faults = missing.chain(unknown);
+        faults.next().map_or(Ok(()), |(name, fault)| {
+            Err(ShaderError::Constant {
+                entry: self.entry,
+                name: (*name).to_string(),
+                fault,
+            })
+        })
     }
 
-    /// The same program with another set of number types joined in the place of
-    /// `wgsl/base/real.wgsl`; programs without it are returned as they are.
+    /// The same program with f64 in the place of f32 wherever it uses `wgsl/base/real.wgsl`.
     pub fn in_f64(&self) -> Self {
         let mut program = self.clone();
         for module in &mut program.modules {

@@ -1,4 +1,4 @@
-//! Colours between light and what screens are told (IEC 61966-2-1).
+//! The sRGB transfer function (IEC 61966-2-1).
 
 use glam::DVec3;
 

@@ -1,9 +1,11 @@
 //! The camera: the ray of a pixel and the cone of a cell (docs/method.md, 1).
 //!
-//! World coordinates are right-handed. Distances are radial: t is measured along each
-//! ray's own unit direction, so that a number proven for a cell holds for every ray
-//! under it. Beams start at the eye's offset, zero for a pinhole; only the scene adds
-//! the eye itself. Twin: `wgsl/base/view.wgsl`.
+//! World coordinates are right-handed. A distance t is measured along each ray's own unit
+//! direction, so a distance proven for a cell holds for every ray in it. A cell's *chord* k is
+//! the largest distance between the cone's unit axis and the unit direction of a ray in it.
+//! The *footprint* at a distance is half a pixel's width there.
+//! Points of a beam are relative to the eye; only scenes add the eye.
+//! Twin: `wgsl/base/view.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -17,7 +19,7 @@ use crate::wgsl;
 pub struct ViewUniform {
     /// Unit vector to the right of the image.
     pub right: Vec3,
-    /// Width of a pixel in the image plane at distance 1.
+    /// A pixel's width in the image plane at distance 1.
     pub pixel: f32,
     /// Unit vector to the top of the image.
     pub up: Vec3,
@@ -27,18 +29,18 @@ pub struct ViewUniform {
     pub forward: Vec3,
     /// Unused.
     pub pad: f32,
-    /// Pixels of the full image.
+    /// Width and height of the full image in pixels.
     pub size: [u32; 2],
     /// First pixel of the block.
     pub block_origin: [u32; 2],
-    /// Pixels of the block.
+    /// Width and height of the block in pixels.
     pub block_size: [u32; 2],
     /// Unused.
     pub pad2: [u32; 2],
 }
 
-/// Two unit vectors in f32 are each off by up to about 1.5 * 2^-24 along a component;
-/// their chord by less than this.
+/// More than the rounding error of a chord in f32: two unit vectors are each off by up to
+/// about 1.5 * 2^-24 along a component.
 pub const CHORD_SLACK: f64 = 4e-7;
 
 /// The WGSL module of the view.
@@ -46,11 +48,10 @@ pub fn module() -> Module {
     wgsl!("base/view.wgsl")
 }
 
-/// A bundle of rays: at distance t they lie within `r0 + k t` of the axis, and the
-/// pixel that a ray stands for has the half width `grain0 + grain t`.
+/// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint
+/// is `grain0 + grain t`.
 ///
-/// A pinhole has `r0 = 0`; a positive `r0` lets the rays start apart, as orthographic
-/// and stereo views do.
+/// A pinhole camera has `r0 = 0`. A positive `r0` serves orthographic and stereo views.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
     /// Start, relative to the eye.
@@ -59,27 +60,38 @@ pub struct Beam {
     pub axis: DVec3,
     /// Radius at the start.
     pub r0: f64,
-    /// Largest chord between the axis and the direction of a ray, 0 to 2.
+    /// Chord, 0 to 2.
     pub k: f64,
-    /// Half width of a pixel at distance 0.
+    /// Footprint at distance 0.
     pub grain0: f64,
-    /// Growth of that half width with distance.
+    /// Growth of the footprint with distance.
     pub grain: f64,
 }
 
 impl Beam {
+    /// A beam from the eye of a pinhole camera.
+    fn pinhole(axis: DVec3, k: f64, grain: f64) -> Self {
+        Self {
+            origin: DVec3::ZERO,
+            axis,
+            r0: 0.0,
+            k,
+            grain0: 0.0,
+            grain,
+        }
+    }
     /// The point at distance t, relative to the eye.
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.axis
     }
 }
 
-/// Half a pixel's width at distance t, seen along the beam.
+/// Half a pixel's width at distance t along the beam.
 pub fn footprint(beam: &Beam, t: f64) -> f64 {
     beam.grain0 + beam.grain * t
 }
 
-/// A camera fitted to an image of a size.
+/// A camera over an image of a size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Position.
@@ -87,14 +99,14 @@ pub struct View {
     right: DVec3,
     up: DVec3,
     forward: DVec3,
-    /// Width of a pixel in the image plane at distance 1.
+    /// A pixel's width in the image plane at distance 1.
     pub pixel: f64,
-    /// Pixels of the full image.
+    /// Width and height of the full image in pixels.
     pub size: [u32; 2],
 }
 
 impl View {
-    /// A view from `eye` to `target`, `fov` degrees high; `up` lies not along it.
+    /// A view from `eye` to `target` that is `fov` degrees high. `up` must not be along it.
     pub fn new(eye: DVec3, target: DVec3, up: DVec3, fov: f64, size: [u32; 2]) -> Self {
         let forward = (target - eye).normalize();
         let right = forward.cross(up.normalize()).normalize();
@@ -108,7 +120,7 @@ impl View {
         }
     }
 
-    /// The values that WGSL gets, for one block of the image.
+    /// The values of the WGSL struct, for one block of the image.
     pub fn uniform(&self, origin: [u32; 2], block: [u32; 2]) -> ViewUniform {
         ViewUniform {
             right: self.right.as_vec3(),
@@ -125,8 +137,8 @@ impl View {
         }
     }
 
-    /// Un-normalised direction through a point of the image, in pixels from its
-    /// upper left corner.
+    /// The direction through a point of the image, given in pixels from the upper left
+    /// corner. Its length is not 1.
     pub fn view_direction(&self, x: f64, y: f64) -> DVec3 {
         let sx = (x - 0.5 * f64::from(self.size[0])) * self.pixel;
         let sy = (0.5 * f64::from(self.size[1]) - y) * self.pixel;
@@ -137,20 +149,13 @@ impl View {
     pub fn view_ray(&self, pixel: [u32; 2]) -> Beam {
         let u = self.view_direction(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
         let n = u.length();
-        Beam {
-            origin: DVec3::ZERO,
-            axis: u / n,
-            r0: 0.0,
-            k: 0.0,
-            grain0: 0.0,
-            grain: 0.5 * self.pixel / n,
-        }
+        Beam::pinhole(u / n, 0.0, 0.5 * self.pixel / n)
     }
 
-    /// The cone over the centres of a cell's pixels, the cell cut by the image.
+    /// The cone over the pixel centres of a cell. The image's border cuts the cell.
     ///
-    /// `k = min(2, 2|h| / (2|u| - |h|))` with h the half diagonal and u the
-    /// un-normalised axis; 2 where the cell is wider than that (docs/method.md, 1).
+    /// `k = min(2, 2|h| / (2|u| - |h|))`, where h is half the diagonal and u the axis in the
+    /// image plane, and 2 for a cell wider than that (docs/method.md, 1).
     pub fn view_cone(&self, cell: [u32; 2], divisor: u32) -> Beam {
         let low = cell.map(|c| c * divisor);
         let high = [0, 1].map(|i| (low[i] + divisor).min(self.size[i]));
@@ -164,13 +169,6 @@ impl View {
         } else {
             2.0
         };
-        Beam {
-            origin: DVec3::ZERO,
-            axis: u / n,
-            r0: 0.0,
-            k,
-            grain0: 0.0,
-            grain: 0.5 * self.pixel / (n - h).max(1.0),
-        }
+        Beam::pinhole(u / n, k, 0.5 * self.pixel / (n - h).max(1.0))
     }
 }

@@ -13,7 +13,7 @@ pub enum Step {
     Spent,
 }
 
-/// What a pixel is.
+/// What a pixel is. The numbers are those of the shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum State {
@@ -21,27 +21,23 @@ pub enum State {
     Sky = 0,
     /// The ray met the surface.
     Hit = 1,
-    /// A limit was reached before either; never counted as a hit.
+    /// The ray reached a limit before either.
     Unconverged = 2,
 }
 
 impl State {
-    /// The state of a number that an executor wrote, if it is one.
+    /// The state of a number that an executor wrote; `None` for any other number.
     pub fn from_code(code: u32) -> Option<Self> {
-        match code {
-            0 => Some(Self::Sky),
-            1 => Some(Self::Hit),
-            2 => Some(Self::Unconverged),
-            _ => None,
-        }
+        let all = [Self::Sky, Self::Hit, Self::Unconverged];
+        all.into_iter().find(|state| *state as u32 == code)
     }
 }
 
 /// Work of one cell or pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
-    /// Calls of the scene's estimate.
+    /// Evaluations of the distance estimate, or lookups in a heightfield.
     pub evaluations: u32,
-    /// Fold iterations inside them.
+    /// Iterations of the formula in these evaluations.
     pub iterations: u32,
 }

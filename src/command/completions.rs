@@ -1,25 +1,77 @@
-//! `conemarch completions SHELL`
+//! `conemarch completions SHELL`, and the answers to the scripts that it prints.
+//!
+//! A script asks this program for what may come next, so that it completes the presets and
+//! keys of the program that is installed.
+
+use std::ffi::OsStr;
 
 use anyhow::Result;
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Command};
-use clap_complete::Shell;
+use clap_complete::engine::{
+    ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter,
+};
+use clap_complete::env::{CompleteEnv, Shells};
 
 use crate::command::print::print;
+use crate::preset::{BUILTIN, keys};
+
+/// The variable by which a script asks.
+const VARIABLE: &str = "CONEMARCH_COMPLETE";
 
 /// What `completions` takes.
 #[derive(Args, Debug)]
 pub struct Completions {
     /// The shell to complete in
-    #[arg(value_name = "SHELL")]
-    shell: Shell,
+    #[arg(value_name = "SHELL", value_parser = PossibleValuesParser::new(Shells::builtins().names()))]
+    shell: String,
 }
 
-/// Prints the completion script of a shell for a command line.
+/// Prints the completion script of a shell.
 ///
 /// # Errors
 /// Standard output cannot be written.
-pub fn run(args: &Completions, line: &mut Command) -> Result<()> {
+pub fn run(args: &Completions) -> Result<()> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, line, "conemarch", &mut script);
+    if let Some(shell) = Shells::builtins().completer(&args.shell) {
+        let name = "conemarch";
+        shell.write_registration(VARIABLE, name, name, name, &mut script)?;
+    }
     print(&script)
+}
+
+/// Answers a completion script and ends the process, if one asks.
+pub fn answer(line: fn() -> Command) {
+    CompleteEnv::with_factory(line).var(VARIABLE).complete();
+}
+
+/// Completes the argument PRESET: built-in names and files.
+pub fn presets() -> ArgValueCompleter {
+    ArgValueCompleter::new(|current: &OsStr| {
+        let names = BUILTIN
+            .iter()
+            .map(|(name, _)| CompletionCandidate::new(name));
+        let mut found = starting_with(current, names);
+        found.extend(PathCompleter::any().complete(current));
+        found
+    })
+}
+
+/// Completes the keys of `--set`.
+pub fn settings() -> ArgValueCompleter {
+    ArgValueCompleter::new(|current: &OsStr| {
+        let key = |(key, help): (String, &str)| {
+            CompletionCandidate::new(format!("{key}=")).help(Some(help.to_string().into()))
+        };
+        starting_with(current, keys().into_iter().map(key))
+    })
+}
+
+fn starting_with(
+    current: &OsStr,
+    all: impl Iterator<Item = CompletionCandidate>,
+) -> Vec<CompletionCandidate> {
+    let start = current.as_encoded_bytes();
+    all.filter(|c| c.get_value().as_encoded_bytes().starts_with(start))
+        .collect()
 }

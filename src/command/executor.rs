@@ -1,4 +1,4 @@
-//! One executor out of two: a renderer on a device, or the CPU.
+//! The executor that `--device` chooses: a device, or the CPU.
 
 use crate::cpu;
 use crate::gpu::RenderError;
@@ -20,7 +20,7 @@ pub enum Executor {
 /// Reads `--device`.
 ///
 /// # Errors
-/// There is nothing to read.
+/// The text is blank.
 pub fn device(text: &str) -> Result<Choice, String> {
     Choice::read(text).ok_or_else(|| {
         "must be auto, gpu, software, cpu, an index or a part of a name; `conemarch devices` lists them".into()
@@ -28,29 +28,28 @@ pub fn device(text: &str) -> Result<Choice, String> {
 }
 
 impl Executor {
-    /// Whether a choice means anything here, nothing being opened.
+    /// Checks that a choice matches an adapter of this machine. Nothing is opened.
     ///
     /// # Errors
-    /// It matches nothing.
+    /// No adapter matches.
     pub fn check(choice: &Choice) -> Result<(), DeviceError> {
-        // These two always mean something, and ask no driver.
+        // These two always match, and no driver is asked.
         if matches!(choice, Choice::Auto | Choice::Cpu) {
             return Ok(());
         }
         Adapters::find().choose(choice).map(|_| ())
     }
 
-    /// Opens what a choice means, and says in a line who it is and why.
+    /// Opens what a choice matches. The text names it and says why it was chosen.
     ///
     /// # Errors
-    /// The choice matches nothing, or the adapter does not open. `auto` has the CPU
-    /// executor left for both.
+    /// No adapter matches, or it does not open. `auto` then takes the CPU executor.
     pub fn open(choice: &Choice) -> Result<(Self, String), DeviceError> {
         Self::open_with(choice, STORAGE_BUFFERS)
     }
 
-    /// As [`Executor::open`], for programs that bind up to so many storage buffers: those of
-    /// cone maps need fewer than those of pictures.
+    /// As [`Executor::open`], for programs that bind up to so many storage buffers: cone maps
+    /// need fewer than pictures.
     ///
     /// # Errors
     /// As [`Executor::open`].
@@ -99,8 +98,7 @@ impl Executor {
         }
     }
 
-    /// Whether nothing but the clock tells the time: on the CPU, and on devices that have
-    /// no timestamps.
+    /// Whether only the clock tells the time: on the CPU, and on devices without timestamps.
     pub fn is_untimed(&self) -> bool {
         match self {
             Self::Gpu(renderer) => renderer.device.tick_ns.is_none(),
@@ -108,8 +106,8 @@ impl Executor {
         }
     }
 
-    /// A sentence where the numbers of the executor cannot hold what a plan asks for. The
-    /// CPU has f64, and nothing to be warned of.
+    /// A warning if the executor's numbers are not precise enough for a plan. The f64 of the
+    /// CPU always are.
     pub fn precision_warning(&self, plan: &Plan) -> Option<String> {
         match self {
             Self::Gpu(_) => plan.precision_warning(),

@@ -1,23 +1,28 @@
-//! From an error to one sentence and an exit code.
+//! Turns an error into one sentence and an exit code.
 
 use clap::error::ErrorKind;
 use thiserror::Error;
 
+use crate::command::interrupt;
 use crate::gpu::render::RenderError;
 use crate::preset::PresetError;
 
-/// The command line asks for something that cannot be meant.
+/// The command line is wrong.
 #[derive(Debug, Error)]
 #[error("{0}")]
 pub struct Usage(pub String);
 
-/// A wrong use, as an error of a command.
+/// Wrong usage as an error of a command.
 pub fn usage(why: impl Into<String>) -> anyhow::Error {
     Usage(why.into()).into()
 }
 
-/// Exit code of an error: 2 for wrong usage, 1 for everything else.
+/// Exit code of an error: that of the signal that ended the work, 2 for wrong usage, 1 for
+/// everything else.
 pub fn code(error: &anyhow::Error) -> u8 {
+    if is_cancelled(error) && interrupt::asked() {
+        return interrupt::code();
+    }
     let wrong = error.is::<Usage>()
         || error
             .downcast_ref::<PresetError>()
@@ -25,15 +30,19 @@ pub fn code(error: &anyhow::Error) -> u8 {
     if wrong { 2 } else { 1 }
 }
 
-/// What to tell of an error: one line.
-pub fn sentence(error: &anyhow::Error) -> String {
-    if let Some(RenderError::Cancelled) = error.downcast_ref() {
-        return CANCELLED.into();
-    }
-    one_line(&format!("{error:#}"))
+fn is_cancelled(error: &anyhow::Error) -> bool {
+    matches!(error.downcast_ref(), Some(RenderError::Cancelled))
 }
 
-/// What an interrupt ends with.
+/// An error as one line.
+pub fn sentence(error: &anyhow::Error) -> String {
+    match is_cancelled(error) {
+        true => CANCELLED.into(),
+        false => one_line(&format!("{error:#}")),
+    }
+}
+
+/// The sentence after an interrupt.
 pub const CANCELLED: &str = "cancelled; nothing was written";
 
 fn one_line(text: &str) -> String {
@@ -41,8 +50,17 @@ fn one_line(text: &str) -> String {
     words.join(" ")
 }
 
-/// A parser's error of several paragraphs as one line, without the usage block.
+/// An error of the parser, which has several paragraphs, as one line without the usage block.
 pub fn flatten(error: &clap::Error) -> String {
+    if error.kind() == ErrorKind::InvalidUtf8 {
+        // The parser does not say which; paths are no reason for it.
+        let wrong = std::env::args_os().find(|a| a.to_str().is_none());
+        let wrong = wrong.unwrap_or_default();
+        return format!(
+            "the argument `{}` is not UTF-8; only the names of files may be something else",
+            wrong.to_string_lossy()
+        );
+    }
     let text = error.to_string();
     let text = text.strip_prefix("error: ").unwrap_or(&text);
     let paragraphs = text.split("\n\n").map(one_line);

@@ -1,48 +1,76 @@
-//! Ctrl-C: the render stops at its next opportunity and leaves no file.
+//! Ctrl-C and other requests to end: the work stops as soon as it can and leaves no file.
 
 use std::io::{self, IsTerminal, Write};
 use std::process::exit;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
 
 use crate::command::failure::CANCELLED;
 use crate::command::print::say;
 use crate::picture;
 
-static ASKED: AtomicBool = AtomicBool::new(false);
+/// The signals that ask to end. A closed terminal sends a hang-up.
+#[cfg(unix)]
+const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
+#[cfg(not(unix))]
+const SIGNALS: [i32; 2] = [SIGINT, SIGTERM];
 
-/// How long a render has to notice: a single pass may take much longer, and nobody
-/// waits for that.
+/// The exit code that a signal asked for; 0 before.
+static ASKED: AtomicUsize = AtomicUsize::new(0);
+
+/// How long the work has to notice: a single pass may take much longer, and nobody waits
+/// for that.
 const PATIENCE: Duration = Duration::from_millis(700);
+/// Time between two looks for a signal: too short to be felt.
+const POLL: Duration = Duration::from_millis(20);
 
-/// From now on an interrupt is noted. A second one ends the process at once.
+/// From now on a signal is noted. A second one ends the process at once.
 pub fn listen() {
-    // Without a handler an interrupt still ends the process; it only leaves the
-    // temporary file. That is no reason not to render.
-    let _ = ctrlc::set_handler(|| {
-        if ASKED.swap(true, Ordering::SeqCst) {
-            end();
+    let signal = Arc::new(AtomicUsize::new(0));
+    for number in SIGNALS {
+        // As shells count: 130 after SIGINT, 143 after SIGTERM.
+        let code = 128 + number.unsigned_abs() as usize;
+        // Without a handler a signal still ends the process; it only leaves the temporary
+        // file. That is no reason not to work.
+        let _ = flag::register_usize(number, signal.clone(), code);
+    }
+    thread::spawn(move || {
+        let mut first: Option<Instant> = None;
+        loop {
+            thread::sleep(POLL);
+            let code = signal.swap(0, Ordering::SeqCst);
+            if code != 0 && first.is_none() {
+                ASKED.store(code, Ordering::SeqCst);
+                first = Some(Instant::now());
+            } else if code != 0 || first.is_some_and(|at| at.elapsed() > PATIENCE) {
+                end();
+            }
         }
-        thread::spawn(|| {
-            thread::sleep(PATIENCE);
-            end();
-        });
     });
 }
 
 /// Whether to stop.
 pub fn asked() -> bool {
-    ASKED.load(Ordering::SeqCst)
+    code() != 0
+}
+
+/// The exit code that the signal asks for; 0 where none came.
+pub fn code() -> u8 {
+    ASKED.load(Ordering::SeqCst) as u8
 }
 
 /// Ends the process without a trace of files.
 fn end() -> ! {
     let _kept = picture::clear();
     if io::stderr().is_terminal() {
-        // The progress bar's line, which nobody else will clear now.
+        // The line of the progress bar, which nobody else will clear now.
         let _ = write!(io::stderr(), "\r\x1b[2K");
     }
     say(&format!("error: {CANCELLED}"));
-    exit(1);
+    exit(code().into());
 }

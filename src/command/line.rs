@@ -1,4 +1,4 @@
-//! The command line as a whole: verbs, exit codes, and errors as one sentence.
+//! The command line as a whole: its verbs, its exit codes, and every error as one sentence.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
 use std::process::ExitCode;
@@ -13,7 +13,7 @@ use crate::command::{bench, completions, conemap, devices, failure, presets, ren
 
 /// Renders distance-estimated fractals by multi-pass cone marching.
 ///
-/// Exit codes: 0 done, 1 failed, 2 wrong usage.
+/// Exit codes: 0 done, 1 failed, 2 wrong usage, 130 and 143 after SIGINT and SIGTERM.
 #[derive(Debug, Parser)]
 #[command(name = "conemarch", version, about)]
 pub struct Line {
@@ -23,7 +23,7 @@ pub struct Line {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Render a preset to a PNG or EXR file
+    /// Render a preset to a picture
     Render(Box<render::Render>),
     /// Measure run time against error
     #[command(subcommand)]
@@ -39,17 +39,18 @@ enum Verb {
     Completions(completions::Completions),
 }
 
-/// What a panic said, and where.
+/// The message of a panic and its place.
 static PANIC: Mutex<Option<String>> = Mutex::new(None);
 
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
+    completions::answer(Line::command);
     let line = match Line::try_parse() {
         Ok(line) => line,
         Err(e) => return refuse(&e),
     };
-    // A panic is a fault of this program, and still no reason for a backtrace or for
-    // a temporary file that stays.
+    // A panic is a fault of this program, but no reason for a backtrace or a temporary file
+    // that stays.
     set_hook(Box::new(|info| {
         if let Ok(mut said) = PANIC.lock() {
             let text = info.to_string();
@@ -77,11 +78,11 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Help and version, or what is wrong with the arguments.
+/// Prints help or version, or says what is wrong with the arguments.
 fn refuse(error: &clap::Error) -> ExitCode {
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-            // Help that nobody reads on is no failure.
+            // A reader that stops reading the help is no failure.
             let _ = error.print();
             ExitCode::SUCCESS
         }
@@ -104,7 +105,7 @@ impl Line {
             Verb::ConeMap(verb) => conemap::verb::run(verb),
             Verb::Presets(args) => presets::run(args),
             Verb::Devices => devices::run(),
-            Verb::Completions(args) => completions::run(args, &mut Self::command()),
+            Verb::Completions(args) => completions::run(args),
         }
     }
 }

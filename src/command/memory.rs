@@ -1,16 +1,18 @@
-//! Whether a picture fits into memory, asked before it is begun.
+//! Checks before the work begins that a picture fits into memory.
 
 use std::fs;
+
+use indicatif::BinaryBytes;
 
 use crate::heightfield::assets::Preparation;
 use crate::plan::Plan;
 use crate::scene::Assets;
 
-/// Assumed where the system does not tell.
+/// Assumed if the system does not tell.
 const UNKNOWN: u64 = 16 << 30;
 
-/// Bytes that could be had now: what the system says is available, within the limit
-/// of the control group, where there is one.
+/// Bytes that are available now: what the system says, within the limit of the control group
+/// if there is one.
 pub fn available() -> u64 {
     let free = fs::read_to_string("/proc/meminfo")
         .ok()
@@ -33,36 +35,55 @@ fn meminfo(text: &str) -> Option<u64> {
     kib.checked_mul(1024)
 }
 
-/// A sentence where a picture does not fit, with a size of the same shape that does.
+/// Share of the available memory that an advised size may take: other programs may take some
+/// before it is tried.
+const ADVISED: f64 = 0.9;
+
+/// A sentence if a picture does not fit, with a size of the same shape that does.
 pub fn lacking([w, h]: [u32; 2], bytes_per_pixel: u64, available: u64) -> Option<String> {
-    let needed = u64::from(w) * u64::from(h) * bytes_per_pixel;
+    let pixels = u64::from(w) * u64::from(h);
+    let needed = pixels * bytes_per_pixel;
     if needed <= available {
         return None;
     }
-    let shrink = (available as f64 / needed as f64).sqrt();
-    let fit = |n: u32| ((f64::from(n) * shrink) as u32).max(1);
-    Some(format!(
-        "a picture of {w}x{h} needs about {needed} bytes of memory, and {available} are available; --size {}x{} would fit",
-        fit(w),
-        fit(h)
-    ))
+    let there_is = there_is(needed, available);
+    let fitting = (ADVISED * available as f64 / bytes_per_pixel as f64) as u64;
+    let advice = if fitting == 0 {
+        "free some memory".into()
+    } else {
+        let shrink = (fitting as f64 / pixels as f64).sqrt();
+        let side = |n: u32, most: u64| ((f64::from(n) * shrink) as u64).clamp(1, most);
+        // A side of one pixel cannot shrink further: the other one does.
+        let width = side(w, fitting);
+        format!("--size {width}x{} would fit", side(h, fitting / width))
+    };
+    Some(format!("a picture of {w}x{h} {there_is}; {advice}"))
 }
 
-/// Most memory that making a cone map takes at once, for each ratio: heights, maxima, the
-/// ratios, and the file encoded and read back, measured and rounded up.
+fn there_is(needed: u64, available: u64) -> String {
+    format!(
+        "needs about {} of memory, and {} are available",
+        BinaryBytes(needed),
+        BinaryBytes(available)
+    )
+}
+
+/// Most memory that making a cone map takes at once for each ratio: heights, maxima, the
+/// ratios, and the file encoded and read back; measured and rounded up.
 const BYTES_PER_RATIO: u64 = 64;
 
-/// A sentence where cone maps with so many ratios do not fit.
+/// A sentence if cone maps with so many ratios do not fit.
 pub fn lacking_maps(ratios: u64, available: u64) -> Option<String> {
     let needed = ratios.saturating_mul(BYTES_PER_RATIO);
     (needed > available).then(|| {
         format!(
-            "cone maps with {ratios} ratios need about {needed} bytes of memory, and {available} are available; scale the heights down, or cut them"
+            "making cone maps with {ratios} ratios {}; scale the heights down, or crop them",
+            there_is(needed, available)
         )
     })
 }
 
-/// A sentence where what a plan prepares does not fit.
+/// A sentence if the cone maps that a plan needs do not fit.
 pub fn lacking_for(plan: &Plan, assets: &Assets, available: u64) -> Option<String> {
     let ratios = |made: &Preparation| {
         let places: u64 = made.places.map(u64::from).iter().product();
@@ -81,14 +102,23 @@ mod tests {
     use crate::heightfield::tracer::TracerKind;
 
     #[test]
-    fn a_size_that_is_offered_fits() {
+    fn an_advised_size_fits_and_is_read_as_a_size() {
         assert_eq!(lacking([100, 100], 60, 600_000), None);
         let why = lacking([65_536, 65_536], 60, 1 << 30).unwrap_or_default();
-        assert!(why.contains("257698037760 bytes"), "{why}");
-        let offered = why.rsplit("--size ").next().unwrap_or_default();
-        let offered = offered.split(' ').next().unwrap_or_default();
-        let size = crate::command::size::read(offered);
-        assert!(size.is_ok_and(|s| lacking(s, 60, 1 << 30).is_none()));
+        assert!(why.contains("240.00 GiB of memory, and 1.00 GiB"), "{why}");
+        for size in [[65_536, 65_536], [65_536, 1], [2, 65_536], [9, 9]] {
+            for available in [60, 67, 600, 1201, 131_072, 1 << 20] {
+                let Some(why) = lacking(size, 60, available) else {
+                    continue;
+                };
+                let advised = why.rsplit("--size ").next().unwrap_or_default();
+                let advised = advised.split(' ').next().unwrap_or_default();
+                match crate::command::size::read(advised) {
+                    Ok(advised) => assert_eq!(lacking(advised, 60, available), None),
+                    Err(_) => assert!(available < 67 && why.ends_with("free some memory")),
+                }
+            }
+        }
     }
 
     #[test]
@@ -111,7 +141,7 @@ mod tests {
         let needed = 8192 * 8192 * 4 * BYTES_PER_RATIO;
         assert_eq!(lacking(&shape, needed), None);
         let why = lacking(&shape, needed - 1).unwrap_or_default();
-        assert!(why.contains(&format!("{needed} bytes of memory")), "{why}");
+        assert!(why.contains("16.00 GiB of memory, and 16.00 GiB"), "{why}");
         shape.tracing.tracer = TracerKind::MaxMip;
         assert_eq!(lacking(&shape, 0), None);
     }

@@ -1,34 +1,33 @@
-//! `conemarch presets [NAME]`
+//! `conemarch presets [PRESET]`
 
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
 
+use crate::command::completions::presets;
 use crate::command::print::print;
-use crate::preset::{BUILTIN, PresetError, builtin, nearest, read};
+use crate::preset::{BUILTIN, find, read};
 
 /// What `presets` takes.
 #[derive(Args, Debug)]
 pub struct Presets {
-    /// Print the TOML text of this preset
-    #[arg(value_name = "NAME")]
-    name: Option<String>,
+    /// Print the TOML text of this preset: a built-in one, or that of a .png that this
+    /// program wrote
+    #[arg(value_name = "PRESET", add = presets())]
+    preset: Option<PathBuf>,
 }
 
 /// Lists the built-in presets, or prints one.
+///
+/// # Errors
+/// The preset cannot be found or read, or standard output cannot be written.
 pub fn run(args: &Presets) -> Result<()> {
-    let Some(name) = &args.name else {
-        return print(list()?.as_bytes());
-    };
-    let text = builtin(name).ok_or_else(|| PresetError::Unknown {
-        name: name.clone(),
-        nearest: nearest(name, BUILTIN.iter().map(|(n, _)| *n))
-            .into_iter()
-            .map(str::to_string)
-            .collect(),
-    })?;
-    print(text.as_bytes())
+    match &args.preset {
+        Some(argument) => print(find(argument)?.text.as_bytes()),
+        None => print(list()?.as_bytes()),
+    }
 }
 
 /// One line for each preset: name, at least two blanks, title.

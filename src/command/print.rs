@@ -1,10 +1,10 @@
-//! Text on standard output, and words on standard error.
+//! Writes to standard output and standard error.
 
 use std::io::{self, ErrorKind, Write};
 
 use anyhow::{Context, Result, anyhow};
 
-/// Writes text for reading to standard output. A reader that has seen enough is no error.
+/// Writes text for people to standard output. A reader that stops early is no error.
 ///
 /// # Errors
 /// Standard output cannot be written.
@@ -15,10 +15,10 @@ pub fn print(bytes: &[u8]) -> Result<()> {
     }
 }
 
-/// Writes a result to standard output, which is of no use unless all of it arrives.
+/// Writes a result to standard output. It is useless unless all of it arrives.
 ///
 /// # Errors
-/// Standard output cannot be written, or its reader has gone before the end.
+/// Standard output cannot be written, or its reader stops before the end.
 pub fn deliver(bytes: &[u8]) -> Result<()> {
     match write(bytes) {
         Err(e) if e.kind() == ErrorKind::BrokenPipe => Err(anyhow!(
@@ -35,12 +35,12 @@ fn write(bytes: &[u8]) -> io::Result<()> {
     out.write_all(bytes).and_then(|()| out.flush())
 }
 
-/// Text on standard error, where standard output has something else to carry.
+/// Writes text to standard error: for tables while standard output carries a file.
 pub fn tell(text: &str) {
     let _ = write!(io::stderr(), "{text}");
 }
 
-/// A line on standard error. Nobody may be listening there; that stops nothing.
+/// Writes a line to standard error. If that fails, the work goes on.
 pub fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }

@@ -8,7 +8,9 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::command::interrupt;
 use crate::command::print::say;
+use crate::pass::progress;
 
 /// Work that ends sooner writes no line.
 const FIRST_LINE: Duration = Duration::from_secs(2);
@@ -22,6 +24,9 @@ const BAR_STEPS: f64 = 1000.0;
 pub struct Progress {
     what: String,
     start: Instant,
+    /// When the share was last 0.
+    round: Instant,
+    share: f64,
     /// `None` where standard error is no terminal.
     bar: Option<ProgressBar>,
     next_line: Duration,
@@ -42,14 +47,30 @@ impl Progress {
         Self {
             what: what.into(),
             start: Instant::now(),
+            round: Instant::now(),
+            share: 0.0,
             bar,
             next_line: FIRST_LINE,
+        }
+    }
+
+    /// What an executor calls while it renders: reports each pass, and stops at an interrupt.
+    pub fn watch(&mut self) -> impl FnMut(&progress::Progress) -> bool + '_ {
+        |now| {
+            self.report(now.done, &now.pass);
+            !interrupt::asked()
         }
     }
 
     /// Shows that a share of the work, 0..1, is done. `detail` says what is done now, like
     /// the name of a pass; it may be empty.
     pub fn report(&mut self, share: f64, detail: &str) {
+        // Some work is done again in finer steps. What the round before took says nothing
+        // about the time that is left.
+        if share < self.share {
+            self.round = Instant::now();
+        }
+        self.share = share;
         if let Some(bar) = &self.bar {
             bar.set_position((share * BAR_STEPS) as u64);
             bar.set_message(detail.to_string());
@@ -58,7 +79,7 @@ impl Progress {
         let elapsed = self.start.elapsed();
         if elapsed >= self.next_line {
             self.next_line = elapsed + BETWEEN_LINES;
-            say(&line(&self.what, share, detail, elapsed));
+            say(&line(&self.what, share, detail, self.round.elapsed()));
         }
     }
 }

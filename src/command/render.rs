@@ -1,28 +1,26 @@
 //! `conemarch render PRESET`
 
-use std::io::{Cursor, IsTerminal};
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::{Result, bail};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueHint};
-use indicatif::{ProgressBar, ProgressStyle};
+use clap::{Args, ValueHint, value_parser};
 
 use crate::command::executor::{Executor, device};
-use crate::command::failure::usage;
+use crate::command::output::{Format, default_name};
 use crate::command::print::{print, say};
-use crate::command::sink::{Parcel, Sink, apart, is_stdout, spared};
-use crate::command::stats::{Stats, shares, undecided};
-use crate::command::{interrupt, memory, size};
+use crate::command::progress::Progress;
+use crate::command::sink::{Parcel, Sink, apart, spared};
+use crate::command::stats::{Stats, summary};
+use crate::command::{completions, interrupt, memory, size};
 use crate::gpu::RenderError;
 use crate::gpu::device::Choice;
 use crate::measure::truth::{self, Cache};
 use crate::pass;
-use crate::pass::progress::Progress;
 use crate::picture::frame::Frame;
-use crate::picture::{BitDepth, Layer, Shades, write_exr, write_png};
-use crate::plan::{Extras, Pass, Plan};
+use crate::picture::frame::errors;
+use crate::picture::{BitDepth, Layer};
+use crate::plan::{Extras, Plan};
 use crate::preset::{self, Override, Preset};
 use crate::scene::Assets;
 
@@ -30,15 +28,20 @@ use crate::scene::Assets;
 #[derive(Args, Debug)]
 pub struct Render {
     /// A built-in preset, a .toml file, or a .png that this program wrote
-    #[arg(value_name = "PRESET", value_hint = ValueHint::FilePath)]
-    preset: String,
+    #[arg(value_name = "PRESET", add = completions::presets())]
+    preset: PathBuf,
 
-    /// Where to write: a .png or .exr file, or - for PNG on standard output
+    /// Where to write: a .png, .jpg, .webp or .exr file, or - for PNG on standard output
     ///
-    /// Left out, it is the preset's name with .png in the current folder. A PNG carries
-    /// its preset and can be rendered again. An EXR has the channels R, G, B (linear),
-    /// depth.Z, normal.X/Y/Z, position.X/Y/Z, state.Y (0 sky, 1 hit, 2 unconverged), and
-    /// steps.Y with --stats.
+    /// Without -o the picture goes to the current folder as NAME.png, with another --size as
+    /// NAME-640x360.png, and with another --layer as NAME.depth.png. With --set such a file
+    /// is replaced only if it has the same settings.
+    ///
+    /// A PNG carries its preset and can be rendered again; JPEG and WebP carry none. WebP is
+    /// without loss. An EXR has the channels R, G, B (linear), A (1), Z (along the view
+    /// axis), depth.Z (along the ray), normal.X/Y/Z, position.X/Y/Z, state.Y (0 sky, 1 hit,
+    /// 2 unconverged), and steps.Y with --stats. Both depths are 1e10 for sky. Its
+    /// attributes hold the preset and the camera.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
 
@@ -48,25 +51,30 @@ pub struct Render {
 
     /// Set one value of the preset; may be given again
     ///
-    /// Values are TOML; words, fields like fbm:64x64,seed=3 and paths like maps/d8.png need
+    /// Values are TOML. Words, fields like fbm:64x64,seed=3 and paths like maps/d8.png need
     /// no quotes. Another scene.kind or scene.formula drops the preset's other values of the
     /// scene.
     #[arg(long, value_name = "SECTION.KEY=VALUE", allow_hyphen_values = true)]
-    set: Vec<String>,
+    #[arg(add = completions::settings())]
+    pub(crate) set: Vec<String>,
 
     /// auto, gpu, software, cpu, an index, or part of a name
     #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
     device: Choice,
 
-    /// What the PNG shows
+    /// What the picture shows
     #[arg(long, value_name = "LAYER", default_value = "color", value_parser = layers())]
-    layer: Layer,
+    pub(crate) layer: Layer,
 
-    /// Bits per channel of the PNG [default: 8]
+    /// Bits per channel of a PNG [default: 8]
     #[arg(long, value_name = "BITS", value_parser = depths())]
-    depth: Option<BitDepth>,
+    pub(crate) depth: Option<BitDepth>,
 
-    /// Count work and write the figures as JSON, - for standard output
+    /// Quality of a JPEG, from 1 to 100 [default: 92]
+    #[arg(long, value_name = "QUALITY", value_parser = value_parser!(u8).range(1..=100))]
+    pub(crate) quality: Option<u8>,
+
+    /// Count the work and write its figures as JSON, - for standard output
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     stats: Option<PathBuf>,
 
@@ -75,44 +83,11 @@ pub struct Render {
     explain: bool,
 }
 
-const LAYERS: [(&str, Layer, &str); 7] = [
-    ("color", Layer::Color, "light, tone-mapped"),
-    (
-        "depth",
-        Layer::Depth,
-        "grey: nearest black, farthest 95 % white, linear between, sky white",
-    ),
-    (
-        "normal",
-        Layer::Normal,
-        "world normals, x y z as red green blue, -1..1 to 0..1; sky mid grey",
-    ),
-    (
-        "position",
-        Layer::Position,
-        "world positions, each axis from its least to its greatest in the picture; sky black",
-    ),
-    (
-        "steps",
-        Layer::Steps,
-        "evaluations: violet none, yellow the 99th percentile and above",
-    ),
-    (
-        "state",
-        Layer::State,
-        "sky dark blue, hit light grey, unconverged magenta",
-    ),
-    (
-        "error",
-        Layer::Error,
-        "depth against the truth: grey none, red 8 footprints too deep or lost, blue too near",
-    ),
-];
-
 fn layers() -> impl TypedValueParser<Value = Layer> {
-    let values = LAYERS.map(|(name, _, help)| PossibleValue::new(name).help(help));
-    PossibleValuesParser::new(values).map(|name| {
-        let found = LAYERS.iter().find(|(n, _, _)| *n == name);
+    let values = Layer::ALL.iter();
+    let values = values.map(|(word, _, help)| PossibleValue::new(word).help(help));
+    PossibleValuesParser::new(values).map(|word| {
+        let found = Layer::ALL.iter().find(|(known, _, _)| *known == word);
         found.map_or(Layer::Color, |(_, layer, _)| *layer)
     })
 }
@@ -124,28 +99,23 @@ fn depths() -> impl TypedValueParser<Value = BitDepth> {
     })
 }
 
-/// What becomes of the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Png,
-    Exr,
-}
-
 /// Renders a preset.
+///
+/// # Errors
+/// A wrong preset or option, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &Render) -> Result<()> {
     let overrides: Result<Vec<Override>, _> = args.set.iter().map(|s| Override::read(s)).collect();
     let preset = preset::load(&args.preset, &overrides?)?;
     let assets = Assets::default();
     preset.load_assets(&assets)?;
     let Preset { name, mut plan, .. } = preset;
-    if let Some(size) = args.size {
-        plan.size = size;
-    }
+    let own_size = plan.size;
+    plan.size = args.size.unwrap_or(own_size);
     let output = match &args.output {
         Some(path) => path.clone(),
-        None => PathBuf::from(format!("{name}.png")),
+        None => default_name(&name, args, &plan, own_size)?,
     };
-    let format = format(args, &output)?;
+    let format = Format::of(&output, args, plan.size)?;
     let stats = args.stats.as_deref();
     let outputs = [("the picture", Some(output.as_path())), ("--stats", stats)];
     apart(&outputs)?;
@@ -154,12 +124,13 @@ pub fn run(args: &Render) -> Result<()> {
     let preset = preset::file(&args.preset).map(|file| ("the preset", file));
     spared(&outputs[1..], preset.as_slice())?;
     let extras = extras(args, format);
-    let per_pixel = bytes_per_pixel(format, args.device == Choice::Cpu);
-    if let Some(why) = memory::lacking(plan.size, per_pixel, memory::available()) {
-        anyhow::bail!(why);
-    }
-    if let Some(why) = memory::lacking_for(&plan.lean(extras), &assets, memory::available()) {
-        anyhow::bail!(why);
+    let per_pixel = format.bytes_per_pixel(args.device == Choice::Cpu);
+    let available = memory::available();
+    let lacking = memory::lacking(plan.size, per_pixel, available);
+    if let Some(why) =
+        lacking.or_else(|| memory::lacking_for(&plan.lean(extras), &assets, available))
+    {
+        bail!(why);
     }
     for note in plan.scene.notes(&assets) {
         say(&format!("note: {note}"));
@@ -172,37 +143,26 @@ pub fn run(args: &Render) -> Result<()> {
     let figures = stats.map(Sink::prepare).transpose()?;
     let (mut executor, who) = Executor::open(&args.device)?;
     say(&format!("rendering on {who}"));
+    if args.layer == Layer::Error {
+        say(
+            "the truth to compare with is rendered too, in f64 on the CPU: that takes much longer than the picture",
+        );
+    }
     if let Some(warning) = executor.precision_warning(&plan) {
         say(&format!("warning: {warning}"));
     }
     let frame = march(&mut executor, &plan, &assets, extras)?;
-    let preset = preset::write(&plan);
-    let truth = match args.layer {
+    let errors = match args.layer {
         Layer::Error => {
-            say("rendering the truth to compare with, in f64");
-            let watch = &mut |_: &_| !interrupt::asked();
-            Some(truth::cached(Cache::user().as_ref(), &plan, &assets, watch)?.0)
+            let mut progress = Progress::start("rendering the truth");
+            let watch = &mut progress.watch();
+            let (truth, _) = truth::cached(Cache::user().as_ref(), &plan, &assets, watch)?;
+            errors(&frame, &truth.frame, &plan.view())
         }
-        _ => None,
+        _ => Vec::new(),
     };
-    let view = plan.view();
-    let draw = || {
-        let shades = Shades::new(args.layer, &frame, &plan);
-        match &truth {
-            Some(truth) => shades.against(&truth.frame, &view),
-            None => shades,
-        }
-    };
-    let depth = args.depth.unwrap_or_default();
     let mut parcel = Parcel::default();
-    let mut content = Vec::new();
-    let to = &mut Cursor::new(&mut content);
-    match format {
-        Format::Png => write_png(to, &draw(), depth, &preset)?,
-        Format::Exr => write_exr(to, &frame, &plan)?,
-    }
-    parcel.put(picture, &content)?;
-    drop(content);
+    parcel.put(picture, &format.encode(args, &plan, &frame, errors)?)?;
     if let Some(figures) = figures {
         let mut frame = frame.clone();
         warm_times(&mut executor, &plan, &assets, &mut frame)?;
@@ -218,7 +178,7 @@ pub fn run(args: &Render) -> Result<()> {
     say(&summary(&output, &frame));
     if ends_at_the_eye(&frame, &plan) {
         say(
-            "warning: every ray ends at the eye: camera.eye lies inside the solid, or against it, and there is nothing to see; move it away",
+            "warning: every ray ends at the eye: camera.eye lies inside the solid, or touches it, and there is nothing to see; move it away",
         );
     }
     Ok(())
@@ -249,46 +209,6 @@ fn explain(args: &Render, plan: &Plan, assets: &Assets, extras: Extras) -> Resul
     print(text.as_bytes())
 }
 
-/// The format that a name asks for, if everything else fits it.
-fn format(args: &Render, output: &Path) -> Result<Format> {
-    let ending = output.extension().and_then(|e| e.to_str());
-    let ending = ending.unwrap_or_default().to_lowercase();
-    let format = match ending.as_str() {
-        _ if is_stdout(output) => Format::Png,
-        "png" => Format::Png,
-        "exr" => Format::Exr,
-        _ => {
-            return Err(usage(format!(
-                "`{}` ends in neither .png nor .exr, which say what to write; - would be PNG on standard output",
-                output.display()
-            )));
-        }
-    };
-    if format == Format::Exr && args.layer != Layer::Color {
-        return Err(usage(
-            "an EXR has all layers; leave --layer out, or write a .png",
-        ));
-    }
-    if format == Format::Exr && args.depth.is_some() {
-        return Err(usage(
-            "an EXR has 32 bits per channel; leave --depth out, or write a .png",
-        ));
-    }
-    Ok(format)
-}
-
-/// Most memory that a render takes at once, per pixel.
-fn bytes_per_pixel(format: Format, cpu: bool) -> u64 {
-    // Measured on 8 million pixels, and rounded up. The CPU executor holds every
-    // pixel's hit in f64 on its way; an EXR its channels beside the frame.
-    let rendering = if cpu { 140 } else { 60 };
-    let writing = match format {
-        Format::Png => 60,
-        Format::Exr => 115,
-    };
-    rendering.max(writing)
-}
-
 fn extras(args: &Render, format: Format) -> Extras {
     let mut extras = args.layer.extras();
     extras.normals |= format == Format::Exr;
@@ -297,23 +217,15 @@ fn extras(args: &Render, format: Format) -> Extras {
     extras
 }
 
-/// Renders with a bar on terminals, until done or interrupted.
-fn march(executor: &mut Executor, plan: &Plan, assets: &Assets, extras: Extras) -> Result<Frame> {
-    let bar = if std::io::stderr().is_terminal() {
-        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
-        ProgressBar::new(1000).with_style(style.context("the progress bar")?)
-    } else {
-        ProgressBar::hidden()
-    };
-    bar.enable_steady_tick(Duration::from_millis(200));
-    let mut watch = |progress: &Progress| {
-        bar.set_position((progress.done * 1000.0) as u64);
-        bar.set_message(progress.pass.clone());
-        !interrupt::asked()
-    };
-    let frame = executor.render(plan, assets, extras, &mut watch);
-    bar.finish_and_clear();
-    Ok(frame?)
+/// Renders until done or interrupted, with progress.
+fn march(
+    executor: &mut Executor,
+    plan: &Plan,
+    assets: &Assets,
+    extras: Extras,
+) -> Result<Frame, RenderError> {
+    let mut progress = Progress::start("rendering");
+    executor.render(plan, assets, extras, &mut progress.watch())
 }
 
 /// Longest march that is done again for its time, in milliseconds.
@@ -353,38 +265,4 @@ fn warm_times(
         pass.wall_ms = warm.wall_ms;
     }
     Ok(())
-}
-
-/// One line about a finished picture.
-fn summary(output: &Path, frame: &Frame) -> String {
-    let [w, h] = frame.size;
-    let color = frame.passes.iter().find(|p| p.pass == Pass::Color);
-    let color = color.map_or(String::new(), |p| format!(", colour {:.0} ms", p.wall_ms));
-    let made: Vec<f64> = frame
-        .passes
-        .iter()
-        .filter(|p| matches!(p.pass, Pass::Prepare(_)))
-        .map(|p| p.wall_ms)
-        .collect();
-    let cones = match made.len() {
-        0 => String::new(),
-        n => format!(
-            "cone map{} {:.0} ms, ",
-            if n > 1 { "s" } else { "" },
-            made.iter().sum::<f64>()
-        ),
-    };
-    let [sky, hit, unconverged] = shares(frame).map(|s| 100.0 * s);
-    let shadows = match 100.0 * undecided(frame) {
-        share if share < 0.05 => String::new(),
-        share => format!(", shadows cut short {share:.1} %"),
-    };
-    let name = match output.to_str() {
-        Some("-") => "standard output".into(),
-        _ => output.display().to_string(),
-    };
-    format!(
-        "{name}  {w} x {h}  {cones}march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %{shadows}",
-        frame.march_ms
-    )
 }

@@ -19,7 +19,7 @@ pub enum Sink {
 }
 
 impl Sink {
-    /// Makes sure that a result can go where it is meant to.
+    /// Makes sure that a result can be written.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -46,11 +46,11 @@ pub fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Refuses outputs of one command that would overwrite each other. Each comes with the
-/// option that names it; those that were not given are no matter.
+/// Refuses outputs of one command that would overwrite each other. Each comes with its option;
+/// `None` stands for an option that was not given.
 ///
 /// # Errors
-/// Two have the same name, or two names of one file.
+/// Two options name the same file.
 pub fn apart(outputs: &[(&str, Option<&Path>)]) -> Result<()> {
     let given = outputs
         .iter()
@@ -69,11 +69,11 @@ pub fn apart(outputs: &[(&str, Option<&Path>)]) -> Result<()> {
     Ok(())
 }
 
-/// Refuses outputs that would take the place of what the command reads. Each comes with what
-/// it is called.
+/// Refuses outputs that would overwrite what the command reads. Each comes with its option,
+/// and each input with what it is.
 ///
 /// # Errors
-/// An output is one of the inputs, by whatever name.
+/// An output is one of the inputs, perhaps by another name.
 pub fn spared(outputs: &[(&str, Option<&Path>)], inputs: &[(&str, PathBuf)]) -> Result<()> {
     for (option, path) in outputs {
         let Some(path) = path.filter(|path| !is_stdout(path)) else {
@@ -83,7 +83,7 @@ pub fn spared(outputs: &[(&str, Option<&Path>)], inputs: &[(&str, PathBuf)]) -> 
         let taken = inputs.iter().find(|(_, input)| file_of(input) == file);
         if let Some((what, _)) = taken {
             return Err(usage(format!(
-                "{option} would take the place of {what}, `{}`; give it another name with -o or its option",
+                "{option} would overwrite {what}, `{}`; give it another name with -o or its option",
                 path.display()
             )));
         }
@@ -91,7 +91,7 @@ pub fn spared(outputs: &[(&str, Option<&Path>)], inputs: &[(&str, PathBuf)]) -> 
     Ok(())
 }
 
-/// The file behind a name: links and ways around taken out, be it there already or not.
+/// The file behind a name, with links and `..` resolved. It need not exist.
 fn file_of(path: &Path) -> PathBuf {
     if is_stdout(path) {
         return path.into();
@@ -105,7 +105,7 @@ fn file_of(path: &Path) -> PathBuf {
     there.or_else(new).unwrap_or_else(|| path.into())
 }
 
-/// The results of a command, handed over in one go at its end.
+/// The results of a command, which are handed over together at its end.
 #[derive(Debug, Default)]
 pub struct Parcel {
     printed: Vec<u8>,

@@ -1,10 +1,13 @@
-//! The figures of a render as JSON.
+//! The figures of a render, as JSON and as a line.
+
+use std::path::Path;
 
 use serde::Serialize;
 
 use crate::command::executor::Executor;
-use crate::picture::frame::Frame;
-use crate::plan::Plan;
+use crate::command::sink::is_stdout;
+use crate::picture::frame::{Frame, PassFigures};
+use crate::plan::{Pass, Plan};
 
 /// One render.
 #[derive(Clone, Debug, Serialize)]
@@ -22,7 +25,7 @@ pub struct Stats {
     /// March and trace on the clock, without compilation and files.
     pub wall_ms: f64,
     /// Every pass in order.
-    pub passes: Vec<PassStats>,
+    pub passes: Vec<PassFigures>,
     /// Evaluations of march and trace over pixels.
     pub evaluations_per_pixel: Option<f64>,
     /// Fold iterations of march and trace over pixels.
@@ -37,36 +40,11 @@ pub struct Stats {
     pub undecided: f64,
 }
 
-/// One pass.
-#[derive(Clone, Debug, Serialize)]
-pub struct PassStats {
-    /// `prepare`, `march 1/16`, `trace` or `color`.
-    pub name: String,
-    /// Cells or pixels; places of a cone map.
-    pub cells: u64,
-    /// Time on the clock.
-    pub wall_ms: f64,
-    /// Time on the device, where it tells.
-    pub gpu_ms: Option<f64>,
-    /// Estimate evaluations, where they were counted.
-    pub evaluations: Option<u64>,
-    /// Fold iterations, where they were counted.
-    pub iterations: Option<u64>,
-}
-
 impl Stats {
     /// The figures of a frame.
     pub fn new(preset: &str, plan: &Plan, executor: &Executor, frame: &Frame) -> Self {
         let work = frame.work_per_pixel();
         let [sky, hit, unconverged] = shares(frame);
-        let passes = frame.passes.iter().map(|p| PassStats {
-            name: p.pass.name(),
-            cells: p.cells,
-            wall_ms: p.wall_ms,
-            gpu_ms: p.gpu_ms,
-            evaluations: p.evaluations,
-            iterations: p.iterations,
-        });
         Self {
             preset: preset.into(),
             size: frame.size,
@@ -74,7 +52,7 @@ impl Stats {
             backend: executor.backend(),
             mode: plan.march.mode.name(),
             wall_ms: frame.march_ms,
-            passes: passes.collect(),
+            passes: frame.passes.clone(),
             evaluations_per_pixel: work.map(|w| w.0),
             iterations_per_pixel: work.map(|w| w.1),
             hit,
@@ -94,4 +72,33 @@ pub fn undecided(frame: &Frame) -> f64 {
 pub fn shares(frame: &Frame) -> [f64; 3] {
     let all = frame.state.len().max(1) as f64;
     frame.census().map(|n| n as f64 / all)
+}
+
+/// One line about a finished picture.
+pub fn summary(output: &Path, frame: &Frame) -> String {
+    let [w, h] = frame.size;
+    let color = frame.passes.iter().find(|p| p.pass == Pass::Color);
+    let color = color.map_or(String::new(), |p| format!(", colour {:.0} ms", p.wall_ms));
+    let made = frame.passes.iter();
+    let made = made.filter(|p| matches!(p.pass, Pass::Prepare(_)));
+    let made: Vec<f64> = made.map(|p| p.wall_ms).collect();
+    let ms: f64 = made.iter().sum();
+    let cones = match made.len() {
+        0 => String::new(),
+        1 => format!("cone map {ms:.0} ms, "),
+        _ => format!("cone maps {ms:.0} ms, "),
+    };
+    let [sky, hit, unconverged] = shares(frame).map(|s| 100.0 * s);
+    let shadows = match 100.0 * undecided(frame) {
+        share if share < 0.05 => String::new(),
+        share => format!(", shadows cut short {share:.1} %"),
+    };
+    let name = match is_stdout(output) {
+        true => "standard output".into(),
+        false => output.display().to_string(),
+    };
+    format!(
+        "{name}  {w} x {h}  {cones}march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %{shadows}",
+        frame.march_ms
+    )
 }

@@ -1,7 +1,7 @@
-//! The CPU executor: the same passes in f64, rows over threads.
+//! The CPU executor: the passes of a Plan in f64, with rows spread over all cores.
 //!
-//! It is what a machine without an adapter falls back to, what the truth is made with,
-//! and what the GPU is compared to.
+//! It renders where a machine has no adapter, it makes the truths, and the GPU is compared
+//! with it.
 
 use std::time::Instant;
 
@@ -21,27 +21,27 @@ use crate::plan::pyramid::Level;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::{Assets, Hit, Solid, Task};
 
-/// Cells between two looks at the watch: some tens of milliseconds on two cores.
+/// Cells between two calls of the watch: some tens of milliseconds on two cores.
 const BAND_CELLS: usize = 1 << 15;
 
-/// A proven front of one cell.
+/// The proven front of one cell.
 #[derive(Clone, Copy)]
 struct Proof {
     front: f64,
     ended: Ended,
 }
 
-/// A finished level: proofs row by row.
+/// A finished level, row by row.
 struct Proofs {
     width: usize,
     cells: Vec<Proof>,
 }
 
-/// Renders a plan that passes [`Plan::check`]. The assets keep what is loaded and made for it.
+/// Renders a plan. It must pass [`Plan::check`]. The assets keep what is loaded and made for it.
 ///
 /// # Errors
-/// [`RenderError::Cancelled`], when `watch` returns `false`; a named file cannot be read or does
-/// not fit; a cone map cannot be made.
+/// [`RenderError::Cancelled`] if `watch` returns `false`. A named file cannot be read or does
+/// not fit, or a cone map cannot be made.
 pub fn render(
     plan: &Plan,
     assets: &Assets,
@@ -50,22 +50,27 @@ pub fn render(
 ) -> Result<Frame, RenderError> {
     let plan = &*plan.lean(extras);
     let prepared = prepare(plan, assets, &mut generate, watch)?;
-    let mut frame = plan.solid(assets)?.run(Render {
+    let job = Job {
         plan,
         light: Light::of(plan, assets),
         ray_steps: plan.ray_steps(assets),
         extras,
-        watch,
-    })?;
+    };
+    let mut frame = plan.solid(assets)?.run(Render { job: &job, watch })?;
     frame.finish(prepared);
     Ok(frame)
 }
 
-struct Render<'a> {
+/// What is rendered.
+struct Job<'a> {
     plan: &'a Plan,
     light: Light,
     ray_steps: u32,
     extras: Extras,
+}
+
+struct Render<'a> {
+    job: &'a Job<'a>,
     watch: Watch<'a>,
 }
 
@@ -73,15 +78,12 @@ impl Task for Render<'_> {
     type Output = Result<Frame, RenderError>;
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
-        let (plan, extras) = (self.plan, self.extras);
+        let Job { plan, extras, .. } = *self.job;
         let passes = plan.passes(extras);
         let mut run = Run {
             solid,
+            job: self.job,
             view: plan.view(),
-            plan,
-            light: self.light,
-            ray_steps: self.ray_steps,
-            extras,
             frame: Frame::blank(plan, extras),
             parents: None,
             hits: Vec::new(),
@@ -115,14 +117,11 @@ impl Task for Render<'_> {
 /// A render under way.
 struct Run<'a, S> {
     solid: &'a S,
+    job: &'a Job<'a>,
     view: View,
-    plan: &'a Plan,
-    light: Light,
-    ray_steps: u32,
-    extras: Extras,
     frame: Frame,
     parents: Option<Proofs>,
-    /// What the rays met, for the colour pass.
+    /// What the rays hit, for the colour pass.
     hits: Vec<Hit>,
 }
 
@@ -131,7 +130,7 @@ type Sum = (u64, u64);
 
 impl<S: Solid> Run<'_, S> {
     fn march(&mut self, at: usize, level: Level, bands: &mut Bands) -> Result<Sum, RenderError> {
-        let cells = level.cells(self.plan.size);
+        let cells = level.cells(self.job.plan.size);
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
         let one = |cell| {
             let parent = parent_of(parents, cell);
@@ -163,7 +162,7 @@ impl<S: Solid> Run<'_, S> {
 
     fn trace(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
-        let limit = self.ray_steps;
+        let limit = self.job.ray_steps;
         let one = |pixel| {
             let parent = parent_of(parents, pixel);
             let mut work = Work::default();
@@ -176,10 +175,10 @@ impl<S: Solid> Run<'_, S> {
         };
         let mut sum = (0, 0);
         let (frame, hits) = (&mut self.frame, &mut self.hits);
-        if !self.extras.depth_only {
+        if !self.job.extras.depth_only {
             hits.resize(frame.state.len(), Hit::default());
         }
-        bands.over(self.plan.size, one, |i, (hit, state, work)| {
+        bands.over(self.job.plan.size, one, |i, (hit, state, work)| {
             add(&mut sum, work);
             frame.state[i] = state as u8;
             if state != State::Sky {
@@ -194,8 +193,8 @@ impl<S: Solid> Run<'_, S> {
 
     fn color(&mut self, bands: &mut Bands) -> Result<Sum, RenderError> {
         let (solid, view, hits) = (self.solid, &self.view, &self.hits);
-        let light = &self.light;
-        let width = self.plan.size[0] as usize;
+        let light = &self.job.light;
+        let width = self.job.plan.size[0] as usize;
         let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
         let states = &self.frame.state;
         let one = |pixel: [u32; 2]| {
@@ -204,7 +203,7 @@ impl<S: Solid> Run<'_, S> {
             color::color(solid, light, &view.view_ray(pixel), &hits[at], state)
         };
         let undecided = &mut self.frame.undecided;
-        bands.over(self.plan.size, one, |i, pixel| {
+        bands.over(self.job.plan.size, one, |i, pixel| {
             set(radiance, i, pixel.radiance.as_vec3().to_array());
             set(normals, i, pixel.normal.as_vec3().to_array());
             *undecided += usize::from(!pixel.decided);
@@ -213,7 +212,7 @@ impl<S: Solid> Run<'_, S> {
     }
 }
 
-/// Sets a value of a layer, where the layer is kept.
+/// Sets a value of a layer if the layer is kept.
 fn set<T>(layer: &mut [T], i: usize, value: T) {
     if let Some(to) = layer.get_mut(i) {
         *to = value;
@@ -234,7 +233,7 @@ fn parent_of(parents: Option<&Proofs>, [x, y]: [u32; 2]) -> Proof {
     parents.map_or(start, at)
 }
 
-/// A pass in bands of rows, with a look at the watch after each.
+/// Runs a pass in bands of rows and calls the watch after each.
 struct Bands<'a> {
     pass: String,
     before: f64,
@@ -243,8 +242,8 @@ struct Bands<'a> {
 }
 
 impl Bands<'_> {
-    /// Runs a function over all cells of a grid, rows over threads, and keeps what it
-    /// returns, in order.
+    /// Calls `one` for all cells of a grid, with rows spread over threads, and `keep` for the
+    /// results in order.
     fn over<T: Send>(
         &mut self,
         cells: [u32; 2],
@@ -252,7 +251,7 @@ impl Bands<'_> {
         mut keep: impl FnMut(usize, T),
     ) -> Result<(), RenderError> {
         let [width, height] = cells.map(|n| n as usize);
-        // A few rows for every thread, however wide they are.
+        // At least a few rows for every thread.
         let least = 4 * rayon::current_num_threads();
         let rows = (BAND_CELLS / width.max(1)).max(least);
         for first in (0..height).step_by(rows) {
@@ -279,42 +278,38 @@ impl Bands<'_> {
     }
 }
 
-/// Traces every so many pixels of a plan without cones: index, distance and state.
+/// Traces some pixels of a plan without cones.
 ///
 /// # Errors
 /// A named file cannot be read or does not fit.
 pub fn sample(
     plan: &Plan,
     assets: &Assets,
-    every: usize,
-) -> Result<Vec<(usize, f64, State)>, RenderError> {
-    let limit = plan.ray_steps(assets);
-    Ok(plan.solid(assets)?.run(Sample { plan, limit, every }))
+    pixels: &[[u32; 2]],
+) -> Result<Vec<(Hit, State)>, RenderError> {
+    let sample = Sample {
+        view: plan.view(),
+        limit: plan.ray_steps(assets),
+        pixels,
+    };
+    Ok(plan.solid(assets)?.run(sample))
 }
 
 struct Sample<'a> {
-    plan: &'a Plan,
+    view: View,
     limit: u32,
-    every: usize,
+    pixels: &'a [[u32; 2]],
 }
 
 impl Task for Sample<'_> {
-    type Output = Vec<(usize, f64, State)>;
+    type Output = Vec<(Hit, State)>;
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
-        let view = self.plan.view();
-        let width = view.size[0] as usize;
-        let pixels = width * view.size[1] as usize;
-        (0..pixels.div_ceil(self.every))
-            .into_par_iter()
-            .map(|n| {
-                let i = n * self.every;
-                let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
-                let work = &mut Work::default();
-                let (hit, state) = trace::trace(solid, &ray, 0.0, self.limit, work);
-                (i, hit.t, state)
-            })
-            .collect()
+        let one = |pixel: &[u32; 2]| {
+            let ray = self.view.view_ray(*pixel);
+            trace::trace(solid, &ray, 0.0, self.limit, &mut Work::default())
+        };
+        self.pixels.par_iter().map(one).collect()
     }
 }
 
@@ -329,19 +324,15 @@ mod tests {
         plan.size = [2 * BAND_CELLS as u32, 96];
         plan.march.coarsest = 2;
         let mut told = Vec::new();
-        let ended = render(
-            &plan,
-            &Assets::default(),
-            Extras::default(),
-            &mut |p: &Progress| {
-                told.push((p.pass.clone(), p.done));
-                p.pass != "trace"
-            },
-        );
+        let watch = &mut |p: &Progress| {
+            told.push((p.pass.clone(), p.done));
+            p.pass != "trace"
+        };
+        let ended = render(&plan, &Assets::default(), Extras::default(), watch);
         assert!(matches!(ended, Err(RenderError::Cancelled)));
         let (pass, done) = told.last().expect("told");
         assert_eq!(pass, "trace");
-        // The second of three passes had begun and was not over.
+        // In the second of three passes.
         assert!(*done > 0.34 && *done < 0.66, "{done}");
         assert!(told.is_sorted_by(|a, b| a.1 < b.1), "{told:?}");
     }

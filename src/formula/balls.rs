@@ -1,7 +1,7 @@
-//! Balls, boxes and a rod with an exact distance field.
+//! Balls, boxes and a rod with an exact distance.
 //!
-//! The exact estimate makes every claim about cones testable without tolerance, and
-//! a formula so unlike the Mandelbox keeps the contract honest.
+//! With an exact distance, tests of cones need no tolerance. The formula also shows that
+//! [`DistanceEstimate`] suits shapes that are unlike the Mandelbox.
 //! Twin: `wgsl/formula/balls.wgsl`.
 
 use bytemuck::{Pod, Zeroable, bytes_of};
@@ -10,8 +10,7 @@ use glam::{DVec3, DVec4, Vec4};
 use crate::base::key::{Fault, Key, Number};
 use crate::base::shader::Module;
 use crate::formula::contract::{Bounds, DistanceEstimate};
-use crate::keys;
-use crate::wgsl;
+use crate::{settings, wgsl};
 
 /// The solids as WGSL reads them.
 #[repr(C)]
@@ -31,24 +30,12 @@ pub struct BallsUniform {
     pub rod: Vec4,
 }
 
-/// Three balls, two boxes and a vertical rod.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Balls {
-    /// Radius of the rod, which can be made thinner than a pixel.
-    pub rod_radius: f64,
-    /// Half edge of the larger box.
-    pub box_size: f64,
-    /// Radius of the largest ball.
-    pub ball_radius: f64,
-}
-
-impl Default for Balls {
-    fn default() -> Self {
-        Self {
-            rod_radius: 0.05,
-            box_size: 0.7,
-            ball_radius: 1.0,
-        }
+settings! {
+    /// Three balls, two boxes and a vertical rod.
+    pub struct Balls {
+        rod_radius: f64 = 0.05, Number(1e-6, 0.5), "radius of the rod";
+        box_size: f64 = 0.7, Number(1e-3, 1.2), "half edge of the larger box";
+        ball_radius: f64 = 1.0, Number(1e-3, 2.5), "radius of the largest ball";
     }
 }
 
@@ -82,14 +69,7 @@ impl DistanceEstimate for Balls {
     }
 
     fn keys(&mut self) -> Vec<Key<'_>> {
-        keys![
-            "rod_radius" = Number(&mut self.rod_radius, 1e-6, 0.5),
-                "radius of the rod";
-            "box_size" = Number(&mut self.box_size, 1e-3, 1.2),
-                "half edge of the larger box";
-            "ball_radius" = Number(&mut self.ball_radius, 1e-3, 2.5),
-                "radius of the largest ball";
-        ]
+        self.keys()
     }
 
     fn check(&self) -> Result<(), Fault> {

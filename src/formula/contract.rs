@@ -1,14 +1,14 @@
-//! What a formula promises.
+//! The trait of all formulas, and the region that holds a shape.
 
 use glam::DVec3;
 
 use crate::base::key::{Fault, Key};
 use crate::base::shader::Module;
 
-/// A region that holds everything: a box about a centre, cut by a ball about it.
+/// A region that holds a shape: a box cut by a ball about the same centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Centre of both.
+    /// Centre of box and ball.
     pub centre: DVec3,
     /// Half extents of the box.
     pub half: DVec3,
@@ -17,7 +17,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// A box about the origin, with the ball about its corners.
+    /// A box about the origin, with the ball through its corners.
     pub fn cuboid(half: DVec3) -> Self {
         Self {
             centre: DVec3::ZERO,
@@ -26,14 +26,14 @@ impl Bounds {
         }
     }
 
-    /// A lower bound of the distance to the region, 0 inside.
+    /// A lower bound of the distance to the region; 0 inside.
     pub fn distance(&self, p: DVec3) -> f64 {
         let o = ((p - self.centre).abs() - self.half).max(DVec3::ZERO);
         o.length()
             .max(((p - self.centre).length() - self.radius).max(0.0))
     }
 
-    /// The region's greatest distance from a point.
+    /// An upper bound of the distance from a point to any point of the region.
     pub fn farthest(&self, p: DVec3) -> f64 {
         let corner = (p - self.centre).abs() + self.half;
         corner
@@ -42,37 +42,39 @@ impl Bounds {
     }
 }
 
-/// A distance-estimated shape. Each has a WGSL twin with functions of the same names.
+/// A shape given by an estimate of the distance to it. Its WGSL twin has the functions
+/// `estimate` and `trap`.
 pub trait DistanceEstimate {
-    /// Name in presets, also that of its files.
+    /// Name in presets, and of the two files.
     fn name(&self) -> &'static str;
 
-    /// The keys that it reads in `[scene]`.
+    /// The keys of its parameters in `[scene]`.
     fn keys(&mut self) -> Vec<Key<'_>>;
 
-    /// Whether the parameters fit together.
+    /// Checks that the parameters fit together.
     fn check(&self) -> Result<(), Fault>;
 
-    /// The WGSL twin with its constants, and stand-ins for what it does not use.
+    /// The WGSL modules with their constants.
     fn modules(&self) -> Vec<Module>;
 
-    /// Bytes of the uniforms, by the name of the WGSL variable. `iterations` is the
-    /// limit that the estimate will run under.
+    /// The bytes of each WGSL parameter variable. `iterations` is the iteration limit of the
+    /// estimate.
     fn uniforms(&self, iterations: u32) -> Vec<(&'static str, Vec<u8>)>;
 
-    /// Signed estimate of the distance to the surface, at most 0 inside, and the fold
-    /// iterations spent on it.
+    /// The estimate of the distance at a point after at most `most` iterations, and the number
+    /// of iterations. Inside the shape the estimate is at most 0.
     fn estimate(&self, p: DVec3, most: u32) -> (f64, u32);
 
-    /// Three orbit traps in 0..1, for colour.
+    /// Three orbit traps from 0 to 1, which pick the colour: how near the orbit of a point
+    /// comes to three sets.
     fn trap(&self, p: DVec3, most: u32) -> DVec3;
 
-    /// The estimate's largest slope: steps divide by it.
+    /// The Lipschitz constant: a bound of the estimate's slope. Steps divide by it.
     fn lipschitz(&self) -> f64;
 
-    /// A region outside which there is nothing.
+    /// A region that holds the whole shape.
     fn bounds(&self) -> Bounds;
 
-    /// Iterations after which the estimate is within `eps` of converged.
+    /// The number of iterations after which the estimate is within `eps` of its limit.
     fn iterations(&self, eps: f64) -> u32;
 }

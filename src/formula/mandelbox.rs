@@ -1,9 +1,9 @@
 //! The Mandelbox (docs/method.md, 3).
 //!
-//! Folds about a box and a ball, rotates, scales, and adds the starting point (or a
-//! constant, in Julia mode). Its estimate is the same at every exit, monotone in the
-//! number of iterations, and never above the converged `|z|/w`; that value itself is
-//! not everywhere below the true distance, which is what `lipschitz` is for.
+//! An iteration folds a point at a box and at a ball, rotates it, scales it, and adds the
+//! starting point, or a constant in Julia mode. The estimate grows with every iteration and
+//! never exceeds the limit of `|z|/w`. That limit is not below the true distance everywhere,
+//! so steps divide by a *Lipschitz constant*: a bound of the estimate's slope.
 //! Twin: `wgsl/formula/mandelbox.wgsl`.
 
 use bytemuck::{Pod, Zeroable, bytes_of};
@@ -13,14 +13,13 @@ use crate::base::key::{AutoNumber, Fault, Key, Number, Switch, Triple, Word};
 use crate::base::shader::Module;
 use crate::formula::contract::{Bounds, DistanceEstimate};
 use crate::formula::rotation::Rotation;
-use crate::keys;
-use crate::wgsl;
+use crate::{settings, wgsl};
 
-/// 2 sqrt(3): a box fold moves a point by at most this times the fold limit.
+/// 2 sqrt(3). A box fold moves a point by at most this times the fold limit.
 const TWO_SQRT_3: f64 = 3.464_101_615_137_754_6;
 
-/// How far past K an orbit must be to have escaped, as a factor. Earlier exits are as
-/// right, but the estimate there is more pessimistic (at 5 K by some per cents).
+/// An orbit has escaped at this multiple of K. A smaller one is as correct, but makes the
+/// estimate lower: at 5 by some per cent.
 const BAIL_FACTOR: f64 = 20.0;
 
 /// The parameters as WGSL reads them.
@@ -37,7 +36,7 @@ pub struct MandelboxUniform {
     pub min2: f32,
     /// Squared fixed radius.
     pub fixed2: f32,
-    /// |z|^2 past which an orbit has escaped.
+    /// The orbit has escaped where |z|^2 exceeds this.
     pub bail2: f32,
     /// 2 sqrt(3) L |s| / (|s| - 1).
     pub reach: f32,
@@ -49,53 +48,34 @@ pub struct MandelboxUniform {
     pub classic_skin: f32,
 }
 
-/// Which distance estimate is used.
+/// A distance estimate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Estimate {
-    /// `(|z| - K) / (w + 1/(|s| - 1))`: a lower bound of the converged value.
+    /// `(|z| - K) / (w + 1/(|s| - 1))`: a lower bound of the limit of `|z|/w`.
     #[default]
     Proven,
-    /// `(|z| - |s - 1|)/w - |s|^(1 - N)`: other programs' form, for comparison; it
-    /// overestimates up to 8 % of points.
+    /// `(|z| - |s - 1|)/w - |s|^(1 - N)`: the form of other programs, for comparison. It
+    /// is too large at up to 8 % of points.
     Classic,
 }
 
-/// The Mandelbox and its parameters.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mandelbox {
-    /// s, with |s| > 1.
-    pub scale: f64,
-    /// The ball fold's inner radius.
-    pub min_radius: f64,
-    /// The ball fold's outer radius.
-    pub fixed_radius: f64,
-    /// L: the box fold's half edge.
-    pub fold_limit: f64,
-    /// Angles in degrees about x, y and z, between folds and scale.
-    pub rotation: DVec3,
-    /// Whether `julia_constant` is added in place of the starting point.
-    pub julia: bool,
-    /// The constant of Julia mode.
-    pub julia_constant: DVec3,
-    /// Which estimate.
-    pub estimate: Estimate,
-    /// Overrides [`DistanceEstimate::lipschitz`].
-    pub lipschitz: Option<f64>,
-}
+const ESTIMATES: &[(&str, Estimate)] =
+    &[("proven", Estimate::Proven), ("classic", Estimate::Classic)];
 
-impl Default for Mandelbox {
-    fn default() -> Self {
-        Self {
-            scale: 2.0,
-            min_radius: 0.5,
-            fixed_radius: 1.0,
-            fold_limit: 1.0,
-            rotation: DVec3::ZERO,
-            julia: false,
-            julia_constant: DVec3::ZERO,
-            estimate: Estimate::Proven,
-            lipschitz: None,
-        }
+settings! {
+    /// The Mandelbox and its parameters.
+    pub struct Mandelbox {
+        scale: f64 = 2.0, Number(-100.0, 100.0), "factor after the folds; its size must be at least 1.001";
+        min_radius: f64 = 0.5, Number(1e-6, 1e3), "inner radius of the ball fold";
+        fixed_radius: f64 = 1.0, Number(1e-6, 1e3), "outer radius of the ball fold";
+        fold_limit: f64 = 1.0, Number(1e-3, 1e3), "half edge of the box fold";
+        rotation: DVec3 = DVec3::ZERO, Triple(-360.0, 360.0),
+            "degrees about x, y, z between folds and scale";
+        julia: bool = false, Switch(), "add a constant instead of the starting point";
+        julia_constant: DVec3 = DVec3::ZERO, Triple(-1e3, 1e3), "that constant";
+        estimate: Estimate = Estimate::Proven, Word(ESTIMATES), "which distance estimate";
+        lipschitz: Option<f64> = None, AutoNumber(0.05, 100.0),
+            "steps divide by it; auto is the formula's own";
     }
 }
 
@@ -114,7 +94,12 @@ impl Mandelbox {
         TWO_SQRT_3 * self.fold_limit * self.scale.abs() * self.tail()
     }
 
-    /// The largest |c|: of all starting points in the bounds, or the constant's.
+    /// K for |c|.
+    fn k(&self, c: f64) -> f64 {
+        self.reach() + c * self.tail()
+    }
+
+    /// The largest |c| of any orbit.
     fn largest_c(&self) -> f64 {
         if self.julia {
             self.julia_constant.length()
@@ -124,17 +109,22 @@ impl Mandelbox {
     }
 
     fn bail2(&self) -> f64 {
-        let k = self.reach() + self.largest_c() * self.tail();
+        let k = self.k(self.largest_c());
         (BAIL_FACTOR * k).powi(2)
     }
 
-    /// One fold: `m`, the ball fold's factor, and `m R b`.
-    fn fold(&self, z: DVec3, rotation: Option<&Rotation>) -> (f64, DVec3) {
+    fn box_fold(&self, z: DVec3) -> DVec3 {
         let limit = DVec3::splat(self.fold_limit);
-        let b = 2.0 * z.clamp(-limit, limit) - z;
-        let (low, high) = (self.min_radius.powi(2), self.fixed_radius.powi(2));
-        let m = high / b.length_squared().clamp(low, high);
-        (m, m * rotation.map_or(b, |r| r.rotate(b)))
+        2.0 * z.clamp(-limit, limit) - z
+    }
+
+    /// The squares of the ball fold's radii.
+    fn radii2(&self) -> (f64, f64) {
+        (self.min_radius.powi(2), self.fixed_radius.powi(2))
+    }
+
+    fn classic_skin(&self, iterations: u32) -> f64 {
+        self.scale.abs().powf(1.0 - f64::from(iterations))
     }
 }
 
@@ -144,30 +134,11 @@ impl DistanceEstimate for Mandelbox {
     }
 
     fn keys(&mut self) -> Vec<Key<'_>> {
-        keys![
-            "scale" = Number(&mut self.scale, -100.0, 100.0),
-                "factor after the folds; its size must exceed 1";
-            "min_radius" = Number(&mut self.min_radius, 1e-6, 1e3),
-                "inner radius of the ball fold";
-            "fixed_radius" = Number(&mut self.fixed_radius, 1e-6, 1e3),
-                "outer radius of the ball fold";
-            "fold_limit" = Number(&mut self.fold_limit, 1e-3, 1e3),
-                "half edge of the box fold";
-            "rotation" = Triple(&mut self.rotation, -360.0, 360.0),
-                "degrees about x, y, z between folds and scale";
-            "julia" = Switch(&mut self.julia),
-                "add a constant instead of the starting point";
-            "julia_constant" = Triple(&mut self.julia_constant, -1e3, 1e3),
-                "that constant";
-            "estimate" = Word(&mut self.estimate, &[("proven", Estimate::Proven), ("classic", Estimate::Classic)]),
-                "which distance estimate";
-            "lipschitz" = AutoNumber(&mut self.lipschitz, 0.05, 100.0),
-                "steps divide by it; auto is the formula's own";
-        ]
+        self.keys()
     }
 
     fn check(&self) -> Result<(), Fault> {
-        // Below 1.001 the bounds exceed 4000 fold limits, and f32 has no room left.
+        // Below this the bounds exceed 4000 fold limits: too large for f32.
         if self.scale.abs() < 1.001 {
             return Err(Fault::new(
                 "scene.scale",
@@ -177,10 +148,7 @@ impl DistanceEstimate for Mandelbox {
         if self.min_radius > self.fixed_radius {
             return Err(Fault::new(
                 "scene.min_radius",
-                format!(
-                    "min_radius must not exceed fixed_radius ({})",
-                    self.fixed_radius
-                ),
+                format!("it must not exceed fixed_radius, {}", self.fixed_radius),
             ));
         }
         Ok(())
@@ -200,12 +168,13 @@ impl DistanceEstimate for Mandelbox {
 
     #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     fn uniforms(&self, iterations: u32) -> Vec<(&'static str, Vec<u8>)> {
+        let (min2, fixed2) = self.radii2();
         let folds = MandelboxUniform {
             julia: self.julia_constant.as_vec3(),
             scale: self.scale as f32,
             fold_limit: self.fold_limit as f32,
-            min2: self.min_radius.powi(2) as f32,
-            fixed2: self.fixed_radius.powi(2) as f32,
+            min2: min2 as f32,
+            fixed2: fixed2 as f32,
             bail2: self.bail2() as f32,
             reach: self.reach() as f32,
             tail: self.tail() as f32,
@@ -214,10 +183,8 @@ impl DistanceEstimate for Mandelbox {
         };
         let mut all = vec![("mandelbox_parameters", bytes_of(&folds).to_vec())];
         if let Some(rotation) = self.rotated() {
-            all.push((
-                "rotation_parameters",
-                bytes_of(&rotation.uniform()).to_vec(),
-            ));
+            let rows = rotation.uniform();
+            all.push(("rotation_parameters", bytes_of(&rows).to_vec()));
         }
         all
     }
@@ -229,12 +196,14 @@ impl DistanceEstimate for Mandelbox {
         } else {
             (p, 1.0)
         };
-        let bail2 = self.bail2();
+        let (bail2, (low, high)) = (self.bail2(), self.radii2());
         let (mut z, mut w, mut n) = (p, 1.0_f64, 0);
         while n < most && z.length_squared() <= bail2 {
-            let (m, b) = self.fold(z, rotation.as_ref());
-            z = self.scale * b + c;
-            // Held finite; past this the estimate is zero in f64 anyhow.
+            let b = self.box_fold(z);
+            let m = high / b.length_squared().clamp(low, high);
+            let turned = rotation.as_ref().map_or(b, |r| r.rotate(b));
+            z = self.scale * (m * turned) + c;
+            // Kept finite. The estimate is zero in f64 long before this limit.
             w = (self.scale.abs() * m * w + gain).min(1e300);
             n += 1;
         }
@@ -243,9 +212,8 @@ impl DistanceEstimate for Mandelbox {
                 (z.length() - (self.scale - 1.0).abs()) / w - self.classic_skin(most)
             }
             Estimate::Proven => {
-                let k = self.reach() + c.length() * self.tail();
                 let tail = if self.julia { 0.0 } else { self.tail() };
-                (z.length() - k) / (w + tail)
+                (z.length() - self.k(c.length())) / (w + tail)
             }
         };
         (d, n)
@@ -254,17 +222,15 @@ impl DistanceEstimate for Mandelbox {
     fn trap(&self, p: DVec3, most: u32) -> DVec3 {
         let rotation = self.rotated();
         let c = if self.julia { self.julia_constant } else { p };
-        let bail2 = self.bail2();
-        let limit = DVec3::splat(self.fold_limit);
-        let (low, high) = (self.min_radius.powi(2), self.fixed_radius.powi(2));
+        let (bail2, (low, high)) = (self.bail2(), self.radii2());
         let (mut origin, mut plane, mut sphere) = (1e10_f64, 1e10_f64, 1e10_f64);
         let mut z = p;
-        // The first folds shape the whole; later ones only add grain to the colour.
+        // Later iterations only add noise to the colour.
         for _ in 0..most.min(10) {
             if z.length_squared() > bail2 {
                 break;
             }
-            let b = 2.0 * z.clamp(-limit, limit) - z;
+            let b = self.box_fold(z);
             let b2 = b.length_squared();
             origin = origin.min(b2);
             plane = plane.min(b.abs().min_element());
@@ -286,34 +252,26 @@ impl DistanceEstimate for Mandelbox {
 
     fn bounds(&self) -> Bounds {
         let (s, l) = (self.scale, self.fold_limit);
-        if self.julia {
+        let rotated = self.rotated().is_some();
+        let (half, radius) = if self.julia {
             let c = self.julia_constant.abs();
-            let half = if self.rotated().is_some() {
-                DVec3::splat(self.reach() + c.length() * self.tail())
-            } else {
-                (DVec3::splat(2.0 * l * s.abs()) + c) * self.tail()
-            };
-            let k = self.reach() + c.length() * self.tail();
-            return Bounds {
-                centre: DVec3::ZERO,
-                half,
-                radius: half.length().min(k),
-            };
-        }
-        if self.rotated().is_some() {
+            let k = self.k(c.length());
+            let unturned = (DVec3::splat(2.0 * l * s.abs()) + c) * self.tail();
+            let half = if rotated { DVec3::splat(k) } else { unturned };
+            (half, half.length().min(k))
+        } else if rotated {
             let radius = TWO_SQRT_3 * l * (s.abs() + 1.0) * self.tail();
-            return Bounds {
-                centre: DVec3::ZERO,
-                half: DVec3::splat(radius),
-                radius,
-            };
-        }
-        let half = if s > 0.0 {
-            2.0 * l * (s + 1.0) * self.tail()
+            (DVec3::splat(radius), radius)
+        } else if s > 0.0 {
+            return Bounds::cuboid(DVec3::splat(2.0 * l * (s + 1.0) * self.tail()));
         } else {
-            2.0 * l
+            return Bounds::cuboid(DVec3::splat(2.0 * l));
         };
-        Bounds::cuboid(DVec3::splat(half))
+        Bounds {
+            centre: DVec3::ZERO,
+            half,
+            radius,
+        }
     }
 
     fn iterations(&self, eps: f64) -> u32 {
@@ -335,19 +293,12 @@ impl DistanceEstimate for Mandelbox {
     }
 }
 
-impl Mandelbox {
-    fn classic_skin(&self, iterations: u32) -> f64 {
-        self.scale.abs().powf(1.0 - f64::from(iterations))
-    }
-}
-
-/// A slope that the estimate stays under, by scale: how much too large a ball it gives.
+/// The Lipschitz constant at a scale, found by a search.
 ///
-/// w is the derivative at the point, not over the step, so a ball that crosses into a
-/// ball fold's zone can be too large. Rays from random points within the box met the
-/// surface inside such a ball by up to 2 % at scale -2 and 9 % at -3, and local slopes of
-/// 1.2 were seen at 2.5 and 3; at 2 and -1.5 none above 1 was (`estimates_of_empty_balls`
-/// below repeats the search).
+/// w is the derivative at one point and not over a step, so a ball that reaches into the zone
+/// of a ball fold can be too large. Rays from random points met the surface inside such a ball
+/// by up to 2 % at scale -2 and 9 % at -3. Slopes of 1.2 were seen at scales 2.5 and 3, and
+/// none above 1 at 2 and -1.5. The test `estimates_of_empty_balls` repeats the search.
 fn slope(scale: f64) -> f64 {
     if scale > 2.25 {
         1.2
@@ -362,7 +313,7 @@ fn slope(scale: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Pseudo-random numbers in 0..1 (a linear congruential generator).
+    /// A linear congruential generator of numbers from 0 to 1.
     struct Random(u64);
 
     impl Random {
@@ -376,8 +327,8 @@ mod tests {
         }
     }
 
-    /// Largest ratio of a ball's radius to the distance at which a ray from its centre
-    /// meets the surface, over random points and rays.
+    /// The largest share of a ball's radius by which a ray from its centre meets the surface
+    /// inside the ball, over random points and rays.
     fn worst_ball(shape: &Mandelbox, lipschitz: f64) -> f64 {
         let mut random = Random(7);
         let size = shape.bounds().half.x;
@@ -387,7 +338,7 @@ mod tests {
         for _ in 0..4000 {
             let mut p = random.point() * size;
             let mut d = shape.estimate(p, most).0 / lipschitz;
-            // Come closer along a random direction, where the folds are dense.
+            // Come closer to the surface, where folds are dense, in a random direction.
             let towards = random.point().normalize_or_zero();
             for _ in 0..8 {
                 let q = p + 0.9 * d * towards;
@@ -424,12 +375,12 @@ mod tests {
                 scale,
                 ..Mandelbox::default()
             };
-            // The skin itself is 1e-4 of the box, a per cent of the smallest balls.
+            // The hit threshold, 1e-4 of the box, is up to a per cent of the smallest balls.
             let worst = worst_ball(&shape, shape.lipschitz());
             assert!(worst < 0.02, "scale {scale}: {worst}");
             found = found.max(worst_ball(&shape, 0.8));
         }
-        // The search can fail: with balls a quarter larger it finds the surface inside.
+        // The search must find the surface inside balls that are a quarter too large.
         assert!(found > 0.1, "{found}");
     }
 }

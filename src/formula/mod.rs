@@ -1,4 +1,11 @@
-//! The list of formulas.
+//! Formulas: shapes given by an estimate of the distance to them.
+//!
+//! - [`mandelbox`]: the Mandelbox, and its Julia sets
+//! - [`balls`]: balls, boxes and a rod, for tests
+//! - [`rotation`]: a rotation between folds
+//!
+//! A new formula is a file here, a twin in `wgsl/formula/` and a word in the list
+//! `formulas!` below. The documentation and the tests follow that list.
 
 pub mod balls;
 mod contract;
@@ -7,7 +14,7 @@ pub mod rotation;
 
 pub use contract::{Bounds, DistanceEstimate};
 
-/// Makes the enum of all formulas out of one list: module and type of each.
+/// Makes the enum of all formulas from one list: module and type of each.
 macro_rules! formulas {
     ($($module:ident :: $type:ident),* $(,)?) => {
         /// One of the built-in formulas with its parameters.
@@ -41,7 +48,7 @@ macro_rules! formulas {
 formulas![mandelbox::Mandelbox, balls::Balls];
 
 impl Formula {
-    /// The formula of a name, with its default parameters.
+    /// The formula with a name, with its default parameters.
     pub fn named(name: &str) -> Option<Formula> {
         Self::all().into_iter().find(|f| f.name() == name)
     }

@@ -1,5 +1,5 @@
-//! A rotation between the folds of a formula. Twins: `wgsl/formula/rotation.wgsl`,
-//! and `rotation_none.wgsl` for the identity.
+//! A rotation between the folds of a formula.
+//! Twins: `wgsl/formula/rotation.wgsl`, and `rotation_none.wgsl` for the identity.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3, Vec3};
@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3, Vec3};
 use crate::base::shader::Module;
 use crate::wgsl;
 
-/// Three rows as WGSL reads them.
+/// The rows of the matrix as WGSL reads them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct RotationUniform {
@@ -25,9 +25,9 @@ pub struct RotationUniform {
     pub pad2: f32,
 }
 
-/// No entry of a rotation is off by more from the identity's than a few roundings of sines
-/// and cosines: it is the identity. The least angle that is told from none, 6e-14 degrees,
-/// moves nothing by what f32 could hold.
+/// A matrix counts as the identity if no entry differs from it by more. This is a few rounding
+/// errors of sines and cosines. The smallest angle that still counts, 6e-14 degrees, is far
+/// below the precision of f32.
 const IDENTITY: f64 = 1e-15;
 
 /// Rotation about x, then y, then z, by angles in degrees.
@@ -35,18 +35,18 @@ const IDENTITY: f64 = 1e-15;
 pub struct Rotation(DMat3);
 
 impl Rotation {
-    /// The rotation of three angles, or `None` where it is the identity.
+    /// The rotation by three angles; `None` if it is the identity.
     pub fn new(degrees: DVec3) -> Option<Self> {
-        // Whole turns leave no rounding of pi behind.
+        // Without whole turns, whose radians are rounded.
         let [x, y, z] = degrees.to_array().map(|a| (a % 360.0).to_radians());
         let matrix =
             DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
-        // Three half turns are none, too.
+        // Three half turns are also the identity.
         let same = matrix.abs_diff_eq(DMat3::IDENTITY, IDENTITY);
         (!same).then_some(Self(matrix))
     }
 
-    /// The module to join for a rotation, or for none.
+    /// The WGSL module of a rotation, or of none.
     pub fn module(rotation: Option<&Self>) -> Module {
         match rotation {
             Some(_) => wgsl!("formula/rotation.wgsl"),
@@ -54,16 +54,14 @@ impl Rotation {
         }
     }
 
-    /// Values for WGSL.
+    /// The values of the WGSL struct.
     pub fn uniform(&self) -> RotationUniform {
-        let row = |i| self.0.row(i).as_vec3();
+        let [row0, row1, row2] = [0, 1, 2].map(|i| self.0.row(i).as_vec3());
         RotationUniform {
-            row0: row(0),
-            pad0: 0.0,
-            row1: row(1),
-            pad1: 0.0,
-            row2: row(2),
-            pad2: 0.0,
+            row0,
+            row1,
+            row2,
+            ..Zeroable::zeroed()
         }
     }
 

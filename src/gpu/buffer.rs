@@ -16,8 +16,8 @@ pub struct Buffer<T> {
     kind: PhantomData<T>,
 }
 
-/// A buffer of so many bytes, cleared to zero.
-fn create(device: &Device, name: &str, size: u64, usage: BufferUsages) -> wgpu::Buffer {
+/// A buffer of so many bytes, all zero.
+pub(super) fn create(device: &Device, name: &str, size: u64, usage: BufferUsages) -> wgpu::Buffer {
     device.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
         size,
@@ -34,7 +34,7 @@ impl<T: Pod> Buffer<T> {
         Self::over(create(device, name, bytes_for::<T>(len), usage), len)
     }
 
-    /// The first `len` values of a buffer made elsewhere.
+    /// The first `len` values of an existing buffer.
     pub fn over(raw: wgpu::Buffer, len: usize) -> Self {
         Self {
             raw,
@@ -49,7 +49,7 @@ impl<T: Pod> Buffer<T> {
         device.queue.write_buffer(&self.raw, 0, bytes);
     }
 
-    /// Copies the first `count` values back, waiting for the device.
+    /// Waits for the device and reads the first `count` values.
     pub fn read(&self, device: &Device, count: usize) -> Result<Vec<T>, DeviceError> {
         let size = bytes_for::<T>(count.min(self.len));
         let staging = create(device, "staging", size, BufferUsages::MAP_READ);
@@ -61,14 +61,14 @@ impl<T: Pod> Buffer<T> {
     }
 }
 
-/// The first bytes of a buffer that can be mapped, once all that was submitted has run.
-/// The buffer stays mapped.
+/// Waits for the device and reads the first bytes of a buffer that can be mapped. The buffer
+/// stays mapped.
 pub fn map<T: Pod>(
     device: &Device,
     staging: &wgpu::Buffer,
     bytes: usize,
 ) -> Result<Vec<T>, DeviceError> {
-    // Failure to map is reported by `wait`, or by the range below.
+    // If this fails, `wait` or the range below reports it.
     staging.map_async(wgpu::MapMode::Read, .., |_| {});
     device.wait()?;
     let view = staging.get_mapped_range(..);
@@ -76,13 +76,13 @@ pub fn map<T: Pod>(
     Ok(bytemuck::pod_collect_to_vec(&view[..bytes]))
 }
 
-/// Size of a buffer: a multiple of the copy alignment.
+/// The size of a buffer in bytes, rounded up to the copy alignment.
 fn bytes_for<T>(len: usize) -> u64 {
     let size = (std::mem::size_of::<T>() * len) as u64;
     size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)
 }
 
-/// A buffer of parameters: the same for a whole dispatch, read as storage.
+/// A buffer of parameters, which shaders read as storage.
 pub fn uniform(device: &Device, name: &str, bytes: &[u8]) -> wgpu::Buffer {
     let size = (bytes.len() as u64).next_multiple_of(16);
     let raw = create(device, name, size, BufferUsages::STORAGE);

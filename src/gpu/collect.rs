@@ -1,27 +1,29 @@
-//! What the device made of a block, copied into the frame of the whole picture.
+//! Copies what the device made of a block into the frame of the whole picture.
 
 use std::collections::HashMap;
 use std::rc::Rc;
 
+use bytemuck::Pod;
+
 use crate::base::work::{State, Work};
 use crate::gpu::buffer::Buffer;
-use crate::gpu::device::{Device, DeviceError};
+use crate::gpu::device::Device;
 use crate::gpu::error::RenderError;
 use crate::gpu::job::Job;
 use crate::picture::frame::Frame;
 use crate::plan::Pass;
 
-/// The buffers of one block, by the names of their variables; what each pass leaves is
-/// there a second time with the number of the pass.
+/// The buffers of a block by the names of their variables. What a pass writes is also there by
+/// its name and the number of the pass.
 pub type Bound = HashMap<String, Rc<wgpu::Buffer>>;
 
-/// A state that no shader writes: what cells are found by that were not visited.
+/// A state that no shader writes. It marks cells that were not visited.
 pub const UNWRITTEN: u32 = u32::MAX;
 
-/// Copies a block's channels into the frame.
+/// Copies a block's layers into the frame.
 ///
 /// # Errors
-/// A lost device; cells that should have been visited and were not.
+/// The device is lost, or it left cells unvisited.
 pub fn collect(
     device: &Device,
     job: &Job<'_>,
@@ -29,21 +31,16 @@ pub fn collect(
     bound: &Bound,
     frame: &mut Frame,
 ) -> Result<(), RenderError> {
-    let get = |name: String| bound.get(&name).map(|b| &**b);
     let mut parents: Option<Vec<u32>> = None;
     for (at, pass) in passes.iter().enumerate() {
-        let (Some(front), Some(state)) = (get(format!("front {at}")), get(format!("state {at}")))
-        else {
-            continue;
-        };
         let divisor = match pass {
             Pass::March(level) => level.divisor,
-            _ => 1,
+            Pass::Trace => 1,
+            Pass::Color | Pass::Prepare(_) => continue,
         };
-        let cells = job.cells(divisor);
-        let count = cells[0] as usize * cells[1] as usize;
-        let states: Vec<u32> = read(device, state, count)?;
-        let missing = unvisited(&states, cells, parents.as_deref());
+        let to = Target::new(job, divisor);
+        let states: Vec<u32> = to.read(device, bound, &format!("state {at}"))?;
+        let missing = unvisited(&states, to.cells, parents.as_deref());
         if missing > 0 {
             return Err(RenderError::Unwritten {
                 device: device.info.name.clone(),
@@ -51,32 +48,23 @@ pub fn collect(
                 cells: missing,
             });
         }
-        let mut work = Vec::new();
-        if let Some(tally) = get(format!("tally {at}")) {
-            work = read::<[u32; 2]>(device, tally, count)?
-                .into_iter()
-                .map(|[evaluations, iterations]| Work {
-                    evaluations,
-                    iterations,
-                })
-                .collect();
+        let tally: Vec<[u32; 2]> = to.read(device, bound, &format!("tally {at}"))?;
+        let work = |[evaluations, iterations]: [u32; 2]| Work {
+            evaluations,
+            iterations,
+        };
+        let work: Vec<Work> = tally.into_iter().map(work).collect();
+        if !work.is_empty() {
             let figures = &mut frame.passes[at];
             let sum = |f: fn(&Work) -> u32| work.iter().map(|w| u64::from(f(w))).sum::<u64>();
             *figures.evaluations.get_or_insert(0) += sum(|w| w.evaluations);
             *figures.iterations.get_or_insert(0) += sum(|w| w.iterations);
         }
-        let to = Target {
-            origin: job.block.origin.map(|o| o / divisor),
-            cells,
-            width: job.plan.size[0].div_ceil(divisor),
-        };
         let codes: Vec<u8> = states.iter().copied().map(seen).collect();
         if *pass == Pass::Trace {
-            let mut depth: Vec<f32> = read(device, front, count)?;
-            for (t, s) in depth.iter_mut().zip(&codes) {
-                if *s == State::Sky as u8 {
-                    *t = f32::INFINITY;
-                }
+            let mut depth: Vec<f32> = to.read(device, bound, &format!("front {at}"))?;
+            for (t, _) in depth.iter_mut().zip(&codes).filter(|(_, s)| is_sky(**s)) {
+                *t = f32::INFINITY;
             }
             to.copy(&depth, &mut frame.depth);
             to.copy(&codes, &mut frame.state);
@@ -85,11 +73,10 @@ pub fn collect(
             let layer = &mut frame.levels[at];
             to.copy(&work, &mut layer.work);
             if job.extras.levels {
-                let mut fronts: Vec<f32> = read(device, front, count)?;
-                for (f, s) in fronts.iter_mut().zip(&states) {
-                    if *s == UNWRITTEN {
-                        *f = f32::MAX;
-                    }
+                let mut fronts: Vec<f32> = to.read(device, bound, &format!("front {at}"))?;
+                let all = fronts.iter_mut().zip(&states);
+                for (front, _) in all.filter(|(_, s)| **s == UNWRITTEN) {
+                    *front = f32::MAX;
                 }
                 to.copy(&fronts, &mut layer.front);
                 to.copy(&codes, &mut layer.state);
@@ -97,41 +84,36 @@ pub fn collect(
         }
         parents = Some(states);
     }
-    let to = Target {
-        origin: job.block.origin,
-        cells: job.block.size,
-        width: job.plan.size[0],
-    };
-    let rgb =
-        |v: Vec<[f32; 4]>| -> Vec<_> { v.into_iter().map(|[r, g, b, _]| [r, g, b]).collect() };
-    if let Some(raw) = get("radiance".into()) {
-        let pixels: Vec<[f32; 4]> = read(device, raw, job.block.area())?;
-        frame.undecided += pixels.iter().filter(|p| p[3] == 0.0).count();
-        to.copy(&rgb(pixels), &mut frame.radiance);
-    }
-    if let (true, Some(raw)) = (job.extras.normals, get("normals".into())) {
-        let normals = rgb(read(device, raw, job.block.area())?);
+    let to = Target::new(job, 1);
+    let rgb = |[r, g, b, _]: [f32; 4]| [r, g, b];
+    let pixels: Vec<[f32; 4]> = to.read(device, bound, "radiance")?;
+    frame.undecided += pixels.iter().filter(|p| p[3] == 0.0).count();
+    let radiance: Vec<_> = pixels.into_iter().map(rgb).collect();
+    to.copy(&radiance, &mut frame.radiance);
+    if job.extras.normals {
+        let normals = to.read(device, bound, "normals")?;
+        let normals: Vec<_> = normals.into_iter().map(rgb).collect();
         to.copy(&normals, &mut frame.normal);
     }
     Ok(())
 }
 
-/// Cells that were not visited although their parent is not sky, or that were although
-/// it is; without parents every cell is to be visited.
+/// Number of cells that were not visited although their parent is not sky, or visited although
+/// it is. Without parents every cell must be visited.
 fn unvisited(states: &[u32], cells: [u32; 2], parents: Option<&[u32]>) -> usize {
     let width = cells[0] as usize;
     let parent_width = width.div_ceil(2);
     let wrong = |(i, state): (usize, &u32)| {
         let wanted = parents.is_none_or(|p| {
             let parent = p[(i / width / 2) * parent_width + i % width / 2];
-            seen(parent) != State::Sky as u8
+            !is_sky(seen(parent))
         });
         wanted == State::from_code(*state).is_none()
     };
     states.iter().enumerate().filter(|c| wrong(*c)).count()
 }
 
-/// A state as it goes into a frame: cells that were never visited have a sky parent.
+/// A state in a frame. Cells that were not visited are sky, as their parents are.
 fn seen(state: u32) -> u8 {
     if state == UNWRITTEN {
         State::Sky as u8
@@ -140,7 +122,11 @@ fn seen(state: u32) -> u8 {
     }
 }
 
-/// Where a block's rows go in a layer of the whole image.
+fn is_sky(code: u8) -> bool {
+    code == State::Sky as u8
+}
+
+/// The place of a block in a layer of the whole image.
 struct Target {
     origin: [u32; 2],
     cells: [u32; 2],
@@ -148,6 +134,30 @@ struct Target {
 }
 
 impl Target {
+    /// The place of a job's block in the layer of a divisor.
+    fn new(job: &Job<'_>, divisor: u32) -> Self {
+        Self {
+            origin: job.block.origin.map(|o| o / divisor),
+            cells: job.cells(divisor),
+            width: job.plan.size[0].div_ceil(divisor),
+        }
+    }
+
+    /// The block's values of a buffer; none if there is no such buffer.
+    fn read<T: Pod>(
+        &self,
+        device: &Device,
+        bound: &Bound,
+        name: &str,
+    ) -> Result<Vec<T>, RenderError> {
+        let Some(raw) = bound.get(name) else {
+            return Ok(Vec::new());
+        };
+        let count = self.cells[0] as usize * self.cells[1] as usize;
+        let buffer = Buffer::<T>::over((**raw).clone(), count);
+        Ok(buffer.read(device, count)?)
+    }
+
     fn copy<T: Copy>(&self, from: &[T], to: &mut [T]) {
         if from.is_empty() || to.is_empty() {
             return;
@@ -158,12 +168,4 @@ impl Target {
             to[start..start + width].copy_from_slice(row);
         }
     }
-}
-
-fn read<T: bytemuck::Pod>(
-    device: &Device,
-    raw: &wgpu::Buffer,
-    count: usize,
-) -> Result<Vec<T>, DeviceError> {
-    Buffer::<T>::over(raw.clone(), count).read(device, count)
 }

@@ -1,4 +1,4 @@
-//! Choosing an adapter, opening it, and learning when it is lost.
+//! Adapters and devices: how one is chosen and opened, and how its loss is noticed.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -6,24 +6,24 @@ use std::time::Duration;
 use thiserror::Error;
 use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Features, Instance, Limits};
 
-/// Storage buffers that a pass over pixels may use: twice as many as WebGPU promises, and
-/// fewer than desktop adapters have. Parameters are among them: steering branches by uniform
-/// buffers makes lavapipe of Mesa 22 inline them, at times past its stack.
-/// Most are those of a cone level over a painted relief with four cones to a sample, counted.
+/// The number of storage buffers that a pass over pixels may bind. WebGPU promises half as
+/// many, desktop adapters have more. Parameters are storage buffers too, as lavapipe of Mesa 22
+/// inlines uniform buffers that steer branches, at times beyond its stack. A cone level over a
+/// painted heightfield with four cones per sample binds the most.
 pub const STORAGE_BUFFERS: u32 = 16;
 
-/// Storage buffers that WebGPU promises everywhere. To make cone maps takes fewer.
+/// The number of storage buffers that WebGPU promises. Generators of cone maps need no more.
 pub const PROMISED_BUFFERS: u32 = 8;
 
-/// What can go wrong between asking for a device and waiting for its work.
+/// What can go wrong with a device.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum DeviceError {
     /// No adapter fits the choice.
     #[error("there is no {choice}; there is: {there_is}")]
     NoMatch {
-        /// What was asked for, in words.
+        /// The choice, in words.
         choice: String,
-        /// What there is, in a line.
+        /// The adapters of this machine.
         there_is: String,
     },
     /// The adapter refused to open.
@@ -33,7 +33,7 @@ pub enum DeviceError {
     Open {
         /// Its name.
         name: String,
-        /// What it said.
+        /// The reason.
         why: String,
     },
     /// The device stopped working.
@@ -43,7 +43,7 @@ pub enum DeviceError {
     Lost {
         /// Its name.
         name: String,
-        /// What the driver said.
+        /// The driver's reason.
         why: String,
     },
     /// The device reported an error of memory or validation.
@@ -51,32 +51,32 @@ pub enum DeviceError {
     Reported {
         /// Its name.
         name: String,
-        /// What it said.
+        /// The reason.
         why: String,
     },
 }
 
-/// Which device to render on.
+/// The device to render on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Choice {
-    /// The best hardware adapter, else software, else the CPU executor.
+    /// The best hardware adapter, else a software adapter, else the CPU executor.
     #[default]
     Auto,
-    /// Hardware, or an error.
+    /// A hardware adapter, or an error.
     Hardware,
     /// A software Vulkan adapter, or an error.
     Software,
     /// The CPU executor.
     Cpu,
-    /// Index of `conemarch devices`.
+    /// An index of `conemarch devices`.
     Index(usize),
-    /// Part of an adapter's name.
+    /// A part of an adapter's name.
     Name(String),
 }
 
 impl Choice {
-    /// Reads `auto`, `gpu`, `software`, `cpu`, an index or a part of a name; `None` of
-    /// nothing but blanks, which would be a part of every name.
+    /// Reads `auto`, `gpu`, `software`, `cpu`, an index or a part of a name. Returns `None` for
+    /// blanks, as these are a part of every name.
     pub fn read(text: &str) -> Option<Self> {
         Some(match text.trim() {
             "" => return None,
@@ -84,10 +84,9 @@ impl Choice {
             "gpu" => Self::Hardware,
             "software" => Self::Software,
             "cpu" => Self::Cpu,
-            other => match other.parse() {
-                Ok(index) => Self::Index(index),
-                Err(_) => Self::Name(other.to_string()),
-            },
+            other => other
+                .parse()
+                .map_or_else(|_| Self::Name(other.to_string()), Self::Index),
         })
     }
 }
@@ -98,12 +97,11 @@ pub struct Adapters {
 }
 
 impl Adapters {
-    /// Looks for adapters with compute: Vulkan, Metal and Direct3D 12.
+    /// Finds all adapters of Vulkan, Metal and Direct3D 12.
     pub fn find() -> Self {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = Backends::VULKAN | Backends::METAL | Backends::DX12;
-        // Nothing here dispatches indirectly; its validation would cost a dispatch
-        // and build pipelines at device creation.
+        // This program never dispatches indirectly, and the validation for that costs time.
         descriptor.flags = wgpu::InstanceFlags::default()
             .difference(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
         let instance = Instance::new(descriptor);
@@ -111,7 +109,7 @@ impl Adapters {
         Self { list }
     }
 
-    /// What is known of each adapter.
+    /// Each adapter.
     pub fn iter(&self) -> impl Iterator<Item = &Adapter> {
         self.list.iter()
     }
@@ -125,27 +123,25 @@ impl Adapters {
         names + "cpu (the executor in f64, always there)"
     }
 
-    /// All adapters with the reason to take them where none is asked for: hardware first, the
-    /// fastest kind first, then software.
+    /// All adapters, best first: discrete and integrated hardware, other hardware, software.
+    /// Each has the reason to choose it.
     pub fn in_order(&self) -> Vec<(&Adapter, &'static str)> {
-        let rank = |adapter: &&Adapter| match adapter.get_info().device_type {
-            DeviceType::DiscreteGpu => 0,
-            DeviceType::IntegratedGpu => 1,
-            DeviceType::Cpu => 3,
-            _ => 2,
+        let of = |adapter: &Adapter| match adapter.get_info().device_type {
+            DeviceType::DiscreteGpu => (0, HARDWARE),
+            DeviceType::IntegratedGpu => (1, HARDWARE),
+            DeviceType::Cpu => (3, SOFTWARE),
+            _ => (2, HARDWARE),
         };
         let mut all: Vec<&Adapter> = self.list.iter().collect();
-        all.sort_by_key(rank);
-        let reason = |adapter: &Adapter| match adapter.get_info().device_type {
-            DeviceType::Cpu => "software Vulkan, as there is no hardware adapter",
-            _ => "the best hardware adapter",
-        };
-        all.into_iter().map(|a| (a, reason(a))).collect()
+        all.sort_by_key(|adapter| of(adapter).0);
+        all.into_iter().map(|a| (a, of(a).1)).collect()
     }
 
-    /// Opens the first adapter in order that does, for programs that bind up to so many
-    /// storage buffers; software ones are passed over unless they may serve. With the reason
-    /// to take it, or that why none is.
+    /// Opens the first adapter in order that opens for so many storage buffers, with the
+    /// reason to choose it. Software adapters count only if `software` is set.
+    ///
+    /// # Errors
+    /// Why no adapter was opened.
     pub fn open_first(
         &self,
         storage_buffers: u32,
@@ -162,47 +158,33 @@ impl Adapters {
                 }
             }
         }
-        let kind = if software {
-            "adapter"
-        } else {
-            "hardware adapter"
-        };
-        Err(failed.unwrap_or_else(|| format!("as there is no {kind}")))
+        let kind = if software { "" } else { "hardware " };
+        Err(failed.unwrap_or_else(|| format!("as there is no {kind}adapter")))
     }
 
-    /// The adapter that a choice means, with the reason; `None` for the CPU executor.
+    /// The adapter of a choice, with the reason; `None` for the CPU executor.
     ///
     /// # Errors
     /// No adapter fits.
     pub fn choose(&self, choice: &Choice) -> Result<Option<(&Adapter, String)>, DeviceError> {
-        let first = |fits: &dyn Fn(&AdapterInfo) -> bool| {
-            let mut all = self.in_order().into_iter().map(|(adapter, _)| adapter);
-            all.find(|a| fits(&a.get_info()))
+        let ordered = self.in_order();
+        let first = |hardware: bool| {
+            let mut all = ordered.iter().map(|(adapter, _)| *adapter);
+            all.find(|a| (a.get_info().device_type != DeviceType::Cpu) == hardware)
         };
         let (found, asked) = match choice {
             Choice::Cpu => return Ok(None),
             Choice::Auto => {
-                let first = self.in_order().into_iter().next();
-                return Ok(first.map(|(adapter, why)| (adapter, why.to_string())));
+                let best = ordered.first();
+                return Ok(best.map(|(adapter, why)| (*adapter, why.to_string())));
             }
-            Choice::Hardware => {
-                let found = first(&|i| i.device_type != DeviceType::Cpu);
-                (found, "hardware adapter".into())
-            }
-            Choice::Software => {
-                let found = first(&|i| i.device_type == DeviceType::Cpu);
-                (found, "software adapter".into())
-            }
+            Choice::Hardware => (first(true), "hardware adapter".into()),
+            Choice::Software => (first(false), "software adapter".into()),
             Choice::Index(i) => (self.list.get(*i), format!("adapter {i}")),
             Choice::Name(part) => {
-                let fits = |a: &&Adapter| {
-                    let name = a.get_info().name.to_lowercase();
-                    name.contains(&part.to_lowercase())
-                };
-                (
-                    self.list.iter().find(fits),
-                    format!("adapter called `{part}`"),
-                )
+                let part_of = |name: String| name.to_lowercase().contains(&part.to_lowercase());
+                let found = self.list.iter().find(|a| part_of(a.get_info().name));
+                (found, format!("adapter called `{part}`"))
             }
         };
         let found = found.map(|adapter| Some((adapter, "as asked".to_string())));
@@ -212,6 +194,11 @@ impl Adapters {
         })
     }
 }
+
+/// Why a hardware adapter is chosen.
+const HARDWARE: &str = "the best hardware adapter";
+/// Why a software adapter is chosen.
+const SOFTWARE: &str = "software Vulkan, as there is no hardware adapter";
 
 /// `discrete`, `integrated`, `virtual`, `software` or `other`.
 pub fn kind(info: &AdapterInfo) -> &'static str {
@@ -230,9 +217,9 @@ pub struct Device {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// What the adapter says of itself.
+    /// The adapter's description of itself.
     pub info: AdapterInfo,
-    /// Nanoseconds per timestamp tick, where the adapter has timestamps.
+    /// Nanoseconds per timestamp tick, if the adapter has timestamps.
     pub tick_ns: Option<f32>,
     trouble: Arc<Mutex<Option<DeviceError>>>,
 }
@@ -245,18 +232,18 @@ impl Device {
         self.queue.submit([encoder.finish()]);
     }
 
-    /// Opens an adapter with its own limits, timestamps and f64 where it has them, for
-    /// programs that bind up to so many storage buffers.
+    /// Opens an adapter for programs that bind up to so many storage buffers. Timestamps and
+    /// f64 are on if the adapter has them.
     ///
     /// # Errors
-    /// It has not as many, or does not open.
+    /// It has fewer storage buffers, or does not open.
     pub fn open(adapter: &Adapter, storage_buffers: u32) -> Result<Self, DeviceError> {
         let info = adapter.get_info();
         let wanted = Features::TIMESTAMP_QUERY | Features::SHADER_F64;
         let features = adapter.features() & wanted;
         let limits = adapter.limits();
         let buffers = limits.max_storage_buffers_per_shader_stage;
-        // Told here, where another device or the CPU can still take its place.
+        // An error here, rather than later, lets the caller choose another device.
         if buffers < storage_buffers {
             return Err(DeviceError::Open {
                 name: info.name,
@@ -306,7 +293,7 @@ impl Device {
         })
     }
 
-    /// Bytes of the largest buffer that a program can use.
+    /// Bytes of the largest buffer that a program can bind.
     pub fn most_bound(&self) -> u64 {
         let limits = self.device.limits();
         limits
@@ -314,13 +301,14 @@ impl Device {
             .min(limits.max_buffer_size)
     }
 
-    /// Waits until everything submitted has run, and reports a device that was lost or
-    /// complained meanwhile.
+    /// Waits until everything submitted has run.
+    ///
+    /// # Errors
+    /// The device was lost or reported an error.
     pub fn wait(&self) -> Result<(), DeviceError> {
         let polled = self.device.poll(wgpu::PollType::Wait {
             submission_index: None,
-            // No pass submits more than a bounded number of steps; a device that
-            // needs longer than this for them has hung.
+            // A dispatch has a bounded number of steps. A device that needs longer hangs.
             timeout: Some(Duration::from_secs(120)),
         });
         self.trouble()?;
@@ -334,16 +322,16 @@ impl Device {
         }
     }
 
-    /// The first loss or complaint so far. What a lost device complains of is the loss.
+    /// Checks that the device works. A loss is reported before any other error.
     ///
     /// # Errors
-    /// That loss or complaint.
+    /// The device was lost or reported an error.
     pub fn trouble(&self) -> Result<(), DeviceError> {
         let Some(error) = self.noted()? else {
             return Ok(());
         };
         if matches!(error, DeviceError::Reported { .. }) {
-            // A loss is told only when the device is polled; its answer is in the note.
+            // Polling notes a loss.
             let _ = self.device.poll(wgpu::PollType::Poll);
             if let Some(later) = self.noted()? {
                 return Err(later);
@@ -353,14 +341,14 @@ impl Device {
     }
 
     fn noted(&self) -> Result<Option<DeviceError>, DeviceError> {
-        // A poisoned note means that a callback died: treat it as a loss.
+        // The lock is poisoned if a callback panicked.
         let slot = self.trouble.lock();
         let slot = slot.map_err(|_| self.lost("its error report was interrupted"))?;
         Ok(slot.clone())
     }
 }
 
-/// Notes an error of a device. A loss outweighs complaints, the first complaint the later ones.
+/// Notes an error of a device. A loss replaces any other error; otherwise the first one stays.
 fn note(slot: &Mutex<Option<DeviceError>>, error: DeviceError) {
     if let Ok(mut slot) = slot.lock()
         && (matches!(error, DeviceError::Lost { .. }) || slot.is_none())

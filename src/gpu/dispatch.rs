@@ -1,20 +1,21 @@
-//! One dispatch, the wait for it, and what it tells: how many cells it listed, and how
-//! long the device took. All of it in one submission and one small buffer to read, as
-//! every round trip to a device costs about as much as a small level.
+//! One dispatch with its results: how many cells it listed, and how long the device took.
+//!
+//! A round trip to a device costs about as much as a small level, so a dispatch is one
+//! submission and one small buffer to read.
 
-use crate::gpu::buffer::map;
+use crate::gpu::buffer::{create, map};
 use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::kernel::Kernel;
 use crate::pass::queue::COUNT_AT;
 
-/// Where in the told numbers the two timestamps are; before them come the two counts.
+/// Offset of the two timestamps in the result. The two counts are before them.
 const STAMPS_AT: u64 = 8;
-/// Bytes of the told numbers.
+/// Bytes of the result.
 const TOLD: u64 = STAMPS_AT + 2 * STAMP;
 /// Bytes of a timestamp.
 const STAMP: u64 = 8;
 
-/// Dispatches and listens.
+/// Runs dispatches and reads their results.
 pub struct Dispatcher {
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
     told: wgpu::Buffer,
@@ -28,28 +29,20 @@ pub struct Filled<'a> {
     pub parents: &'a wgpu::Buffer,
 }
 
-/// What a dispatch told.
+/// The result of a dispatch.
 #[derive(Clone, Copy, Debug)]
 pub struct Told {
     /// Cells that still move.
     pub moving: u32,
-    /// Cells of this pass listed so far for the next.
+    /// Cells of this pass that are listed for the next one so far.
     pub parents: u32,
-    /// Nanoseconds on the device, where it has timestamps and was asked.
+    /// Nanoseconds on the device, if it has timestamps and they were asked for.
     pub ns: Option<f64>,
 }
 
 impl Dispatcher {
     /// A dispatcher of a device.
     pub fn new(device: &Device) -> Self {
-        let buffer = |name, size, usage| {
-            device.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(name),
-                size,
-                usage: usage | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
         let queries = device.tick_ns.map(|_| {
             let set = device.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("passes"),
@@ -57,16 +50,16 @@ impl Dispatcher {
                 count: 2,
             });
             let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-            (set, buffer("timestamps", 2 * STAMP, usage))
+            (set, create(device, "timestamps", 2 * STAMP, usage))
         });
         Self {
             queries,
-            told: buffer("told", TOLD, wgpu::BufferUsages::MAP_READ),
+            told: create(device, "told", TOLD, wgpu::BufferUsages::MAP_READ),
         }
     }
 
-    /// Runs so many workgroups of a kernel to their end. The list of what moves is
-    /// emptied before; the list of parents grows.
+    /// Runs so many workgroups of a kernel and waits for them. The list of moving cells is
+    /// emptied before, the list of parents grows.
     pub fn run(
         &self,
         device: &Device,

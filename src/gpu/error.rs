@@ -17,7 +17,7 @@ pub enum RenderError {
     /// A program failed.
     #[error(transparent)]
     Kernel(#[from] KernelError),
-    /// What the scene needs could not be made.
+    /// An asset of the scene could not be loaded or made.
     #[error(transparent)]
     Prepare(PrepareError),
     /// A buffer is larger than the device allows.
@@ -35,12 +35,12 @@ pub enum RenderError {
         /// Bytes that the device allows.
         most: u64,
     },
-    /// The caller asked to stop.
+    /// The watch cancelled the render.
     #[error("cancelled")]
     Cancelled,
-    /// The device claims to be done, but cells were never visited.
+    /// The device reported no error but left cells unvisited.
     #[error(
-        "the device `{device}` left {cells} cells of pass `{pass}` unwritten and reported no error; try a smaller --size, another --device, or --device cpu"
+        "the device `{device}` left {cells} cells of pass `{pass}` unwritten and reported no error. Try a smaller --size, another --device, or --device cpu"
     )]
     Unwritten {
         /// Its name.

@@ -1,4 +1,4 @@
-//! The numbers of one pass over one block.
+//! What a block is rendered from, and the numbers of each pass over it.
 
 use crate::pass::look::Light;
 use crate::pass::march::LevelUniform;
@@ -8,73 +8,64 @@ use crate::scene::AnySolid;
 
 /// What a block is rendered from.
 pub struct Job<'a> {
-    /// What to render.
+    /// The plan.
     pub plan: &'a Plan,
-    /// Its scene, made ready.
+    /// Its scene.
     pub scene: &'a AnySolid,
     /// Its light.
     pub light: Light,
-    /// Steps that a ray may do.
+    /// The step limit of a ray.
     pub ray_steps: u32,
-    /// What it yields.
+    /// What to yield beside colour and depth.
     pub extras: Extras,
-    /// The pixels of this job.
+    /// The block.
     pub block: Block,
 }
 
-/// Numbers of one pass over one block.
+/// The numbers of one pass over one block.
 pub struct Setup {
     /// Cells along each axis.
     pub cells: [u32; 2],
-    /// Steps that a cell may do.
+    /// The step limit of a cell.
     pub limit: u32,
-    /// Cells per row of the parent level, 0 without one.
+    /// Cells per row of the parent level; 0 if there is none.
     pub parent_width: u32,
-    /// What the shader must know of a cone level.
+    /// The numbers of a cone level.
     pub level: Option<LevelUniform>,
 }
 
 impl Job<'_> {
-    /// Cells of a divisor in the block.
+    /// Cells along each axis of the block at a divisor.
     pub fn cells(&self, divisor: u32) -> [u32; 2] {
         self.block.size.map(|n| n.div_ceil(divisor))
     }
 
     /// The numbers of a pass.
     pub fn setup(&self, pass: Pass) -> Setup {
-        let parent_width = |divisor: u32| {
-            if divisor < self.plan.pyramid().coarsest() {
+        let (divisor, limit) = match pass {
+            Pass::March(level) => (level.divisor, level.steps),
+            Pass::Trace => (1, self.ray_steps),
+            Pass::Color | Pass::Prepare(_) => (1, 1),
+        };
+        let cells = self.cells(divisor);
+        let has_parents = pass.marches() && divisor < self.plan.pyramid().coarsest();
+        let level = |fudge: f64| LevelUniform {
+            divisor,
+            fudge: fudge as f32,
+            origin: self.block.origin.map(|o| o / divisor),
+            cells,
+        };
+        Setup {
+            cells,
+            limit,
+            parent_width: if has_parents {
                 self.cells(2 * divisor)[0]
             } else {
                 0
-            }
-        };
-        match pass {
-            Pass::March(level) => {
-                let cells = self.cells(level.divisor);
-                Setup {
-                    cells,
-                    limit: level.steps,
-                    parent_width: parent_width(level.divisor),
-                    level: Some(LevelUniform {
-                        divisor: level.divisor,
-                        fudge: level.fudge as f32,
-                        origin: self.block.origin.map(|o| o / level.divisor),
-                        cells,
-                    }),
-                }
-            }
-            Pass::Trace => Setup {
-                cells: self.block.size,
-                limit: self.ray_steps,
-                parent_width: parent_width(1),
-                level: None,
             },
-            Pass::Color | Pass::Prepare(_) => Setup {
-                cells: self.block.size,
-                limit: 1,
-                parent_width: 0,
-                level: None,
+            level: match pass {
+                Pass::March(of) => Some(level(of.fudge)),
+                _ => None,
             },
         }
     }

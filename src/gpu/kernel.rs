@@ -1,7 +1,7 @@
-//! A compiled program: pipeline, layouts, and its resources by name.
+//! A compiled program: its pipeline, its layouts, and its resources by name.
 //!
-//! The layouts are read from the WGSL itself, so that a binding is said in one place,
-//! and resources are bound by the name of the variable, so that none can be swapped.
+//! Layouts are read from the WGSL, so a binding is declared in one place. Resources are bound
+//! by the names of the WGSL variables, so they cannot be swapped.
 
 use std::rc::Rc;
 
@@ -11,10 +11,10 @@ use wgpu::naga::{self, AddressSpace, StorageAccess};
 use crate::base::shader::{Program, ShaderError};
 use crate::gpu::device::Device;
 
-/// Why a kernel could not be made or bound.
+/// Why a kernel could not be compiled or bound.
 #[derive(Debug, Error)]
 pub enum KernelError {
-    /// The text is wrong.
+    /// The program is invalid.
     #[error(transparent)]
     Shader(#[from] ShaderError),
     /// The driver refused the pipeline.
@@ -24,10 +24,10 @@ pub enum KernelError {
         device: String,
         /// The program.
         entry: &'static str,
-        /// What it said.
+        /// The driver's reason.
         why: String,
     },
-    /// A variable of the program was given no buffer.
+    /// A variable of the program has no buffer.
     #[error("the program `{entry}` needs a buffer for `{name}`")]
     Unbound {
         /// The program.
@@ -70,7 +70,7 @@ pub struct Kernel {
     pipeline: wgpu::ComputePipeline,
     layouts: Vec<wgpu::BindGroupLayout>,
     bindings: Vec<Binding>,
-    /// Array strides in bytes of the storage variables, by name.
+    /// The array strides of the storage variables in bytes, by name.
     strides: Vec<(String, u32)>,
 }
 
@@ -132,7 +132,7 @@ impl Kernel {
         })
     }
 
-    /// Bytes per element of a storage array, if the program has it.
+    /// Bytes per element of a storage array; `None` if the program has no such array.
     pub fn stride(&self, name: &str) -> Option<u32> {
         let found = self.strides.iter().find(|(n, _)| n == name);
         found.map(|(_, s)| *s)
@@ -144,26 +144,27 @@ impl Kernel {
         device: &Device,
         buffer: impl Fn(&str) -> Option<&'a wgpu::Buffer>,
     ) -> Result<Vec<wgpu::BindGroup>, KernelError> {
-        let mut groups = Vec::new();
-        for (group, layout) in (0u32..).zip(&self.layouts) {
-            let mut entries = Vec::new();
-            for b in self.bindings.iter().filter(|b| b.group == group) {
-                let raw = buffer(&b.name).ok_or_else(|| KernelError::Unbound {
-                    entry: self.entry,
-                    name: b.name.clone(),
-                })?;
-                entries.push(wgpu::BindGroupEntry {
-                    binding: b.index,
-                    resource: raw.as_entire_binding(),
-                });
-            }
-            groups.push(device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let entry = |b: &Binding| {
+            let raw = buffer(&b.name).ok_or_else(|| KernelError::Unbound {
+                entry: self.entry,
+                name: b.name.clone(),
+            });
+            raw.map(|raw| wgpu::BindGroupEntry {
+                binding: b.index,
+                resource: raw.as_entire_binding(),
+            })
+        };
+        let group = |(group, layout)| {
+            let of_group = self.bindings.iter().filter(|b| b.group == group);
+            let entries = of_group.map(entry).collect::<Result<Vec<_>, _>>()?;
+            let descriptor = wgpu::BindGroupDescriptor {
                 label: Some(self.entry),
                 layout,
                 entries: &entries,
-            }));
-        }
-        Ok(groups)
+            };
+            Ok(device.device.create_bind_group(&descriptor))
+        };
+        (0u32..).zip(&self.layouts).map(group).collect()
     }
 
     /// Runs so many workgroups over buffers by the names of their variables. The device

@@ -1,4 +1,10 @@
-//! The GPU executor: choosing a device, typed buffers, compiled kernels, and rendering.
+//! The GPU executor: the passes of a Plan in f32 on a wgpu device.
+//!
+//! - [`render`]: from a Plan to a Frame
+//! - [`device`]: adapters and devices; [`buffer`]: typed buffers; [`kernel`]: compiled programs
+//! - `job`: the numbers of a pass; `dispatch`: one dispatch; [`collect`]: results into the Frame
+//! - [`conemap`]: generators of cone maps on the device
+//! - `error`: why a render failed
 
 pub mod buffer;
 pub mod collect;

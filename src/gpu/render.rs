@@ -1,9 +1,8 @@
-//! The GPU executor: a Plan to a Frame on a wgpu device.
+//! From a Plan to a Frame on a wgpu device.
 //!
-//! A [`Renderer`] lives long and keeps compiled kernels and buffers between calls.
-//! Large images are made in blocks on the pixel grid of the whole image, and every pass
-//! in dispatches of a bounded number of steps, run again for what still moves. Neither
-//! changes a bit of the picture.
+//! A [`Renderer`] keeps compiled kernels and buffers between calls. Large images are cut into
+//! blocks, and a pass into dispatches of a bounded number of steps, each for the cells that
+//! still move. Neither changes a bit of the picture.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -32,40 +31,39 @@ pub use super::error::RenderError;
 use super::error::check_room;
 use super::job::{Job, Setup};
 
-/// How the work is cut. It never changes a picture.
+/// How work is cut. This never changes a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cutting {
-    /// Longest edge of a block in pixels.
+    /// The largest edge of a block in pixels.
     pub block: u32,
-    /// Steps of the first dispatch of a pass; each later one does four times as many.
+    /// The step limit of the first dispatch of a pass. Each later one has four times as many.
     pub chunk: u32,
 }
 
 impl Default for Cutting {
     fn default() -> Self {
         Self {
-            // 16 MiB for the widest channel, and well under a second per dispatch on
+            // The largest buffer has 16 MiB, and a dispatch takes far less than a second on
             // slow devices.
             block: 1024,
-            // Most rays end within 64 steps. What is left then is packed and runs on in
-            // dispatches of 256; packing sooner costs a software device more in visits
-            // than it saves in idle lanes.
+            // Most rays end within 64 steps. The rest are packed and run in dispatches of
+            // 256. Packing sooner costs a software device more in visits than it saves in
+            // idle lanes.
             chunk: 64,
         }
     }
 }
 
-/// Steps of the longest dispatch: with a block of a million pixels still well under
-/// the time after which drivers give a device up.
+/// The largest step limit of a dispatch. With a block of a million pixels it stays far below
+/// the time limit of drivers.
 const MOST_STEPS_AT_ONCE: u32 = 256;
 
-/// Rounds of all loops together that an invocation may take in one dispatch of a pass that
-/// can be cut. Mesa's software Vulkan ends every loop after 65 535 of them, without a
-/// word: at 287 iterations and 256 steps all pixels were wrong. Some are left for loops
-/// that are not counted here.
+/// The largest number of loop rounds of an invocation in one dispatch. Mesa's software Vulkan
+/// silently ends every loop after 65 535 rounds: at 287 iterations and 256 steps all pixels
+/// were wrong. The rest is left to loops that are not counted.
 const MOST_ROUNDS_AT_ONCE: u32 = 60_000;
 
-/// Steps of the longest dispatch over a scene.
+/// The largest step limit of a dispatch over a scene.
 fn most_steps(scene: &AnySolid) -> u32 {
     let rounds = scene.twin().rounds().saturating_add(1);
     (MOST_ROUNDS_AT_ONCE / rounds).clamp(1, MOST_STEPS_AT_ONCE)
@@ -99,7 +97,7 @@ impl Renderer {
         self.kernels.get(&self.device, program)
     }
 
-    /// A storage buffer of a name that is kept between calls while its size fits.
+    /// A storage buffer. It is kept by its name and replaced if it is too small.
     fn storage(&mut self, name: &str, bytes: u64) -> Rc<wgpu::Buffer> {
         let bytes = bytes.max(16).next_multiple_of(16);
         if let Some((size, raw)) = self.pool.get(name)
@@ -107,13 +105,17 @@ impl Renderer {
         {
             return raw.clone();
         }
-        let raw = Buffer::<u8>::new(&self.device, name, bytes as usize).raw;
-        let raw = Rc::new(raw);
+        let raw = Rc::new(Buffer::<u8>::new(&self.device, name, bytes as usize).raw);
         self.pool.insert(name.to_string(), (bytes, raw.clone()));
         raw
     }
 
-    /// Renders a plan that passes [`Plan::check`]. The assets keep what is loaded and made for it.
+    /// Renders a plan. It must pass [`Plan::check`]. The assets keep what is loaded and made for
+    /// it.
+    ///
+    /// # Errors
+    /// [`RenderError::Cancelled`] if `watch` returns `false`. The device fails, a named file
+    /// cannot be read or does not fit, or a cone map cannot be made.
     pub fn render(
         &mut self,
         plan: &Plan,
@@ -133,11 +135,9 @@ impl Renderer {
         let prepared = prepare(plan, assets, maker, watch)?;
         let scene = plan.solid(assets)?;
         let passes = plan.passes(extras);
-        // Compile everything first, so that no time below contains compilation.
-        let mut kernels = Vec::new();
-        for &pass in &passes {
-            kernels.push(self.kernel(&program(plan, &scene, pass, extras))?);
-        }
+        // Compile everything before any time is measured.
+        let kernel = |pass: &Pass| self.kernel(&program(plan, &scene, *pass, extras));
+        let kernels: Vec<_> = passes.iter().map(kernel).collect::<Result<_, _>>()?;
         let blocks = Block::cut(plan.size, self.cutting.block, plan.pyramid().coarsest());
         let mut frame = Frame::blank(plan, extras);
         let steps = (blocks.len() * passes.len()) as f64;
@@ -170,7 +170,7 @@ impl Renderer {
         Ok(frame)
     }
 
-    /// Uniforms that hold for a whole block.
+    /// The parameters of a whole block.
     fn bind_frame(&mut self, job: &Job<'_>) -> Result<Bound, RenderError> {
         let mut bound = Bound::new();
         let most = self.device.most_bound();
@@ -180,17 +180,18 @@ impl Renderer {
         }
         let view = job.plan.view().uniform(job.block.origin, job.block.size);
         let look = job.light.uniform();
-        for (name, bytes) in [
+        let parameters = [
             ("view_parameters", bytes_of(&view)),
             ("look_parameters", bytes_of(&look)),
-        ] {
+        ];
+        for (name, bytes) in parameters {
             bound.insert(name.into(), Rc::new(uniform(&self.device, name, bytes)));
         }
         Ok(bound)
     }
 
-    /// Runs one pass over one block until nothing moves; `parents` cells were listed for
-    /// it. The number of cells that it lists for the next.
+    /// Runs one pass over one block until no cell moves. The pass before it listed `parents`
+    /// cells. Returns the number of cells listed for the next pass.
     fn run(
         &mut self,
         job: &Job<'_>,
@@ -203,14 +204,12 @@ impl Renderer {
         let setup = job.setup(pass);
         self.bind_pass(job, &setup, (at, pass), kernel, bound);
         let list = |cells: [u32; 2]| COUNT_AT + 4 + 4 * u64::from(cells[0]) * u64::from(cells[1]);
-        // Two queues take turns: one is read while the other is filled.
+        // One queue is read while the other is filled.
         let queues = [0, 1].map(|i| self.storage(&format!("queue {i}"), list(setup.cells)));
         let next = self.storage(&format!("parents {at}"), list(setup.cells));
         bound.insert("next_parents".into(), next.clone());
-        let mut encoder = self
-            .device
-            .device
-            .create_command_encoder(&Default::default());
+        let gpu = &self.device.device;
+        let mut encoder = gpu.create_command_encoder(&Default::default());
         clear_count(&mut encoder, &next);
         self.device.queue.submit([encoder.finish()]);
         self.device.wait()?;
@@ -262,8 +261,8 @@ impl Renderer {
         Ok(listed)
     }
 
-    /// Storage of a pass: what it writes, by name and by name and number, and the fronts of
-    /// the pass before it.
+    /// Binds what a pass writes, by its name and by name and number, and the fronts of the pass
+    /// before it.
     fn bind_pass(
         &mut self,
         job: &Job<'_>,
@@ -285,13 +284,11 @@ impl Renderer {
         let walk = u64::from(kernel.stride("walks").unwrap_or(4));
         let marked = job.scene.twin().marks_hits();
         for output in outputs(pass, job.extras, marked, walk) {
-            // Cone levels and rays hand their fronts on under one name.
-            let name = if output.name == "depth" {
-                "front"
-            } else {
-                output.name
+            // The depth of a ray is collected as its front.
+            let key = match output.name {
+                "depth" => format!("front {at}"),
+                name => format!("{name} {at}"),
             };
-            let key = format!("{name} {at}");
             let buffer = self.storage(&key, output.stride * cells);
             match output.before {
                 Before::Anything => {}

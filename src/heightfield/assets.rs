@@ -1,7 +1,7 @@
-//! What a heightfield names outside itself: heights, cone maps, paints and textures.
+//! Assets: the heights, cone maps and textures that a heightfield needs.
 //!
-//! Heights and cone maps take long to make. [`Assets`] loads or makes each of them once and
-//! keeps the last one of each kind until what it was made from changes. Clones share what is kept.
+//! Heights and cone maps take long to make. [`Assets`] loads or makes each of them once, and
+//! keeps the last one of each kind until its settings change. Clones share what is kept.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -22,11 +22,11 @@ use super::tracer::settings::{Make, PrepareError, Supply, on_cpu, without_cones}
 use super::tracer::{Tracer, TracerKind};
 use crate::base::key::Fault;
 
-/// What a surface is made from.
+/// What decides a surface.
 type SurfaceKey = (Source, Patches, [u32; 2]);
-/// What a tracer's cones are made from: surface, tracer, map and offset.
+/// What decides a tracer's cones: surface, tracer, map and offset.
 type ConesKey = (SurfaceKey, TracerKind, String, f64);
-/// What a paint is made from: a generator's map over a surface, with an offset.
+/// What decides a paint: surface, generator and offset.
 type PaintKey = (SurfaceKey, Generator, f64);
 
 /// Loaded heights, made cone maps and read textures.
@@ -38,7 +38,7 @@ pub struct Assets {
     textures: Last<PathBuf, Texture>,
 }
 
-/// A surface, and a note about the file that its heights are from.
+/// A surface, and a note about the file of its heights.
 #[derive(Debug)]
 struct Ground {
     surface: Arc<HeightSurface>,
@@ -48,33 +48,33 @@ struct Ground {
 /// A cone map that is made before the first pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preparation {
-    /// Who makes it.
+    /// Its generator.
     pub generator: Generator,
     /// Places of the map along each axis.
     pub places: [u32; 2],
 }
 
-/// A heightfield with everything loaded and made.
+/// A heightfield with all assets.
 #[derive(Clone, Debug)]
 pub struct Ready {
-    /// Heights and maxima.
+    /// Heights, and the pyramid of their maxima.
     pub surface: Arc<HeightSurface>,
-    /// What traces rays, with its cones.
+    /// The tracer of rays, with its cones.
     pub tracer: Arc<dyn Tracer>,
-    /// What colours it.
+    /// What picks the colours.
     pub colors: Colors,
-    /// Where it stands.
+    /// The place in the world.
     pub placement: Placement,
     /// The tracer's name.
     pub name: &'static str,
 }
 
 impl Assets {
-    /// Reads the files that the settings name, and checks that they fit together. Heights
-    /// by name are made later, as they never fail.
+    /// Reads the named files and checks that they fit together. Patterns are made later, as
+    /// they cannot fail.
     ///
     /// # Errors
-    /// A file cannot be read, holds something else, or does not fit.
+    /// A file cannot be read, has other contents, or does not fit.
     pub fn load(&self, settings: &HeightfieldSettings) -> Result<(), Fault> {
         if settings.reads_heights() {
             self.surface(settings)?;
@@ -108,7 +108,7 @@ impl Assets {
         self.paint(settings, &surface, make).map(|_| ())
     }
 
-    /// Everything that a scene needs; cone maps that were not prepared are made on the CPU.
+    /// All assets of a heightfield. Cone maps that were not prepared are made on the CPU.
     /// `grain` is half a pixel's width at distance 1, where pixels are finest.
     ///
     /// # Errors
@@ -120,8 +120,8 @@ impl Assets {
         self.assembled(settings, surface, (*cones).as_ref(), paint, grain)
     }
 
-    /// As [`Assets::ready`], with maps of no cones in place of those that would have to be
-    /// made. The programs are the same.
+    /// As [`Assets::ready`], with empty maps in place of maps that a generator makes. The
+    /// programs are the same.
     ///
     /// # Errors
     /// As [`Assets::load`].
@@ -141,7 +141,7 @@ impl Assets {
         self.assembled(settings, surface, cones.as_ref(), paint, grain)
     }
 
-    /// The cone maps that the settings need; none where the heights cannot be loaded.
+    /// The cone maps that a generator makes; none if the heights cannot be loaded.
     pub fn preparations(&self, settings: &HeightfieldSettings) -> Vec<Preparation> {
         let one = |generator| {
             let places = self.places(settings, generator)?;
@@ -150,18 +150,18 @@ impl Assets {
         settings.generators().into_iter().filter_map(one).collect()
     }
 
-    /// The most steps that a ray can take; `None` where the heights cannot be loaded.
+    /// The largest number of steps that a ray can take; `None` if the heights cannot be loaded.
     pub fn most_steps(&self, settings: &HeightfieldSettings) -> Option<u32> {
         let surface = self.surface(settings).ok()?;
         Some(settings.most_steps(surface.domain().map(i32::unsigned_abs)))
     }
 
-    /// Notes about the named files: what was left out of them, and what is taken on trust.
+    /// Notes about the named files: what was ignored in them, and what could not be checked.
     pub fn notes(&self, settings: &HeightfieldSettings) -> Vec<String> {
         if settings.files().is_empty() {
             return Vec::new();
         }
-        // What fails here fails again, with a sentence, where it is needed.
+        // An error here is reported where the heights are needed.
         let Ok(ground) = self.ground(settings) else {
             return Vec::new();
         };
@@ -179,8 +179,7 @@ impl Assets {
         notes
     }
 
-    /// The numbers of the named files' heights and colours. Heights by name have none: their
-    /// name decides them.
+    /// The numbers in the named files of heights and colours.
     pub fn contents(&self, settings: &HeightfieldSettings) -> Vec<u8> {
         let mut all = Vec::new();
         if settings.reads_heights()
@@ -221,7 +220,7 @@ impl Assets {
 
     /// Places of a generator's map along each axis.
     fn places(&self, settings: &HeightfieldSettings, generator: Generator) -> Option<[u32; 2]> {
-        // A named pattern tells its size before its heights are made.
+        // The size of a pattern is known before its heights are made.
         let size = match PatternSpec::read(&settings.source.field) {
             Some(pattern) => pattern.ok()?.size,
             None => self.surface(settings).ok()?.heights().size(),
@@ -303,14 +302,16 @@ pub(super) fn tiles_fault(e: &HeightSurfaceError) -> Fault {
     Fault::new("scene.tiles", e.to_string())
 }
 
-/// The last value that was made, with what it was made from.
+/// The last value that was made, with its key.
 #[derive(Debug)]
-struct Last<K, V>(Arc<Mutex<Option<(K, Arc<V>)>>>);
+struct Last<K, V>(Arc<Mutex<Kept<K, V>>>);
+
+type Kept<K, V> = Option<(K, Arc<V>)>;
 
 impl<K: PartialEq, V> Last<K, V> {
-    /// The value of a key: the kept one, or what `make` makes. A failure keeps the old one.
+    /// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.
     fn get<E>(&self, key: K, make: impl FnOnce(&K) -> Result<V, E>) -> Result<Arc<V>, E> {
-        // A panic while making leaves what was kept before.
+        // After a panic in `make` the old value is still there.
         let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((of, value)) = &*last
             && *of == key

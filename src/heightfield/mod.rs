@@ -1,4 +1,16 @@
-//! Heightfields: height maps, maxima, cone maps and what traces them.
+//! Heightfields: height maps, cone maps and the tracers that use them (docs/method.md, 4).
+//!
+//! - [`settings`], [`source`]: the keys of a heightfield, and where its heights come from
+//! - [`assets`]: loads and makes what the settings name, and keeps it
+//! - [`pattern`]: heights made from numbers; [`load`]: heights read from files
+//! - [`raster`]: numbers of PNG, EXR, TIFF and other files
+//! - [`heights`], [`patch`]: samples, and the surface between them
+//! - [`height_surface`]: heights with their pyramid of maxima ([`max_mip`]); [`region_max`]:
+//!   the maximum over a rectangle
+//! - [`placement`]: from the world to texels and heights, and back
+//! - [`conemap`]: cone maps, their generators and their files
+//! - [`tracer`]: ways to find where a ray meets the surface
+//! - [`paint`], [`texture`]: what colours the surface
 
 pub mod assets;
 pub mod conemap;

@@ -91,36 +91,33 @@ impl Placement {
 mod tests {
     use super::*;
 
+    const CENTRE: DVec3 = DVec3::new(1.0, -2.0, 3.0);
+
     fn askew() -> Placement {
-        Placement::new(
-            DVec2::new(63.0, 31.0),
-            8.0,
-            0.7,
-            DVec3::new(1.0, -2.0, 3.0),
-            DVec3::new(20.0, -35.0, 50.0),
-        )
+        let (sides, angles) = (DVec2::new(63.0, 31.0), DVec3::new(20.0, -35.0, 50.0));
+        Placement::new(sides, 8.0, 0.7, CENTRE, angles)
+    }
+
+    fn same(a: DVec3, b: DVec3) {
+        assert!(a.distance(b) < 1e-12, "{a} for {b}");
     }
 
     #[test]
     fn the_middle_of_the_base_is_where_it_was_put() {
-        let local = askew().position(DVec3::new(1.0, -2.0, 3.0));
-        assert!(
-            (local - DVec3::new(31.5, 15.5, 0.0)).length() < 1e-12,
-            "{local}"
-        );
+        same(askew().position(CENTRE), DVec3::new(31.5, 15.5, 0.0));
     }
 
     #[test]
     fn local_units_are_texels_and_heights() {
         let placed = askew();
-        let up = placed.side(DVec3::Z);
-        assert!((placed.direction(up) - DVec3::Z / 0.7).length() < 1e-12);
-        let along = placed.side(DVec3::X);
-        assert!((placed.direction(along) - DVec3::X * 63.0 / 8.0).length() < 1e-12);
-        let [x, y, z] = placed.rows();
+        same(placed.direction(placed.side(DVec3::Z)), DVec3::Z / 0.7);
+        same(
+            placed.direction(placed.side(DVec3::X)),
+            DVec3::X * 63.0 / 8.0,
+        );
         let v = DVec3::new(0.3, -0.4, 0.5);
-        let rows = DVec3::new(x.dot(v), y.dot(v), z.dot(v));
-        assert!((placed.direction(v) - rows).length() < 1e-12);
+        let rows = placed.rows().map(|row| row.dot(v));
+        same(placed.direction(v), rows.into());
     }
 
     #[test]
@@ -138,9 +135,9 @@ mod tests {
     #[test]
     fn distances_are_the_worlds() {
         let placed = askew();
-        let above = placed.position(DVec3::new(1.0, -2.0, 3.0) + 2.0 * placed.side(DVec3::Z));
-        assert!((placed.distance(above) - 1.3).abs() < 1e-12);
-        let inside = placed.position(DVec3::new(1.0, -2.0, 3.0) + 0.3 * placed.side(DVec3::Z));
-        assert!((placed.distance(inside) + 0.3).abs() < 1e-12);
+        for (above, wanted) in [(2.0, 1.3), (0.3, -0.3)] {
+            let local = placed.position(CENTRE + above * placed.side(DVec3::Z));
+            assert!((placed.distance(local) - wanted).abs() < 1e-12);
+        }
     }
 }

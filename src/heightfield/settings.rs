@@ -1,4 +1,4 @@
-//! The settings of a heightfield: heights, their place in the world, and the tracer of rays.
+//! The settings of a heightfield: its heights, its place in the world, and how it is traced.
 
 use std::path::PathBuf;
 
@@ -18,9 +18,9 @@ use crate::keys;
 
 pub use super::source::{Source, Wrap};
 
-/// The words of `surface`.
+/// The words of the key `surface`.
 const PATCHES: &[(&str, Patches)] = &[("bilinear", Patches::Bilinear), ("boxes", Patches::Boxes)];
-/// The value of `texture` that stands for none.
+/// The value of `texture` for none.
 const NO_TEXTURE: &str = "none";
 
 /// A heightfield: heights, their place in the world, and how they are traced.
@@ -30,21 +30,21 @@ pub struct HeightfieldSettings {
     pub source: Source,
     /// What lies between the samples.
     pub patches: Patches,
-    /// How often the map is repeated along wrapping axes.
+    /// Number of copies of the map along x and y.
     pub tiles: [u32; 2],
-    /// Length of the longer side of the block, all tiles together.
+    /// World length of the block's longer side, with all tiles.
     pub width: f64,
-    /// Length of the whole height.
+    /// World length of the height 1.
     pub depth: f64,
-    /// The middle of the base.
+    /// The middle of the block's base.
     pub centre: DVec3,
-    /// Degrees about x, then y, then z.
+    /// Rotation in degrees about x, then y, then z.
     pub turn: DVec3,
     /// How rays are traced.
     pub tracing: TracerSettings,
-    /// The generator whose cones pick the hue; `None` for the height.
+    /// The generator whose cones pick the colour; `None` for the height.
     pub paint: Option<Generator>,
-    /// The path of a picture that colours it instead; `none` for none.
+    /// The path of a picture that colours each tile; `none` for none.
     pub texture: String,
 }
 
@@ -66,24 +66,24 @@ impl Default for HeightfieldSettings {
 }
 
 impl HeightfieldSettings {
-    /// The keys that a heightfield reads in `[scene]`.
+    /// Its keys in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         let mut keys = self.source.keys();
         keys.extend(keys![
             "surface" = Word(&mut self.patches, PATCHES),
                 "what lies between the samples";
             "tiles" = Counts(&mut self.tiles, 1, 256),
-                "how often the map is repeated along x and y";
+                "number of copies of the map along x and y";
             "width" = Number(&mut self.width, 1e-6, 1e6),
-                "length of the block's longer side";
+                "world length of the block's longer side";
             "depth" = Number(&mut self.depth, 1e-6, 1e6),
-                "length of the whole height";
+                "world length of the height 1";
             "centre" = Triple(&mut self.centre, -1e6, 1e6),
                 "the middle of the block's base";
             "turn" = Triple(&mut self.turn, -360.0, 360.0),
-                "degrees that the block is turned by about x, then y, then z";
+                "rotation in degrees about x, then y, then z";
             "paint" = Word(&mut self.paint, PAINTS),
-                "what picks the hue: the height, or the width of the cones of a generator's map";
+                "what picks the colour: the height, or the width of the cones in a generator's map";
             "texture" = Text(&mut self.texture),
                 "a PNG, JPEG or WebP that colours each tile in place of the palette; \"none\" for none";
         ]);
@@ -91,7 +91,7 @@ impl HeightfieldSettings {
         keys
     }
 
-    /// Checks that all numbers fit together. No file is read.
+    /// Checks that all settings fit together. No file is read.
     pub fn check(&self) -> Result<(), Fault> {
         self.tracing.check()?;
         for (axis, name) in [(0, "x"), (1, "y")] {
@@ -118,8 +118,7 @@ impl HeightfieldSettings {
         Ok(())
     }
 
-    /// Checks that the tiles of a named pattern are not too many cells, before its heights are
-    /// made.
+    /// Checks that the tiles of a pattern are not too many cells, before its heights are made.
     fn check_tiles(&self, samples: [u32; 2]) -> Result<(), Fault> {
         let cells = cells(samples, self.source.wrap.axes(), self.patches);
         for axis in 0..2 {
@@ -150,38 +149,36 @@ impl HeightfieldSettings {
         self.texture != NO_TEXTURE
     }
 
-    /// The files that it names, each with the key that names it.
+    /// The named files, each with the key that names it.
     pub fn files(&self) -> Vec<(&'static str, PathBuf)> {
         let named = [
             (self.reads_heights(), "scene.field", &self.source.field),
             (self.reads_cones(), "scene.map", &self.tracing.map),
             (self.is_textured(), "scene.texture", &self.texture),
         ];
-        let given = named.into_iter().filter(|(is, ..)| *is);
-        given
-            .map(|(_, key, name)| (key, self.source.folder.join(name)))
-            .collect()
+        let file =
+            |(read, key, name): (bool, _, _)| read.then(|| (key, self.source.folder.join(name)));
+        named.into_iter().filter_map(file).collect()
     }
 
-    /// The generators whose maps it needs: its tracer's, and the one that paints it.
+    /// The generators of the cone maps that it needs: the tracer's and the paint's.
     pub fn generators(&self) -> Vec<Generator> {
         let traced = self.tracing.generator();
         let painted = self.paint.filter(|by| traced != Some(*by));
         traced.into_iter().chain(painted).collect()
     }
 
-    /// The most steps that a ray can take over so many cells along each axis. A tracer that
-    /// counts its own steps and stops says so itself.
+    /// The largest number of steps that a ray can take over so many cells along each axis.
     pub fn most_steps(&self, domain: [u32; 2]) -> u32 {
         self.tracing.most_steps(domain)
     }
 
-    /// Where a block of so many texels stands.
+    /// The place of a block of so many texels.
     pub fn placement(&self, sides: DVec2) -> Placement {
         Placement::new(sides, self.width, self.depth, self.centre, self.turn)
     }
 
-    /// The same block, without what only colours need.
+    /// The same heightfield without what only colours need.
     pub fn colorless(&self) -> Self {
         Self {
             paint: None,
@@ -190,7 +187,7 @@ impl HeightfieldSettings {
         }
     }
 
-    /// The same block with a tracer that finds every first hit and needs no cones.
+    /// The same heightfield with a tracer that finds every first hit and needs no cone map.
     pub fn exact(&self) -> Self {
         Self {
             tracing: TracerSettings {

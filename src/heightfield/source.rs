@@ -1,14 +1,15 @@
-//! Where a preset's heights come from: a field or a file, and how it is read.
+//! Where the heights of a preset come from: a pattern or a file, and how they are read.
 
 use std::path::{Path, PathBuf};
 
 use crate::base::key::{Fault, Key, Switch, Text, Word};
 use crate::heightfield::load::{LoadOptions, Loaded, PatternSpec, load};
+use crate::keys;
 
-/// Which axes of a height map come round to their start.
+/// The axes along which a height map wraps: its last sample is next to its first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// Neither: the map ends at its borders.
+    /// Neither.
     #[default]
     None,
     /// x alone.
@@ -28,7 +29,7 @@ impl Wrap {
         ("xy", Self::Both),
     ];
 
-    /// For x and y.
+    /// Whether x and y wrap.
     pub fn axes(self) -> [bool; 2] {
         match self {
             Self::None => [false, false],
@@ -39,16 +40,16 @@ impl Wrap {
     }
 }
 
-/// What heights are made from.
+/// The source of heights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// A field in one word, or a file's path.
+    /// A pattern, or the path of a file.
     pub field: String,
     /// The folder that a path is relative to.
     pub folder: PathBuf,
     /// Whether the numbers are depths.
     pub invert: bool,
-    /// Whether the lowest becomes 0 and the highest 1.
+    /// Whether the heights are stretched to the range from 0 to 1.
     pub normalize: bool,
     /// Which axes wrap.
     pub wrap: Wrap,
@@ -67,7 +68,7 @@ impl Default for Source {
 }
 
 impl Source {
-    /// What [`load`] is asked for: the field's word, or the file's path.
+    /// The argument of [`load`]: the pattern, or the file's whole path.
     pub fn argument(&self) -> String {
         if PatternSpec::read(&self.field).is_some() {
             return self.field.clone();
@@ -76,36 +77,24 @@ impl Source {
         path.to_string_lossy().into_owned()
     }
 
-    /// The keys that it reads in `[scene]`.
+    /// Its keys in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
-        vec![
-            Key::new(
-                "field",
-                Text(&mut self.field),
-                "a field like fbm:512x512,seed=7,power=2.6, or a file of heights",
-            ),
-            Key::new(
-                "invert",
-                Switch(&mut self.invert),
-                "whether the numbers are depths",
-            ),
-            Key::new(
-                "normalize",
-                Switch(&mut self.normalize),
-                "whether the lowest becomes 0 and the highest 1",
-            ),
-            Key::new(
-                "wrap",
-                Word(&mut self.wrap, Wrap::WORDS),
-                "axes that come round to their start",
-            ),
+        keys![
+            "field" = Text(&mut self.field),
+                "a pattern like fbm:512x512,seed=7,power=2.6, or a file of heights";
+            "invert" = Switch(&mut self.invert),
+                "whether the numbers are depths";
+            "normalize" = Switch(&mut self.normalize),
+                "whether to stretch the heights to the range from 0 to 1";
+            "wrap" = Word(&mut self.wrap, Wrap::WORDS),
+                "axes along which the map repeats";
         ]
     }
 
-    /// The heights.
+    /// Loads the heights.
     ///
     /// # Errors
-    /// What it names is none, or holds no heights.
+    /// There is no such pattern, or the file holds no heights.
     pub fn load(&self) -> Result<Loaded, Fault> {
         let options = LoadOptions {
             wrap: self.wrap.axes(),

@@ -1,81 +1,86 @@
-//! What a preset can afford: probes of its estimate along random camera rays.
+//! Probes of a plan's estimate, which propose settings for it (docs/method.md, 2).
 //!
-//! Exact cones assume an estimate that never exceeds the distance; steps assume that thin
-//! skins are not jumped over. How far a scene is from either, or how much better than it,
-//! is a property of the scene (docs/method.md, 2). The probes follow rays through evenly spread
-//! pixels in tiny steps, and then the whole chain of cones above each of them, and propose
-//! the slope that steps should divide by, the smallest shell, and the narrowest cones for
-//! which no more pixels are lost than a budget allows: not only of the probes, which are few
-//! and chosen by, but of the picture. So a share that was counted is taken for what it may
-//! well be, and what is told in the end was counted on as many other pixels.
+//! Exact cones assume that the estimate never exceeds the distance, and steps assume that
+//! thin parts of the surface are not jumped over. A scene may break these assumptions, or
+//! leave room for faster settings. Probes are pixels spread evenly over the image. Each is
+//! traced in tiny steps for its true hit, and then through all cones above it. The result
+//! is the Lipschitz constant, the smallest shell and the narrowest cones that lose no more
+//! pixels than a budget allows. The budget is for the whole picture and the probes are few, so
+//! the standard error is added to each counted share, and other probes check the result.
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use crate::base::view::{View, footprint};
 use crate::base::work::{State, Work};
+use crate::cpu;
 use crate::gpu::RenderError;
 use crate::pass::march::{Ended, march};
 use crate::pass::trace::trace;
 use crate::plan::Plan;
 use crate::plan::march::Mode;
-use crate::scene::Assets;
-use crate::scene::{Solid, Task};
+use crate::plan::pyramid::Level;
+use crate::scene::{Assets, Solid, Task};
 
-/// Factor on the estimate's steps for the probes' own truth.
+/// Factor on the steps that find the true hits.
 const STRIDE: f64 = 0.05;
-/// A pixel deeper than this, in footprints, is lost, as it is behind in comparisons.
+/// A pixel whose hit is farther behind the true one, in footprints, is lost.
 const BEHIND: f64 = 2.0;
-/// Shells that are tried.
+/// The shells to try.
 const SHELLS: [f64; 10] = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
-/// Factors on cones that are tried, from the narrowest.
+/// The factors on cones to try, narrowest first.
 const FUDGES: [f64; 14] = [
     0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95,
 ];
 
-/// Standard errors that are added to a counted share: one in forty is larger by more.
+/// Share of the time that the probes take, for progress: the rest is for trying settings.
+const PROBING: f64 = 0.5;
+
+/// Standard errors that are added to a counted share. One true share in forty is still larger.
 const DOUBT: f64 = 2.0;
 
-/// What a share may well be that was counted on so many probes. None lost is taken for
-/// none: a budget of nothing could not be held otherwise.
+/// An upper bound of the true share, given the share counted on so many probes. A count of 0
+/// stays 0, so that a budget of 0 can be met.
 fn at_most(share: f64, probes: usize) -> f64 {
     let n = probes.max(1) as f64;
     share + DOUBT * (share * (1.0 - share) / n).sqrt()
 }
 
-/// A pixel and its truth.
+/// A pixel and its true hit.
 #[derive(Clone, Copy, Debug)]
 pub struct Probe {
     /// The pixel.
     pub pixel: [u32; 2],
-    /// Distance of the hit, where there is one.
+    /// Distance of the hit, if there is one.
     pub hit: Option<f64>,
-    /// Half a pixel's width there.
+    /// The footprint there.
     pub grain: f64,
 }
 
-/// What is proposed.
-#[derive(Clone, Debug)]
+/// Proposed settings, and what the probes found.
+#[derive(Clone, Debug, Serialize)]
 pub struct Calibration {
-    /// The largest slope of the estimate that the probes met.
+    /// The largest slope of the estimate.
     pub slope: f64,
-    /// How many times farther than the estimate says the surface is, in the median.
+    /// The median ratio of the true distance to the estimate.
     pub slack: f64,
-    /// What steps should divide by.
+    /// The proposed Lipschitz constant.
     pub lipschitz: f64,
-    /// Share of the hit threshold that steps keep clear of.
+    /// The proposed shell.
     pub shell: f64,
-    /// Factor on the cones of each level, coarse to fine.
+    /// The proposed factors on the cones, coarse to fine.
     pub fudge: Vec<f64>,
-    /// Share of other probes that the proposal loses.
+    /// Share of the other probes that the proposal loses.
     pub lost: f64,
-    /// Whether the budget holds, on the probes with their doubt and on the others.
+    /// Whether the budget holds, on the first probes with their error and on the others.
     pub within: bool,
     /// The other probes, to check a picture with.
+    #[serde(skip)]
     pub probes: Vec<Probe>,
 }
 
 impl Calibration {
-    /// A plan with the proposal.
+    /// A plan with the proposed settings.
     pub fn apply(&self, plan: &Plan) -> Plan {
         let mut plan = plan.clone();
         plan.march.mode = Mode::Calibrated;
@@ -85,40 +90,48 @@ impl Calibration {
     }
 }
 
-/// Proposes settings that lose at most the share `budget` of pixels, from so many rays,
-/// and counts what they lose on as many others.
+/// Proposes settings that lose at most a share `budget` of the pixels. It uses `rays` probes,
+/// and as many others to check the result.
 ///
 /// # Errors
-/// [`RenderError::Cancelled`] if `going` says to stop; a named file cannot be read.
+/// [`RenderError::Cancelled`] if `going` returns `false`; it is told the share that is done. A named file cannot be read.
 pub fn calibrate(
     plan: &Plan,
     assets: &Assets,
     budget: f64,
     rays: usize,
-    going: &dyn Fn() -> bool,
+    going: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Calibration, RenderError> {
     let mut truth = plan.clone();
     truth.march.mode = Mode::Truth;
     truth.march.stride = Some(STRIDE);
     truth.march.clip = Some(true);
+    let view = plan.view();
     let mut probes = Vec::new();
     let pixels = spread(plan.size, 2 * rays);
-    // In parts, so that one can stop in between.
-    for part in pixels.chunks(256) {
-        probes.extend(truth.solid(assets)?.run(Follow {
-            plan: &truth,
-            limit: truth.ray_steps(assets),
-            pixels: part,
-        }));
-        if !going() {
-            return Err(RenderError::Cancelled);
+    let mut check = |share: f64| {
+        if going(share) {
+            Ok(())
+        } else {
+            Err(RenderError::Cancelled)
         }
+    };
+    // In parts, so that it can stop between them.
+    for part in pixels.chunks(256) {
+        let hits = cpu::sample(&truth, assets, part)?;
+        probes.extend(part.iter().zip(hits).map(|(pixel, (hit, state))| Probe {
+            pixel: *pixel,
+            hit: (state == State::Hit).then_some(hit.t),
+            grain: footprint(&view.view_ray(*pixel), hit.t),
+        }));
+        check(PROBING * probes.len() as f64 / pixels.len() as f64)?;
     }
     let others = probes.split_off(rays.min(probes.len()));
-    let (slope, slack) = plan.solid(assets)?.run(Slopes {
+    let slopes = Slopes {
         plan,
         probes: &probes,
-    });
+    };
+    let (slope, slack) = plan.solid(assets)?.run(slopes);
     let count = |plan: &Plan, probes: &[Probe]| {
         let limit = plan.ray_steps(assets);
         let lost = Lost {
@@ -128,45 +141,43 @@ pub fn calibrate(
         };
         Ok::<_, RenderError>(plan.solid(assets)?.run(lost))
     };
-    let lost = |plan: &Plan| Ok::<_, RenderError>(at_most(count(plan, &probes)?, probes.len()));
+    let mut lost = |plan: &Plan, share: f64| {
+        check(share)?;
+        Ok::<_, RenderError>(at_most(count(plan, &probes)?, probes.len()))
+    };
     let mut best = plan.clone();
     best.march.mode = Mode::Calibrated;
     best.march.fudge = vec![1.0];
-    // Half of the budget for the shell, the rest for narrower cones.
+    // The shell may use half of the budget, narrower cones the rest.
     for shell in SHELLS {
         best.march.shell = shell;
-        if !going() {
-            return Err(RenderError::Cancelled);
-        }
-        if lost(&best)? <= 0.5 * budget {
+        if lost(&best, PROBING)? <= 0.5 * budget {
             break;
         }
     }
     let levels = best.pyramid().levels.len();
     let mut fudge = vec![1.0; levels];
-    let exact = lost(&best)?;
+    let exact = lost(&best, PROBING)?;
     for level in 0..levels {
         let share = (level + 1) as f64 / levels as f64;
         let allowed = exact + (budget - exact).max(0.0) * share;
         for f in FUDGES {
             fudge[level] = f;
             best.march.fudge.clone_from(&fudge);
-            if !going() {
-                return Err(RenderError::Cancelled);
-            }
-            if lost(&best)? <= allowed {
+            let share = PROBING + (1.0 - PROBING) * level as f64 / levels as f64;
+            if lost(&best, share)? <= allowed {
                 break;
             }
             fudge[level] = 1.0;
         }
     }
     best.march.fudge = if fudge.is_empty() { vec![1.0] } else { fudge };
-    let held = lost(&best)? <= budget;
+    let held = lost(&best, 1.0)? <= budget;
     let lost = count(&best, &others)?;
     Ok(Calibration {
         slope,
         slack,
-        // A slope under 1 was only not met by these rays.
+        // These rays may have missed a slope of 1.
         lipschitz: (100.0 * slope.max(1.0)).ceil() / 100.0,
         shell: best.march.shell,
         fudge: best.march.fudge,
@@ -176,8 +187,8 @@ pub fn calibrate(
     })
 }
 
-/// Pixels spread evenly over an image: Roberts' additive sequence in two dimensions,
-/// whose steps are powers of the inverse of the plastic number.
+/// Pixels spread evenly over an image, by Roberts' additive sequence in two dimensions. Its
+/// steps are powers of the inverse of the plastic number.
 fn spread(size: [u32; 2], count: usize) -> Vec<[u32; 2]> {
     const STEPS: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053_3];
     (0..count)
@@ -185,32 +196,7 @@ fn spread(size: [u32; 2], count: usize) -> Vec<[u32; 2]> {
         .collect()
 }
 
-struct Follow<'a> {
-    plan: &'a Plan,
-    limit: u32,
-    pixels: &'a [[u32; 2]],
-}
-
-impl Task for Follow<'_> {
-    type Output = Vec<Probe>;
-
-    fn run<S: Solid>(self, solid: &S) -> Self::Output {
-        let view = self.plan.view();
-        let limit = self.limit;
-        let one = |&pixel: &[u32; 2]| {
-            let ray = view.view_ray(pixel);
-            let (hit, state) = trace(solid, &ray, 0.0, limit, &mut Work::default());
-            Probe {
-                pixel,
-                hit: (state == State::Hit).then_some(hit.t),
-                grain: footprint(&ray, hit.t),
-            }
-        };
-        self.pixels.par_iter().map(one).collect()
-    }
-}
-
-/// The largest slope of the ball's radius before a hit, and the median slack.
+/// Finds the largest slope of the ball's radius before a hit, and the median slack.
 struct Slopes<'a> {
     plan: &'a Plan,
     probes: &'a [Probe],
@@ -221,7 +207,7 @@ impl Task for Slopes<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
-        // Radii are the estimate over what the preset divides by already.
+        // The clearance is the estimate over the preset's own constant.
         let own = self.plan.scene.lipschitz();
         let one = |probe: &Probe| {
             let ray = view.view_ray(probe.pixel);
@@ -230,7 +216,7 @@ impl Task for Slopes<'_> {
             let mut ratios = Vec::new();
             while before > 8.0 * probe.grain {
                 let radius = solid.clearance(ray.at(hit - before));
-                // The hit itself lies within a threshold of the surface.
+                // The hit is up to a threshold before the surface.
                 ratios.push(own * radius / (before + BEHIND * probe.grain));
                 before *= 0.7;
             }
@@ -245,7 +231,7 @@ impl Task for Slopes<'_> {
     }
 }
 
-/// Share of probes that a plan loses: shown too deep, as sky, or not finished.
+/// Finds the share of probes that a plan loses: shown too deep, as sky, or unconverged.
 struct Lost<'a> {
     plan: &'a Plan,
     limit: u32,
@@ -273,13 +259,8 @@ impl Task for Lost<'_> {
     }
 }
 
-/// Where the cones above a pixel end; `None` if one of them claims sky.
-fn front<S: Solid>(
-    solid: &S,
-    view: &View,
-    levels: &[crate::plan::pyramid::Level],
-    pixel: [u32; 2],
-) -> Option<f64> {
+/// The front of the finest cone above a pixel; `None` if a cone claims sky.
+fn front<S: Solid>(solid: &S, view: &View, levels: &[Level], pixel: [u32; 2]) -> Option<f64> {
     let mut front = 0.0;
     for level in levels {
         let mut cone = view.view_cone(pixel.map(|p| p / level.divisor), level.divisor);
@@ -309,20 +290,21 @@ mod tests {
     #[test]
     fn an_exact_field_has_slope_one_and_takes_full_cones() {
         let plan = plan(Formula::Balls(Balls::default()));
-        let found = calibrate(&plan, &Assets::default(), 0.0, 2000, &|| true).expect("not stopped");
+        let found =
+            calibrate(&plan, &Assets::default(), 0.0, 2000, &mut |_| true).expect("not stopped");
         assert!(
             found.slope <= 1.0 + 1e-9 && found.slope > 0.9,
             "{}",
             found.slope
         );
         assert!((found.lipschitz - 1.0).abs() < 1e-12);
-        // None of the probes is lost, and hardly one of the others, which is told.
+        // It loses none of the probes and hardly one of the others.
         assert!(found.lost < 0.005, "{}", found.lost);
         assert_eq!(found.within, found.lost == 0.0);
-        // Narrow cones do lose pixels of an exact field; the finest may be narrow, since a
-        // cone through pixel centres is wider than the four rays in it.
+        // Narrow cones lose pixels of an exact field. Only the finest cones may be narrow, as
+        // a cone through pixel centres is wider than its four rays.
         assert!(found.fudge[0] > 0.5, "{:?}", found.fudge);
-        assert!(calibrate(&plan, &Assets::default(), 0.0, 2000, &|| false).is_err());
+        assert!(calibrate(&plan, &Assets::default(), 0.0, 2000, &mut |_| false).is_err());
     }
 
     #[test]
@@ -332,13 +314,13 @@ mod tests {
                 scale,
                 ..Mandelbox::default()
             });
-            calibrate(&plan(shape), &Assets::default(), 0.01, 1500, &|| true).expect("not stopped")
+            calibrate(&plan(shape), &Assets::default(), 0.01, 1500, &mut |_| true)
+                .expect("not stopped")
         };
-        // Cones can be told thinner than they are where the estimate understates the
-        // distance, as it does at scale 2 and hardly at -1.5.
+        // The estimate understates the distance at scale 2, and hardly at -1.5.
         let (slack, tight) = (of(2.0), of(-1.5));
         assert!(slack.slack > tight.slack, "{} {}", slack.slack, tight.slack);
-        // Up to 0.8 was found, on a camera that sees slopes near one too.
+        // Factors of up to 0.8 were found, as this camera also sees slopes near 1.
         let widest = slack.fudge.iter().copied().fold(0.0, f64::max);
         assert!(slack.within && widest < 0.85, "{:?}", slack.fudge);
     }

@@ -1,119 +1,85 @@
-//! Two Frames to an error report (docs/method.md, 5).
+//! Compares a frame with a reference (docs/method.md, 5).
 //!
-//! Errors are in footprints: `e = (t - t_ref) / footprint(t_ref)`, where a footprint is
-//! half a pixel's width at the reference's distance.
+//! Errors are in footprints: `e = (t - t_ref) / footprint(t_ref)`, where a footprint is half
+//! a pixel's width at the reference's distance.
 //!
-//! A hit is where the estimate falls under the hit threshold, so the reference stops in a
-//! skin before the surface, and what is proven free may reach into that skin, up to the
-//! share of it that cones keep clear of (docs/method.md, 2); a ray that grazes the surface
-//! stays in the skin for long. Where a front lies beyond the reference's hit by more than
-//! the threshold, the ray is therefore followed on from that hit: the front is a violation if
-//! the ray comes as near to the surface as cones must not, before it is there. (Less is left to
-//! fronts that start where rays enter the bounds, which may lie in the skin.)
+//! A *start violation* is a pixel whose cell has a front beyond the first place where the
+//! pixel's ray reaches the surface. The reference's hit is not that place. It lies in a skin
+//! before the surface, where the estimate is below the hit threshold, and cones keep clear of
+//! a share of that skin only. A ray that grazes the surface stays in the skin for long. So
+//! where a front is beyond the reference's hit by more than the threshold, the ray is followed
+//! from that hit. The front is a violation if the ray comes nearer to the surface than cones
+//! may come, before it reaches the front.
 
 use rayon::prelude::*;
 
-use crate::base::view::{Beam, View, footprint};
+use crate::base::view::{Beam, footprint};
 use crate::base::work::State;
-use crate::picture::frame::Frame;
+use crate::picture::frame::{Frame, errors};
 use crate::plan::Plan;
 use crate::scene::AnySolid;
 use crate::scene::{Solid, Task};
 
-/// How far one frame's depth is from another's. Shares are of all pixels.
+/// The errors of a frame. Shares are of all pixels.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
-    /// |e| over pixels that both hit: median, 95 %, 99 %, largest.
+    /// |e| over pixels that are hits in both frames: median, 95 %, 99 %, largest.
     pub depth_error: [f64; 4],
-    /// Share with e > 2.
+    /// Share of hits in both frames with e > 2.
     pub behind: f64,
-    /// Share with e < -2.
+    /// Share of hits in both frames with e < -2.
     pub front: f64,
-    /// Share with e > 8.
+    /// Share of hits in both frames with e > 8.
     pub behind8: f64,
-    /// Share with e < -8.
+    /// Share of hits in both frames with e < -8.
     pub front8: f64,
-    /// Share of hits of the reference that are shown as sky.
+    /// Share of hits in the reference that are sky in the frame.
     pub holes: f64,
-    /// Share of sky of the reference that is shown as a hit.
+    /// Share of sky in the reference that is a hit in the frame.
     pub false_hits: f64,
     /// Share that reached a limit.
     pub unconverged: f64,
-    /// Share whose state, hit or not, differs.
+    /// Share that is a hit in one frame only.
     pub mask: f64,
-    /// Per cone level: divisor, and pixels whose ray comes to the surface before the front
-    /// that was proven free.
+    /// The start violations of each cone level: divisor and number of pixels.
     pub start_violations: Vec<(u32, u64)>,
 }
 
-/// Signed depth error of each pixel in footprints: infinite where a hit is shown as sky,
-/// minus infinite where sky is shown as a hit, 0 where both are sky, none where the frame
-/// or the reference reached a limit.
-pub fn errors(frame: &Frame, reference: &Frame, view: &View) -> Vec<f64> {
-    let width = frame.size[0] as usize;
-    let (sky, hit) = (State::Sky as u8, State::Hit as u8);
-    let states = frame.state.iter().zip(&reference.state).enumerate();
-    let error = |(i, (&s, &r)): (usize, (&u8, &u8))| match (s, r) {
-        _ if s == sky && r == sky => 0.0,
-        _ if s == sky && r == hit => f64::INFINITY,
-        _ if s == hit && r == sky => f64::NEG_INFINITY,
-        _ if s == hit && r == hit => {
-            let t = f64::from(reference.depth[i]);
-            let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
-            (f64::from(frame.depth[i]) - t) / (ray.grain * t).max(f64::MIN_POSITIVE)
-        }
-        _ => f64::NAN,
-    };
-    states.map(error).collect()
-}
-
-/// Compares a frame with a reference of the same plan, its modes and steps apart.
-/// `solid` is the plan's scene.
+/// Compares a frame with a reference of the same plan; mode and steps may differ. `solid` is
+/// the plan's scene.
 pub fn compare(frame: &Frame, reference: &Frame, plan: &Plan, solid: &AnySolid) -> Report {
-    let view = &plan.view();
-    let hit = State::Hit as u8;
-    let sky = State::Sky as u8;
-    let mut report = Report::default();
-    let mut depths = Vec::new();
-    for (i, e) in errors(frame, reference, view).into_iter().enumerate() {
-        let (s, r) = (frame.state[i], reference.state[i]);
-        report.unconverged += f64::from(u8::from(s == State::Unconverged as u8));
-        report.holes += f64::from(u8::from(r == hit && s == sky));
-        report.false_hits += f64::from(u8::from(r == sky && s == hit));
-        report.mask += f64::from(u8::from((r == hit) != (s == hit)));
-        if s != hit || r != hit {
-            continue;
-        }
-        report.behind += f64::from(u8::from(e > 2.0));
-        report.front += f64::from(u8::from(e < -2.0));
-        report.behind8 += f64::from(u8::from(e > 8.0));
-        report.front8 += f64::from(u8::from(e < -8.0));
-        depths.push(e.abs());
-    }
-    let n = frame.state.len().max(1) as f64;
-    for share in [
-        &mut report.behind,
-        &mut report.front,
-        &mut report.behind8,
-        &mut report.front8,
-        &mut report.holes,
-        &mut report.false_hits,
-        &mut report.unconverged,
-        &mut report.mask,
-    ] {
-        *share /= n;
-    }
+    let errors = errors(frame, reference, &plan.view());
+    let hit = |frame: &Frame, i: usize| frame.state[i] == State::Hit as u8;
+    let sky = |frame: &Frame, i: usize| frame.state[i] == State::Sky as u8;
+    let both = |i: usize| hit(frame, i) && hit(reference, i);
+    let share = |counts: &dyn Fn(usize) -> bool| {
+        let count = (0..errors.len()).filter(|i| counts(*i)).count();
+        count as f64 / errors.len().max(1) as f64
+    };
+    let mut depths: Vec<f64> = (0..errors.len())
+        .filter(|i| both(*i))
+        .map(|i| errors[i].abs())
+        .collect();
     depths.sort_by(f64::total_cmp);
-    report.depth_error = [0.5, 0.95, 0.99, 1.0].map(|q| quantile(&depths, q));
-    report.start_violations = solid.run(Violations {
-        frame,
-        reference,
-        plan,
-    });
-    report
+    Report {
+        depth_error: [0.5, 0.95, 0.99, 1.0].map(|q| quantile(&depths, q)),
+        behind: share(&|i| both(i) && errors[i] > 2.0),
+        front: share(&|i| both(i) && errors[i] < -2.0),
+        behind8: share(&|i| both(i) && errors[i] > 8.0),
+        front8: share(&|i| both(i) && errors[i] < -8.0),
+        holes: share(&|i| hit(reference, i) && sky(frame, i)),
+        false_hits: share(&|i| sky(reference, i) && hit(frame, i)),
+        unconverged: share(&|i| frame.state[i] == State::Unconverged as u8),
+        mask: share(&|i| hit(frame, i) != hit(reference, i)),
+        start_violations: solid.run(Violations {
+            frame,
+            reference,
+            plan,
+        }),
+    }
 }
 
-/// The q-quantile of sorted values; 0 of none.
+/// The q-quantile of sorted values; 0 if there are none.
 pub fn quantile(sorted: &[f64], q: f64) -> f64 {
     let last = sorted.len().saturating_sub(1) as f64;
     sorted
@@ -122,22 +88,21 @@ pub fn quantile(sorted: &[f64], q: f64) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// Share of the skin that cones keep clear of, of which fronts may use so much: f32 decides
-/// a little otherwise than f64.
+/// Factor on the share of the skin that cones keep clear of. The rest is left to the rounding
+/// of f32.
 const CLEAR: f64 = 0.9;
-/// The least share that is looked for, where cones keep clear of none.
+/// The smallest share that counts, for plans whose cones keep clear of none.
 const LEAST_CLEAR: f64 = 1e-3;
-/// Share of the clearance that the ray is followed on by, small enough to miss no thin part
-/// that the reference would hit.
+/// A followed ray steps by this share of the clearance, too little to miss a thin part that
+/// the reference would hit.
 const FOLLOW: f64 = 0.1;
-/// Share of the hit threshold that it is followed on by at least: a ray that creeps along
-/// the surface within that is decided soon.
+/// A followed ray steps by at least this share of the hit threshold, so that it does not creep
+/// along the surface.
 const LEAST_FOLLOW: f64 = 0.01;
-/// Steps after which a ray is no longer followed, and counts.
+/// A ray that is followed for more steps counts as a violation.
 const MOST_FOLLOWED: u32 = 4_000;
 
-/// Per kept cone level, pixels whose cell's front lies beyond a place where their ray comes
-/// to the surface.
+/// Counts the start violations of each kept cone level.
 struct Violations<'a> {
     frame: &'a Frame,
     reference: &'a Frame,
@@ -151,8 +116,10 @@ impl Task for Violations<'_> {
         let (plan, reference) = (self.plan, self.reference);
         let view = plan.view();
         let width = self.frame.size[0] as usize;
-        let least = (CLEAR * plan.march.shell).max(LEAST_CLEAR) / plan.scene.lipschitz();
-        // Where each ray comes to the surface, as far as a front could ask.
+        // The shell of the mode: some march without one, whatever the preset says.
+        let shell = plan.march.stepping().shell;
+        let least = (CLEAR * shell).max(LEAST_CLEAR) / plan.scene.lipschitz();
+        // Whether a ray reaches the surface between the hit and the front.
         let met = |ray: &Beam, hit: f64, front: f64| {
             let mut t = hit;
             for _ in 0..MOST_FOLLOWED {
@@ -192,6 +159,7 @@ impl Task for Violations<'_> {
 mod tests {
     use super::*;
     use crate::picture::frame::LevelLayer;
+    use crate::plan::march::Mode;
     use crate::scene::Assets;
     use crate::scene::slab::SlabSettings;
     use glam::DVec3;
@@ -212,7 +180,7 @@ mod tests {
         plan
     }
 
-    /// A frame of one level of single pixels, whose fronts lie so far along their rays.
+    /// A frame with one level of single pixels and given fronts.
     fn with_fronts(reference: &Frame, front: Vec<f32>) -> Frame {
         let level = LevelLayer {
             divisor: 1,
@@ -226,7 +194,7 @@ mod tests {
         }
     }
 
-    /// The unit ball at the origin, among others, seen from six lengths away.
+    /// Several solids, with a unit ball at the origin, seen from a distance of 6.
     fn ball(size: [u32; 2]) -> Plan {
         use crate::formula::{Formula, balls::Balls};
         let mut plan = Plan::new(Formula::Balls(Balls::default()));
@@ -236,20 +204,29 @@ mod tests {
         plan
     }
 
-    /// Steep rays cross the skin at once: a front in the part of it that cones need not
-    /// keep clear of is right, one beyond is not.
+    /// Steep rays cross the skin at once. A front may lie in the outer part of the skin, but not
+    /// beyond it.
     #[test]
     fn a_front_in_the_skin_is_no_violation_and_one_beyond_it_is() {
         let mut plan = ball([8, 1]);
         plan.camera.fov = 1.0;
-        for (detail, shell) in [(1.0, 0.45), (3.0, 0.45), (1.0, 0.0), (0.5, 0.9)] {
+        for (mode, detail, shell) in [
+            (Mode::Safe, 1.0, 0.45),
+            (Mode::Safe, 3.0, 0.45),
+            (Mode::Safe, 1.0, 0.0),
+            (Mode::Safe, 0.5, 0.9),
+            // The cones of the slides keep clear of nothing, whatever the preset says.
+            (Mode::SlidesDeep, 1.0, 0.45),
+        ] {
+            plan.march.mode = mode;
             plan.march.detail = detail;
             plan.march.shell = shell;
+            let shell = if mode == Mode::Safe { shell } else { 0.0 };
             let mut reference = rendered(&plan);
             // The last two pixels are no hits.
             reference.state[6] = State::Sky as u8;
             reference.state[7] = State::Unconverged as u8;
-            // In thresholds beyond where each ray is as near as cones may come.
+            // In thresholds beyond the nearest place that a front may reach.
             let beyond = [-9.0, -0.6, -0.02, 2.0, 3.0, 9.0, 9.0, 9.0];
             let front = (0..).zip(beyond).map(|(x, n)| {
                 let ray = plan.view().view_ray([x, 0]);
@@ -261,16 +238,20 @@ mod tests {
             });
             let frame = with_fronts(&reference, front.collect());
             let report = compare(&frame, &reference, &plan, &solid(&plan));
-            assert_eq!(report.start_violations, [(1, 3)], "{detail} {shell}");
+            assert_eq!(
+                report.start_violations,
+                [(1, 3)],
+                "{mode:?} {detail} {shell}"
+            );
         }
     }
 
-    /// A ray that grazes a ball stays in the skin for far longer than that is thick, and
-    /// passes: a front that lies behind all of it is right.
+    /// A ray that grazes a ball stays in the skin for long and passes it, so a front behind the
+    /// skin is right if the ray keeps clear of the shell. The slides' modes have no shell.
     #[test]
     fn a_front_beyond_a_grazed_skin_is_right() {
         let plan = ball([240, 160]);
-        // Past the ball by a share of the threshold, or through its rim.
+        // The pixel whose ray passes the ball at a distance of so many thresholds.
         let view = plan.view();
         let past = |share: f64| {
             let pixels = (0..plan.size[1]).flat_map(|y| (0..plan.size[0]).map(move |x| [x, y]));
@@ -284,20 +265,25 @@ mod tests {
         };
         let reference = rendered(&plan);
         let width = plan.size[0] as usize;
-        for (share, wrong) in [(0.75, 0), (-2.0, 1)] {
+        let cases = [
+            (0.75, Mode::Safe, 0),
+            (0.3, Mode::Safe, 1),
+            (0.3, Mode::SlidesEven, 0),
+            (-2.0, Mode::SlidesEven, 1),
+            (-2.0, Mode::Safe, 1),
+        ];
+        for (share, mode, wrong) in cases {
             let p = past(share).expect("a picture has pixels");
             let i = p[1] as usize * width + p[0] as usize;
             assert_eq!(reference.state[i], State::Hit as u8, "{p:?}");
-            // Half a length on: far behind the skin.
+            // Far behind the skin.
             let mut front = vec![0.0; reference.depth.len()];
             front[i] = reference.depth[i] + 0.5;
-            let report = compare(
-                &with_fronts(&reference, front),
-                &reference,
-                &plan,
-                &solid(&plan),
-            );
-            assert_eq!(report.start_violations, [(1, wrong)], "{share}");
+            let mut compared = plan.clone();
+            compared.march.mode = mode;
+            let frame = with_fronts(&reference, front);
+            let report = compare(&frame, &reference, &compared, &solid(&compared));
+            assert_eq!(report.start_violations, [(1, wrong)], "{share} {mode:?}");
         }
     }
 
@@ -323,23 +309,12 @@ mod tests {
         two.extend([State::Sky, State::Hit, State::Sky, State::Unconverged].map(|s| (s, 5.0)));
         let report = compare(&frame(&two), &frame(&one), &plan, &solid(&plan));
         let pixels = |share: f64| (share * 11.0).round() as u32;
-        assert_eq!(pixels(report.behind), 2);
-        assert_eq!(pixels(report.behind8), 1);
-        assert_eq!(pixels(report.front), 2);
-        assert_eq!(pixels(report.front8), 1);
-        assert_eq!(pixels(report.holes), 1);
-        assert_eq!(pixels(report.false_hits), 1);
-        assert_eq!(pixels(report.unconverged), 1);
-        assert_eq!(pixels(report.mask), 3);
-        assert!(
-            (report.depth_error[0] - 2.1).abs() < 0.01,
-            "{:?}",
-            report.depth_error
-        );
-        assert!(
-            (report.depth_error[3] - 8.1).abs() < 0.01,
-            "{:?}",
-            report.depth_error
-        );
+        assert_eq!([report.behind, report.behind8].map(pixels), [2, 1]);
+        assert_eq!([report.front, report.front8].map(pixels), [2, 1]);
+        assert_eq!([report.holes, report.false_hits].map(pixels), [1, 1]);
+        assert_eq!([report.unconverged, report.mask].map(pixels), [1, 3]);
+        let [median, .., largest] = report.depth_error;
+        assert!((median - 2.1).abs() < 0.01, "{median}");
+        assert!((largest - 8.1).abs() < 0.01, "{largest}");
     }
 }

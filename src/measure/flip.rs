@@ -1,9 +1,9 @@
-//! FLIP: how different two pictures look when one flips between them (Andersson et al.,
+//! FLIP: how different two pictures look when they alternate on a screen (Andersson et al.,
 //! "FLIP: A Difference Evaluator for Alternating Images", 2020; the form for displays).
 //!
-//! Colours are blurred as the eye does at a viewing distance, compared in a perceptual
-//! space, and the difference is raised where edges or points differ too. The constants are the
-//! paper's. Borders repeat the outermost pixel.
+//! Colours are blurred as the eye blurs them at a viewing distance and compared in a
+//! perceptual space. The difference is raised where edges or points differ. All constants are
+//! those of the paper. Beyond the border the outermost pixel repeats.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -13,16 +13,16 @@ use crate::base::srgb::linear;
 /// Pixels per degree of visual angle: a screen of 3840 pixels and 0.7 m, seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 67.0;
 
-/// Display-encoded colours, 0..1, row by row.
+/// A picture in sRGB, row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
-    /// Pixels along each axis.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// sRGB.
+    /// sRGB colours from 0 to 1.
     pub pixels: &'a [DVec3],
 }
 
-/// Mean FLIP difference, 0 for equal pictures, at most 1; both of the same size.
+/// The mean FLIP difference of two pictures of one size, from 0 to 1; 0 for equal ones.
 pub fn flip(reference: Picture<'_>, test: Picture<'_>) -> f64 {
     let [one, two] = [reference, test].map(Seen::new);
     let most = hyab(hunt(DVec3::Y), hunt(DVec3::Z)).powf(COLOR_POWER);
@@ -36,26 +36,25 @@ pub fn flip(reference: Picture<'_>, test: Picture<'_>) -> f64 {
             color.powf(1.0 - feature)
         })
         .collect();
-    // In order, so that the sum is the same on any number of threads.
+    // In order, so that the number of threads does not change the sum.
     errors.iter().sum::<f64>() / errors.len().max(1) as f64
 }
 
 const COLOR_POWER: f64 = 0.7;
 const FEATURE_POWER: f64 = 0.5;
-/// Share of the largest colour difference that is spread over most of the range, and that
-/// part of the range.
+/// Differences up to this share of the largest one are mapped to this part of the range.
 const COLOR_KNEE: (f64, f64) = (0.4, 0.95);
 /// Width of an edge in degrees.
 const FEATURE_WIDTH: f64 = 0.082;
 
-/// Contrast sensitivity of each opponent channel: Gaussians as (weight, width).
+/// The contrast sensitivity of each opponent channel, as Gaussians of (weight, width).
 const SENSITIVITY: [[(f64, f64); 2]; 3] = [
     [(1.0, 0.0047), (0.0, 1e-5)],
     [(1.0, 0.0053), (0.0, 1e-5)],
     [(34.1, 0.04), (13.5, 0.025)],
 ];
 
-/// A picture as the eye takes it in.
+/// A picture as the eye perceives it.
 struct Seen {
     color: Vec<DVec3>,
     edges: Vec<f64>,
@@ -101,7 +100,7 @@ impl Seen {
 /// A channel blurred by its contrast sensitivity.
 fn sensed(channel: &[f64], size: [usize; 2], gaussians: [(f64, f64); 2]) -> Vec<f64> {
     use std::f64::consts::PI;
-    // The widest of all decides, as in the paper.
+    // The radius of the widest Gaussian, as in the paper.
     let radius = (3.0 * (0.04 / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as i32;
     let mut sum = vec![0.0; channel.len()];
     let mut total = 0.0;
@@ -122,13 +121,13 @@ fn taps(radius: i32, f: impl Fn(f64) -> f64) -> Vec<f64> {
     (-radius..=radius).map(|x| f(f64::from(x))).collect()
 }
 
-/// Scaled to the sum 1.
+/// Scales a kernel to the sum 1.
 fn even(kernel: &[f64]) -> Vec<f64> {
     let sum: f64 = kernel.iter().sum();
     kernel.iter().map(|k| k / sum).collect()
 }
 
-/// Scaled so that positive taps sum to 1 and negative ones to -1.
+/// Scales a kernel so that its positive taps sum to 1 and its negative ones to -1.
 fn signed(kernel: &[f64]) -> Vec<f64> {
     let up: f64 = kernel.iter().filter(|k| **k > 0.0).sum();
     let down: f64 = -kernel.iter().filter(|k| **k < 0.0).sum::<f64>();
@@ -136,22 +135,18 @@ fn signed(kernel: &[f64]) -> Vec<f64> {
     kernel.iter().map(scale).collect()
 }
 
-/// A separable convolution, along x and then along y.
+/// Convolves along x and then along y.
 fn convolve(image: &[f64], [width, height]: [usize; 2], x: &[f64], y: &[f64]) -> Vec<f64> {
     let radius = x.len() / 2;
     let at = |i: usize, tap: usize, last: usize| (i + tap).saturating_sub(radius).min(last);
-    let mut rows = vec![0.0; image.len()];
-    rows.par_chunks_mut(width)
-        .zip(image.par_chunks(width))
-        .for_each(|(to, from)| {
-            for (i, to) in to.iter_mut().enumerate() {
-                *to = x
-                    .iter()
-                    .enumerate()
-                    .map(|(tap, k)| k * from[at(i, tap, width - 1)])
-                    .sum();
-            }
-        });
+    let row = |from: &[f64], i: usize| -> f64 {
+        let taps = x.iter().enumerate();
+        taps.map(|(tap, k)| k * from[at(i, tap, width - 1)]).sum()
+    };
+    let rows: Vec<f64> = image
+        .par_chunks(width)
+        .flat_map_iter(|from| (0..width).map(move |i| row(from, i)))
+        .collect();
     let mut all = vec![0.0; image.len()];
     all.par_chunks_mut(width).enumerate().for_each(|(j, to)| {
         for (tap, k) in y.iter().enumerate() {
@@ -218,23 +213,22 @@ fn to_xyz(rgb: DVec3) -> DVec3 {
 
 /// Linear sRGB to CIE XYZ, by columns.
 fn rgb_matrix() -> glam::DMat3 {
-    glam::DMat3::from_cols(
-        DVec3::new(
-            10_135_552.0 / 24_577_794.0,
-            871_024.0 / 4_096_299.0,
-            79_184.0 / 4_096_299.0,
-        ),
-        DVec3::new(
-            8_788_810.0 / 24_577_794.0,
-            8_788_810.0 / 12_288_897.0,
-            4_394_405.0 / 36_866_691.0,
-        ),
-        DVec3::new(
-            4_435_075.0 / 24_577_794.0,
-            887_015.0 / 12_288_897.0,
-            70_074_185.0 / 73_733_382.0,
-        ),
-    )
+    let red = [
+        10_135_552.0 / 24_577_794.0,
+        871_024.0 / 4_096_299.0,
+        79_184.0 / 4_096_299.0,
+    ];
+    let green = [
+        8_788_810.0 / 24_577_794.0,
+        8_788_810.0 / 12_288_897.0,
+        4_394_405.0 / 36_866_691.0,
+    ];
+    let blue = [
+        4_435_075.0 / 24_577_794.0,
+        887_015.0 / 12_288_897.0,
+        70_074_185.0 / 73_733_382.0,
+    ];
+    glam::DMat3::from_cols_array_2d(&[red, green, blue])
 }
 
 #[cfg(test)]
@@ -247,43 +241,36 @@ mod tests {
         [(x * 5) as u8, (y * 7) as u8, 128]
     }
 
-    /// Pairs of pictures of 48 x 32 pixels, and what the authors' own program says of
-    /// them (version 1.2, at 67 pixels per degree).
+    fn brighter(x: u32, y: u32) -> [u8; 3] {
+        ramp(x, y).map(|c| c.saturating_add(20))
+    }
+
+    fn turned(x: u32, y: u32) -> [u8; 3] {
+        let [r, g, b] = ramp(x, y);
+        [g, b, r]
+    }
+
+    fn edge(x: u32, at: u32) -> [u8; 3] {
+        [[20, 30, 60], [200, 180, 90]][usize::from(x < at)]
+    }
+
+    fn point(x: u32, y: u32) -> [u8; 3] {
+        [[60, 120, 200], [255, 0, 255]][usize::from((x, y) == (20, 10))]
+    }
+
+    /// Pairs of pictures of 48 x 32 pixels, and the result of the authors' own program
+    /// (version 1.2, at 67 pixels per degree).
     const KNOWN: &[(&str, Paint, Paint, f64)] = &[
         ("black and white", |_, _| [0; 3], |_, _| [255; 3], 0.967_399),
-        (
-            "a brighter ramp",
-            ramp,
-            |x, y| ramp(x, y).map(|c| c.saturating_add(20)),
-            0.343_887,
-        ),
-        (
-            "other colours",
-            ramp,
-            |x, y| {
-                let [r, g, b] = ramp(x, y);
-                [g, b, r]
-            },
-            0.817_031,
-        ),
+        ("a brighter ramp", ramp, brighter, 0.343_887),
+        ("other colours", ramp, turned, 0.817_031),
         (
             "a moved edge",
-            |x, _| if x < 24 { [200, 180, 90] } else { [20, 30, 60] },
-            |x, _| if x < 26 { [200, 180, 90] } else { [20, 30, 60] },
+            |x, _| edge(x, 24),
+            |x, _| edge(x, 26),
             0.128_674,
         ),
-        (
-            "one pixel",
-            |_, _| [60, 120, 200],
-            |x, y| {
-                if (x, y) == (20, 10) {
-                    [255, 0, 255]
-                } else {
-                    [60, 120, 200]
-                }
-            },
-            0.003_247,
-        ),
+        ("one pixel", |_, _| point(0, 0), point, 0.003_247),
         (
             "green and blue",
             |_, _| [0, 255, 0],
@@ -305,7 +292,7 @@ mod tests {
                 pixels,
             };
             let got = flip(picture(&one), picture(&two));
-            // Theirs runs in f32.
+            // The authors' program computes in f32.
             assert!((got - want).abs() < 2e-4, "{name}: {got}, {want}");
             assert_eq!(flip(picture(&one), picture(&one)), 0.0, "{name}");
         }

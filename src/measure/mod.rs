@@ -1,4 +1,9 @@
-//! What only benchmarks use: the truth, comparisons with it, and probes of estimates.
+//! Measurements, for benchmarks only.
+//!
+//! - [`truth`]: the truth of a plan
+//! - [`compare`]: the depth errors of a frame; [`flip`]: how different two pictures look
+//! - [`calibrate`]: probes of an estimate that propose settings
+//! - [`tracer_stats`]: what tracers of heightfields cost and miss
 
 pub mod calibrate;
 pub mod compare;

@@ -1,8 +1,8 @@
-//! The truth that pictures are compared with (docs/method.md, 5), and where it is kept.
+//! The truth of a plan: the picture that others are compared with (docs/method.md, 5).
 //!
-//! Truths are kept in the user's cache folder, under a hash of everything that decides
-//! them: the plan's text, the heights of files that it names, and this very program. A program that was built anew, or a plan
-//! with another digit, finds nothing there; so does a file that was cut or changed.
+//! Truths take long, so they are kept in the user's cache folder. The file is named by a
+//! hash of everything that decides the truth: the plan's text, the contents of the files that
+//! it names, and this program itself. A cut or changed file is ignored.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,29 +19,29 @@ use crate::picture::{self, Place};
 use crate::plan::march::{Marching, Mode};
 use crate::plan::{Extras, Plan};
 use crate::preset;
-use crate::scene::Assets;
+use crate::scene::{Assets, Hit};
 
-/// The reference frame of a plan, and how sure it is.
+/// The reference frame of a plan, and how accurate it is.
 #[derive(Clone, Debug)]
 pub struct Truth {
     /// Depth and states.
     pub frame: Frame,
-    /// Factor on the estimate's steps.
+    /// Factor on the steps.
     pub stride: f64,
-    /// Share of sampled pixels that move by over 2 footprints, or change state, when
-    /// the stride is halved.
+    /// Share of sampled pixels that move by more than 2 footprints or change state when the
+    /// stride is halved.
     pub moved: f64,
 }
 
-/// Share of moved pixels under which the truth counts as converged.
+/// The truth has converged if a smaller share of pixels moves.
 const CONVERGED: f64 = 5e-5;
-/// The last check looks at every so many pixels.
+/// One in so many pixels is sampled.
 const SAMPLE: usize = 16;
-/// The stride is not halved below this: a picture that still moves is reported so.
+/// The stride is not halved below this. The result then tells how many pixels still move.
 const LEAST_STRIDE: f64 = 1.0 / 160.0;
 
-/// The plan that a plan's truth is rendered from: everything that only says how its work
-/// is spent has one value, so that all ways of spending it are held to the same truth.
+/// The plan of a plan's truth. Settings that only say how work is spent get fixed values, so
+/// that all modes share one truth.
 fn asked(plan: &Plan) -> Plan {
     let mut asked = plan.clone();
     if let Some(exact) = plan.scene.exact() {
@@ -50,40 +50,42 @@ fn asked(plan: &Plan) -> Plan {
     asked.march = Marching {
         mode: Mode::Truth,
         detail: plan.march.detail,
-        // Outside the bounds the field is its distance to them: nothing is lost by
-        // starting where a ray enters, and much time is saved.
+        // This saves time and loses nothing, as the shape lies within the bounds.
         clip: Some(true),
         ..Marching::default()
     };
     asked
 }
 
-/// Renders a plan's truth in f64: no cones, no relaxation, the same hit rule, steps of
-/// a small factor times the estimate, halved from 0.1 until the picture stands.
+/// Renders a plan's truth in f64, with no cones, no relaxation and the same hit rule. The
+/// factor on the steps starts at 0.1 and is halved until the picture converges.
 ///
 /// # Errors
-/// [`RenderError::Cancelled`], when `watch` returns `false`; a named file cannot be read.
+/// [`RenderError::Cancelled`] if `watch` returns `false`. A named file cannot be read.
 pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, RenderError> {
     let mut plan = asked(plan);
     let view = plan.view();
-    let width = plan.size[0] as usize;
+    let [width, height] = plan.size.map(|n| n as usize);
+    let pixels = (0..width * height).step_by(SAMPLE);
+    let pixels: Vec<_> = pixels
+        .map(|i| [(i % width) as u32, (i / width) as u32])
+        .collect();
     let mut stride = 0.1;
     loop {
         plan.march.stride = Some(stride);
         let frame = cpu::render(&plan, assets, Extras::default(), watch)?;
         let mut finer = plan.clone();
         finer.march.stride = Some(0.5 * stride);
-        let sample = cpu::sample(&finer, assets, SAMPLE)?;
-        let mut moved = 0;
-        for &(i, t, state) in &sample {
+        let sample = cpu::sample(&finer, assets, &pixels)?;
+        let changed = |(n, (hit, state)): (usize, &(Hit, State))| {
+            let (i, t) = (n * SAMPLE, hit.t);
             let before = f64::from(frame.depth[i]);
-            let grain = view
-                .view_ray([(i % width) as u32, (i / width) as u32])
-                .grain;
-            let far = state == State::Hit && (before - t).abs() > 2.0 * grain * t;
-            moved += u32::from(frame.state[i] != state as u8 || far);
-        }
-        let moved = f64::from(moved) / sample.len().max(1) as f64;
+            let grain = view.view_ray(pixels[n]).grain;
+            let far = *state == State::Hit && (before - t).abs() > 2.0 * grain * t;
+            frame.state[i] != *state as u8 || far
+        };
+        let moved = sample.iter().enumerate().filter(|s| changed(*s)).count();
+        let moved = moved as f64 / sample.len().max(1) as f64;
         if moved < CONVERGED || stride <= LEAST_STRIDE {
             return Ok(Truth {
                 frame,
@@ -95,7 +97,7 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
     }
 }
 
-/// Truths that are kept; the oldest go first.
+/// So many truths are kept. Older ones are removed.
 const MOST_KEPT: usize = 64;
 
 /// A folder of truths.
@@ -106,8 +108,7 @@ pub struct Cache {
 }
 
 impl Cache {
-    /// The user's cache; `None` where there is none, or where this program cannot read
-    /// itself.
+    /// The user's cache; `None` if there is none, or if this program cannot read itself.
     pub fn user() -> Option<Self> {
         let set = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
         let base = set("XDG_CACHE_HOME")
@@ -117,7 +118,7 @@ impl Cache {
         Self::at(base.join("conemarch"))
     }
 
-    /// A cache in a folder, which need not exist yet.
+    /// A cache in a folder, which is made when needed; `None` if this program cannot read itself.
     pub fn at(folder: PathBuf) -> Option<Self> {
         let program = fs::read(std::env::current_exe().ok()?).ok()?;
         Some(Self {
@@ -135,12 +136,12 @@ impl Cache {
         self.folder.join(format!("truth-{name}"))
     }
 
-    /// The kept truth of a plan, if there is one and it is whole.
+    /// The kept truth of a plan, if there is one and its file is intact.
     pub fn find(&self, plan: &Plan, assets: &Assets) -> Option<Truth> {
         unpack(&fs::read(self.file(plan, assets)).ok()?, plan.size)
     }
 
-    /// Keeps a truth. A cache that cannot be written is no reason to fail.
+    /// Keeps a truth. Failure is ignored.
     pub fn keep(&self, plan: &Plan, assets: &Assets, truth: &Truth) {
         let write = || {
             let mut place = Place::prepare(&self.file(plan, assets))?;
@@ -169,10 +170,10 @@ impl Cache {
     }
 }
 
-/// The truth of a plan, from the cache or rendered now and kept; whether it was there.
+/// The truth of a plan, and whether the cache had it. If not, it is rendered and kept.
 ///
 /// # Errors
-/// [`RenderError::Cancelled`], when `watch` returns `false`; a named file cannot be read.
+/// [`RenderError::Cancelled`] if `watch` returns `false`. A named file cannot be read.
 pub fn cached(
     cache: Option<&Cache>,
     plan: &Plan,
@@ -189,7 +190,7 @@ pub fn cached(
     Ok((made, false))
 }
 
-/// Stride and share moved, depth, states, colours, and a hash of it all.
+/// The bytes of a truth's file: numbers, depth, colours, states, and a hash of all before it.
 fn pack(truth: &Truth) -> Vec<u8> {
     let mut bytes = Vec::new();
     bytes.extend(truth.stride.to_le_bytes());
@@ -240,6 +241,19 @@ mod tests {
     use crate::heightfield::tracer::TracerKind;
     use crate::scene::Scene;
 
+    fn no_assets() -> Assets {
+        Assets::default()
+    }
+
+    /// The truth of a plan, and whether the cache had it.
+    fn truth_of(cache: &Cache, plan: &Plan) -> (Truth, bool) {
+        cached(Some(cache), plan, &no_assets(), &mut |_| true).expect("nothing fails")
+    }
+
+    fn finds(cache: &Cache, plan: &Plan) -> bool {
+        cache.find(plan, &no_assets()).is_some()
+    }
+
     fn plan() -> Plan {
         let mut plan = Plan::new(Formula::Balls(Balls::default()));
         plan.size = [20, 15];
@@ -263,22 +277,20 @@ mod tests {
         };
         let slope: [f32; 12] = std::array::from_fn(|i| i as f32 / 12.0);
         let first = plan(slope);
-        let (_, before) =
-            cached(Some(&cache), &first, &Assets::default(), &mut |_| true).expect("made");
-        assert!(!before && cache.find(&plan(slope), &Assets::default()).is_some());
-        // By whom rays are traced does not matter.
+        assert!(!truth_of(&cache, &first).1 && finds(&cache, &plan(slope)));
+        // The tracer does not matter.
         let mut other = plan(slope);
         let Scene::Heightfield(shape) = &mut other.scene else {
             unreachable!("made above");
         };
         shape.tracing.tracer = TracerKind::CsmFixed;
-        assert!(cache.find(&other, &Assets::default()).is_some());
-        // One height of the file does, with the same text of the plan.
+        assert!(finds(&cache, &other));
+        // One height of the file does, with the same plan.
         let mut bent = slope;
         bent[5] += 1e-6;
         let second = plan(bent);
         assert_eq!(preset::write(&first), preset::write(&second));
-        assert!(cache.find(&second, &Assets::default()).is_none());
+        assert!(!finds(&cache, &second));
         fs::remove_dir_all(&folder).expect("made above");
     }
 
@@ -286,20 +298,18 @@ mod tests {
     fn a_kept_truth_is_found_for_its_own_plan_only() {
         let folder = std::env::temp_dir().join(format!("conemarch-truths-{}", std::process::id()));
         let cache = Cache::at(folder.clone()).expect("this program can be read");
-        let (made, before) =
-            cached(Some(&cache), &plan(), &Assets::default(), &mut |_| true).expect("made");
-        let (found, after) =
-            cached(Some(&cache), &plan(), &Assets::default(), &mut |_| true).expect("found");
+        let (made, before) = truth_of(&cache, &plan());
+        let (found, after) = truth_of(&cache, &plan());
         assert!(!before && after);
         assert!(made.stride <= 0.1 && made.moved < CONVERGED);
         assert_eq!(found.frame.depth, made.frame.depth);
         assert_eq!(found.frame.state, made.frame.state);
         assert_eq!(found.frame.radiance, made.frame.radiance);
         assert_eq!((found.stride, found.moved), (made.stride, made.moved));
-        // How the work is spent does not matter, what is asked for does.
+        // The shell does not decide a truth, these settings do.
         let mut other = plan();
         other.march.shell = 0.7;
-        assert!(cache.find(&other, &Assets::default()).is_some());
+        assert!(finds(&cache, &other));
         let changes: [fn(&mut Plan); 4] = [
             |p| p.march.detail = 2.0,
             |p| p.size = [15, 20],
@@ -309,19 +319,19 @@ mod tests {
         for change in changes {
             let mut other = plan();
             change(&mut other);
-            assert!(cache.find(&other, &Assets::default()).is_none());
+            assert!(!finds(&cache, &other));
         }
         let mut rebuilt = cache.clone();
         rebuilt.program[7] ^= 1;
-        assert!(rebuilt.find(&plan(), &Assets::default()).is_none());
-        // A file that was cut, or changed in one bit, is not believed.
-        let file = cache.file(&plan(), &Assets::default());
+        assert!(!finds(&rebuilt, &plan()));
+        // A file that was cut or changed by one bit is ignored.
+        let file = cache.file(&plan(), &no_assets());
         let whole = fs::read(&file).expect("kept");
         let mut changed = whole.clone();
         changed[40] ^= 1;
         for wrong in [&whole[..whole.len() - 1], &changed[..], &[]] {
             fs::write(&file, wrong).expect("can be written");
-            assert!(cache.find(&plan(), &Assets::default()).is_none());
+            assert!(!finds(&cache, &plan()));
         }
         fs::remove_dir_all(folder).expect("can be removed");
     }

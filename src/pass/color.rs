@@ -1,5 +1,5 @@
-//! The colour pass: key light with shadow, sky and bounce with occlusion, fog.
-//! Twin: `wgsl/pass/color.wgsl`.
+//! The colour pass: key light with shadow, light from the sky and from the ground with
+//! occlusion, and fog. Twin: `wgsl/pass/color.wgsl`.
 
 use glam::DVec3;
 
@@ -12,8 +12,8 @@ use crate::pass::{fog, occlusion};
 use crate::scene::{Hit, Solid, Surface};
 use crate::wgsl;
 
-/// The WGSL module of the pass; normals are written out only where they are asked for, and
-/// the palette looked up only where pigments are not colours themselves.
+/// The WGSL module of the pass. `keeps_normals` writes normals out; `colored` takes pigments
+/// as colours instead of looking the palette up.
 pub fn module(keeps_normals: bool, colored: bool) -> Module {
     wgsl!(
         "pass/color.wgsl",
@@ -22,8 +22,8 @@ pub fn module(keeps_normals: bool, colored: bool) -> Module {
     )
 }
 
-/// Radiance that leaves a surface towards the eye, and whether the shadow's ray came to an
-/// end.
+/// Radiance that leaves a surface towards the eye, and whether the shadow ray reached its end.
+/// `q` is the hit relative to the eye, `grain` half a pixel's width there.
 pub fn shade<S: Solid>(
     solid: &S,
     light: &Light,
@@ -32,14 +32,14 @@ pub fn shade<S: Solid>(
     surface: &Surface,
     grain: f64,
 ) -> (DVec3, bool) {
-    let n = surface.normal;
+    let (n, look) = (surface.normal, &light.look);
     let albedo = if solid.is_colored() {
         surface.pigment
     } else {
         light.pigment_color(surface.pigment)
     };
-    let facing = n.dot(light.light);
-    // What faces away is dark without asking: it needs no shadow ray.
+    let facing = n.dot(look.light);
+    // A surface that faces away is dark: it needs no shadow ray.
     let key = if facing > 0.0 {
         shadow::shadow(solid, light, q, n, grain)
     } else {
@@ -48,28 +48,28 @@ pub fn shade<S: Solid>(
     let lit = facing.max(0.0) * key.open;
     let open = occlusion::occlusion(solid, light, q, n, grain);
     let up = 0.5 + 0.5 * n.dot(light.world_up);
-    let ambient = (0.45 * light.sky_low).lerp(light.sky_high, up) * light.fill;
-    // Light thrown back by lit neighbours: warm, from below and behind.
-    let bounce = light.light_color * (0.12 * light.fill * (1.0 - up));
-    let half_way = (light.light - ray.axis).normalize_or_zero();
+    let ambient = (0.45 * look.sky_low).lerp(look.sky_high, up) * look.fill;
+    // Light from lit neighbours: warm, from below.
+    let bounce = look.light_color * (0.12 * look.fill * (1.0 - up));
+    let half_way = (look.light - ray.axis).normalize_or_zero();
     let shine = n.dot(half_way).max(0.0).powi(40);
-    let c = albedo * (light.light_color * (light.key * lit) + (ambient + bounce) * open)
-        + light.light_color * (light.gloss * lit * shine);
+    let c = albedo * (look.light_color * (look.key * lit) + (ambient + bounce) * open)
+        + look.light_color * (look.gloss * lit * shine);
     (c, key.decided)
 }
 
-/// What the pass says of a pixel.
+/// A pixel's colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaded {
     /// Radiance towards the eye.
     pub radiance: DVec3,
-    /// Unit normal, zero for the sky.
+    /// Unit normal; zero for sky.
     pub normal: DVec3,
-    /// Whether the shadow's ray, if there was one, came to its end within its steps.
+    /// Whether the shadow ray, if there was one, reached its end before its step limit.
     pub decided: bool,
 }
 
-/// The light of a pixel.
+/// Colours one pixel.
 pub fn color<S: Solid>(solid: &S, light: &Light, ray: &Beam, hit: &Hit, state: State) -> Shaded {
     if state == State::Sky {
         return Shaded {
@@ -82,7 +82,7 @@ pub fn color<S: Solid>(solid: &S, light: &Light, ray: &Beam, hit: &Hit, state: S
     let grain = footprint(ray, hit.t);
     let (mut c, decided) = shade(solid, light, ray, ray.at(hit.t), &surface, grain);
     c = fog::fog(light, c, ray.axis, hit.t);
-    if light.flag && (state == State::Unconverged || !decided) {
+    if light.look.flag_unconverged && (state == State::Unconverged || !decided) {
         c = DVec3::new(1.0, 0.0, 1.0);
     }
     Shaded {

@@ -1,4 +1,4 @@
-//! What would be run for a frame, told without a GPU.
+//! The text of `--explain`: what a render would run. It needs no GPU.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use crate::heightfield::tracer::settings::PrepareError;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::Assets;
 
-/// The passes, programs, modules and constants of a frame with extras.
+/// Lists the passes, programs, modules and constants of a render.
 ///
 /// # Errors
 /// A file that the plan names cannot be read or does not fit.
@@ -18,16 +18,13 @@ pub fn explain(plan: &Plan, assets: &Assets, extras: Extras) -> Result<String, P
     let solid = plan.scene.outline(&plan.viewpoint(), assets)?;
     let mut text = String::new();
     let [w, h] = plan.size;
-    // Writing to a string cannot fail, here and below.
+    // Writing to a string cannot fail.
     let _ = writeln!(text, "{w} x {h}, mode {}", plan.march.mode.name());
     let _ = writeln!(text, "{}", solid.twin().describe());
     let mut programs: Vec<Program> = Vec::new();
     text.push_str("passes\n");
-    let prepared = plan
-        .scene
-        .preparations(assets)
-        .into_iter()
-        .map(Pass::Prepare);
+    let prepared = plan.scene.preparations(assets);
+    let prepared = prepared.into_iter().map(Pass::Prepare);
     for pass in prepared.chain(plan.passes(extras)) {
         let limit = match pass {
             Pass::March(level) => level.steps.to_string(),

@@ -1,14 +1,15 @@
-//! The features of a look that can be absent.
+//! The parts of a look that can be absent.
 //!
-//! A feature is a twin pair, `NAME.rs` and `wgsl/pass/NAME.wgsl`, a stand-in
-//! `wgsl/pass/NAME_off.wgsl` with the same functions, and one predicate. Both executors read the predicate:
-//! the GPU joins the stand-in, and the CPU's function returns at once.
+//! A feature has a twin pair, `NAME.rs` and `wgsl/pass/NAME.wgsl`, a stand-in
+//! `wgsl/pass/NAME_off.wgsl` with the same functions, and one predicate that both executors
+//! read. Where it is off, the GPU joins the stand-in, and the function of the CPU returns at
+//! once.
 
 use crate::base::shader::Module;
 use crate::plan::look::Look;
 use crate::wgsl;
 
-/// Makes the enum of all features out of one list: name, module, stand-in, predicate.
+/// Makes the enum of all features from one list: name, module, stand-in, predicate.
 macro_rules! features {
     ($($(#[$doc:meta])* $name:ident: $on:literal, $off:literal, $is_on:expr);* $(;)?) => {
         /// A feature of a look that can be absent.

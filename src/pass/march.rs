@@ -1,4 +1,5 @@
-//! One level of the pyramid: cones from the parents' fronts (docs/method.md, 1 and 2).
+//! One level of the pyramid: cones go on from the fronts of their parents (docs/method.md, 1
+//! and 2).
 //! Twin: `wgsl/pass/march.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
@@ -28,18 +29,18 @@ pub fn module() -> Module {
     wgsl!("pass/march.wgsl")
 }
 
-/// How a cell ended.
+/// Why a cone ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// The front is past everything: no child has anything to do.
+    /// The front is behind everything: there is nothing left for the children.
     Sky,
-    /// No more can be proven.
+    /// Another step is not worth its cost.
     Stopped,
-    /// Out of steps; the front is proven all the same.
+    /// The step limit was reached. The front is proven nevertheless.
     Limited,
 }
 
-/// Advances one cone from a proven front, by at most `limit` steps.
+/// Advances one cone from a proven front by at most `limit` steps. Returns the new front.
 pub fn march<S: Solid>(
     solid: &S,
     cone: &Beam,

@@ -1,6 +1,13 @@
-//! The steps of a Plan. Every loop belongs to a pass; no pass knows what it marches.
+//! Passes: the steps of a render. They contain all loops and know nothing of the scene.
 //!
-//! Each pass declares its program ([`program`]) and what it writes ([`outputs`]). An
+//! - [`prepare`]: makes cone maps before a heightfield's first frame
+//! - [`march`]: the cones of one level; [`trace`]: one ray per pixel
+//! - [`queue`]: which cells a dispatch on a GPU visits
+//! - [`color`]: light and colour, with [`look`], [`shadow`], [`occlusion`] and [`fog`]
+//! - [`features`]: the parts of a look that can be absent
+//! - [`progress`]: how far a render has come; `explain`: its programs, without a GPU
+//!
+//! Each pass declares its program ([`program`]) and what it writes ([`outputs`]). The GPU
 //! executor allocates, binds and reads back what is declared.
 
 pub mod color;
@@ -32,11 +39,8 @@ pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Pro
     let entry = match pass {
         Pass::Color => {
             modules.push(look::module());
-            modules.extend(
-                LookFeature::ALL
-                    .iter()
-                    .map(|f| f.module(f.is_on(&plan.look))),
-            );
+            let features = LookFeature::ALL.iter();
+            modules.extend(features.map(|f| f.module(f.is_on(&plan.look))));
             modules.push(color::module(extras.normals, solid.is_colored()));
             "color"
         }
@@ -63,12 +67,11 @@ fn counters(on: bool) -> Module {
 /// What an output buffer holds before its pass runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Before {
-    /// Anything: every element that is read is written first.
+    /// Any values: every element is written before it is read.
     Anything,
     /// Zeros.
     Zero,
-    /// Ones in all bits: a state that no shader writes, by which cells are found that were
-    /// not visited.
+    /// Ones in all bits: a state that no shader writes. It marks cells that were not visited.
     Unwritten,
 }
 
@@ -77,13 +80,14 @@ pub enum Before {
 pub struct Output {
     /// The WGSL variable.
     pub name: &'static str,
-    /// Bytes of an element; 0 for a stand-in that is bound and never written.
+    /// Bytes of an element; 0 for a buffer that is bound but never written.
     pub stride: u64,
-    /// What it holds before.
+    /// What it holds before the pass.
     pub before: Before,
 }
 
-/// What a pass writes, its front or colour first. `walk` is the bytes of a ray on its way.
+/// What a pass writes. The front or the colour is first. `marked` is whether hits carry an id
+/// and a place, and `walk` is the size of a ray's state in bytes.
 pub fn outputs(pass: Pass, extras: Extras, marked: bool, walk: u64) -> Vec<Output> {
     let plain = |name, stride| Output {
         name,

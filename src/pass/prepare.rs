@@ -1,4 +1,4 @@
-//! The pass before all others: cone maps that a scene needs.
+//! The pass before all others: it makes the cone maps that a scene needs.
 
 use std::time::Instant;
 
@@ -11,7 +11,7 @@ use crate::heightfield::tracer::settings::PrepareError;
 use crate::plan::Plan;
 use crate::scene::Assets;
 
-/// A maker of cone maps that tells the share that is done, and stops when it is told `false`.
+/// Makes a cone map. It reports the share that is done, and stops if the answer is `false`.
 pub type Maker<'a> = &'a mut dyn FnMut(
     Generator,
     &Heights,
@@ -20,8 +20,8 @@ pub type Maker<'a> = &'a mut dyn FnMut(
     &mut dyn FnMut(f64) -> bool,
 ) -> Result<ConeMap, GenerateError>;
 
-/// Makes what a plan needs by `maker`, and keeps it in the assets. Returns the milliseconds that each map took:
-/// none for a kept one.
+/// Makes the cone maps of a plan by `maker` and keeps them in the assets. Returns the
+/// milliseconds that each map took; 0 for a map that was kept.
 ///
 /// # Errors
 /// A file does not fit, the maker fails, or `watch` returns `false`.
@@ -47,10 +47,6 @@ pub fn prepare(
         let of = taken.iter().find(|(by, _)| *by == map.generator);
         (map, of.map_or(0.0, |(_, ms)| *ms))
     };
-    Ok(plan
-        .scene
-        .preparations(assets)
-        .into_iter()
-        .map(time)
-        .collect())
+    let maps = plan.scene.preparations(assets);
+    Ok(maps.into_iter().map(time).collect())
 }

@@ -1,13 +1,14 @@
-//! Where a render stands, and who is told.
+//! How far a render has come.
 
-/// Where a render stands.
+/// How far a render has come.
 #[derive(Clone, Debug)]
 pub struct Progress {
-    /// The pass that is done, or under way.
+    /// The current pass, or the one that has just ended.
     pub pass: String,
     /// The share of the whole frame that is done, 0 to 1.
     pub done: f64,
 }
 
-/// Is told after each part of a render. It returns `false` to cancel the render.
+/// A function that is called after each part of a render. It returns `false` to cancel the
+/// render.
 pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> bool;

@@ -1,28 +1,30 @@
-//! Which cells a dispatch visits: all, the listed children, or what still moves.
-//! Twin: `wgsl/pass/queue.wgsl`. The CPU executor runs every cell to its end at once,
-//! so there are no functions here.
+//! The cells that a dispatch visits: all, the children of listed parents, or those that have
+//! not ended.
+//!
+//! Twin: `wgsl/pass/queue.wgsl`. Its functions have no counterpart here, as the CPU executor
+//! runs every cell to its end at once.
 
 use bytemuck::{Pod, Zeroable};
 
 use crate::base::shader::Module;
 use crate::wgsl;
 
-/// What leads a queue: the numbers of the dispatch that reads it. The count of cells
-/// and the cells follow; only the device writes those.
+/// The head of a queue: the numbers of the dispatch that reads it. The count of the cells and
+/// the cells follow it; only the device writes those.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Turn {
-    /// Steps that the dispatch may do.
+    /// The step limit of this dispatch.
     pub chunk: u32,
-    /// Steps that all before it did.
+    /// Steps done by the dispatches before.
     pub done: u32,
-    /// Steps that all may do.
+    /// The step limit of the pass.
     pub limit: u32,
     /// Workgroups per row of the dispatch.
     pub row: u32,
-    /// Cells per row of the parent level in the block; 0 where there is none.
+    /// Cells per row of the parent level in the block; 0 if there is no parent level.
     pub parent_width: u32,
-    /// What is visited: [`Turn::ALL`], [`Turn::PARENTS`] or [`Turn::CELLS`].
+    /// The cells to visit: [`Turn::ALL`], [`Turn::PARENTS`] or [`Turn::CELLS`].
     pub visits: u32,
 }
 
@@ -30,21 +32,21 @@ pub struct Turn {
 const MOST_GROUPS: u32 = 65_535;
 
 impl Turn {
-    /// Every cell of the block is visited.
+    /// Every cell of the block.
     pub const ALL: u32 = 0;
-    /// The children of listed parents are.
+    /// The children of the listed parents.
     pub const PARENTS: u32 = 1;
-    /// Listed cells are.
+    /// The listed cells.
     pub const CELLS: u32 = 2;
 
-    /// Turns to the children of so many listed parents, four of each: the workgroups to
-    /// dispatch, none for none.
+    /// Visits the four children of each of so many listed parents next. Returns the workgroups
+    /// to dispatch, which may be none.
     pub fn to_children_of(&mut self, parents: u32) -> [u32; 2] {
         self.visits = Self::PARENTS;
         self.spread(parents.div_ceil(16))
     }
 
-    /// Turns to a list of so many cells.
+    /// Visits so many listed cells next. Returns the workgroups to dispatch.
     pub fn to_cells(&mut self, cells: u32) -> [u32; 2] {
         self.visits = Self::CELLS;
         self.spread(cells.div_ceil(64))
@@ -56,7 +58,7 @@ impl Turn {
     }
 }
 
-/// Offset of the count in bytes; the cells follow it.
+/// Offset of the count in bytes. The cells follow it.
 pub const COUNT_AT: u64 = std::mem::size_of::<Turn>() as u64;
 
 /// The WGSL module of the queue.

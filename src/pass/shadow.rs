@@ -1,4 +1,6 @@
-//! The soft shadow of the key light. Twins: `wgsl/pass/shadow.wgsl`, `shadow_off.wgsl`.
+//! The soft shadow of the key light. A ray goes from the point to the light: a hit is full
+//! shadow, and the narrowest empty ball on the way gives the penumbra.
+//! Twins: `wgsl/pass/shadow.wgsl`, `shadow_off.wgsl`.
 
 use glam::DVec3;
 
@@ -8,13 +10,12 @@ use crate::pass::LookFeature;
 use crate::pass::look::{Light, smoothstep};
 use crate::scene::{Solid, Step};
 
-/// What a shadow's ray has found.
+/// What a shadow ray found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shadow {
-    /// Share of the light that arrives, as far as the ray came: 0 behind any hit, else by
-    /// the narrowest empty ball on the way, as wide as the light seen from the point.
+    /// Share of the light that arrives, as far as the ray came.
     pub open: f64,
-    /// Whether it came to its end within its steps.
+    /// Whether the ray reached its end before its step limit.
     pub decided: bool,
 }
 
@@ -26,15 +27,15 @@ impl Shadow {
     };
 }
 
-/// Follows a ray from a point to the light.
+/// Follows a ray from a point to the light. `grain` is half a pixel's width at the point.
 pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain: f64) -> Shadow {
     if !light.has(LookFeature::Shadow) {
         return Shadow::NONE;
     }
     let ray = Beam {
-        // Start off the surface, or its own hit shell would shade it.
+        // Off the surface, whose hit threshold would end the ray at once.
         origin: q + 4.0 * grain * normal,
-        axis: light.light,
+        axis: light.look.light,
         r0: 0.0,
         k: 0.0,
         grain0: grain,

@@ -1,4 +1,4 @@
-//! The last level: one ray per pixel, from the front of its cell to the surface.
+//! The trace pass: one ray per pixel, from the front of its cell to the surface.
 //! Twin: `wgsl/pass/trace.wgsl`.
 
 use crate::base::shader::Module;
@@ -12,7 +12,7 @@ pub fn module() -> Module {
     wgsl!("pass/trace.wgsl")
 }
 
-/// Follows one ray from a proven front, by at most `limit` steps.
+/// Follows one ray from a proven front by at most `limit` steps.
 pub fn trace<S: Solid>(
     solid: &S,
     ray: &Beam,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// What can go wrong between a Frame and a file.
+/// What can go wrong between a frame and a file.
 #[derive(Debug, Error)]
 pub enum OutputError {
     /// The file cannot be made or written.
@@ -13,13 +13,13 @@ pub enum OutputError {
     File {
         /// Its path.
         path: PathBuf,
-        /// What is wrong and what would do.
+        /// What is wrong, and what to do instead.
         why: String,
     },
     /// The picture could not be encoded.
     #[error("the picture could not be encoded as {format}: {why}")]
     Encode {
-        /// `PNG` or `EXR`.
+        /// `PNG`, `JPEG`, `WebP` or `EXR`.
         format: &'static str,
         /// What the encoder said.
         why: String,
@@ -27,6 +27,12 @@ pub enum OutputError {
 }
 
 impl OutputError {
+    /// What an encoder said.
+    pub(crate) fn encode(format: &'static str, e: impl std::fmt::Display) -> Self {
+        let why = e.to_string();
+        Self::Encode { format, why }
+    }
+
     pub(crate) fn file(path: &Path, why: impl Into<String>) -> Self {
         Self::File {
             path: path.to_path_buf(),
@@ -34,7 +40,7 @@ impl OutputError {
         }
     }
 
-    /// A failure while content is written, which is a full disk mostly.
+    /// A failure while content is written: a full disk, mostly.
     pub(crate) fn full(path: &Path, e: &io::Error) -> Self {
         let would = "free some space, or name a file elsewhere";
         Self::file(path, format!("cannot be written: {e}; {would}"))

@@ -1,20 +1,38 @@
-//! OpenEXR: one part with everything a frame knows, in f32.
+//! OpenEXR: one part with everything that a frame knows, in f32. The same frame gives the
+//! same bytes.
 //!
-//! `R`, `G`, `B` linear; `depth.Z` radial, infinity for sky; `normal.X`..`Z` and
-//! `position.X`..`Z` in the world; `state.Y` 0 sky, 1 hit, 2 unconverged; `steps.Y`
-//! where evaluations were counted.
+//! Channels: `R`, `G`, `B` linear, `A` 1; `Z` the distance along the view axis and `depth.Z`
+//! along the ray, [`FAR`] for sky, and the distance reached where a limit stopped the ray;
+//! `normal.X`..`Z` and `position.X`..`Z` in the world; `state.Y` 0 sky, 1 hit, 2 unconverged;
+//! `steps.Y` where evaluations were counted. Attributes: the preset, the camera, the program
+//! and the chromaticities of sRGB.
 
 use std::io::{Seek, Write};
 
+use exr::meta::attribute::{AttributeValue, Chromaticities, Text};
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, LayerAttributes, SmallVec, WritableImage,
+    AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image, LayerAttributes, LineOrder,
+    SmallVec, Vec2, WritableImage,
 };
 
+use crate::picture::SOFTWARE;
 use crate::picture::error::OutputError;
 use crate::picture::frame::Frame;
 use crate::plan::Plan;
 
-/// Writes a frame that was rendered with normals.
+/// Depth of the sky: farther than any scene, and finite, as compositors compute with it.
+/// Blender writes the same number.
+pub const FAR: f32 = 1e10;
+
+/// The primaries and the white of sRGB, which are those of Rec. 709.
+const SRGB: Chromaticities = Chromaticities {
+    red: Vec2(0.64, 0.33),
+    green: Vec2(0.30, 0.60),
+    blue: Vec2(0.15, 0.06),
+    white: Vec2(0.3127, 0.3290),
+};
+
+/// Writes a frame that was rendered with normals. `preset` is the text of the plan.
 ///
 /// # Errors
 /// The disk is full.
@@ -22,41 +40,74 @@ pub fn write_exr(
     to: &mut (impl Write + Seek),
     frame: &Frame,
     plan: &Plan,
+    preset: &str,
 ) -> Result<(), OutputError> {
     let mut list = SmallVec::new();
     let mut channel = |name: &str, values: Vec<f32>| {
         list.push(AnyChannel::new(name, FlatSamples::F32(values)));
     };
     let one = |of: &[[f32; 3]], i: usize| of.iter().map(|v| v[i]).collect::<Vec<f32>>();
-    let position = frame.positions(&plan.view());
+    let view = plan.view();
+    let position = frame.positions(&view);
     for (i, (rgb, xyz)) in ["R", "G", "B"].iter().zip(["X", "Y", "Z"]).enumerate() {
         channel(rgb, one(&frame.radiance, i));
         channel(&format!("normal.{xyz}"), one(&frame.normal, i));
         channel(&format!("position.{xyz}"), one(&position, i));
     }
     drop(position);
-    channel("depth.Z", frame.depth.clone());
-    channel(
-        "state.Y",
-        frame.state.iter().map(|s| f32::from(*s)).collect(),
-    );
+    channel("A", vec![1.0; frame.depth.len()]);
+    let forward = (plan.camera.target - plan.camera.eye).normalize();
+    let width = frame.size[0] as usize;
+    let depths = frame.depth.iter().enumerate();
+    let planar = depths.map(|(i, t)| {
+        let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
+        finite((f64::from(*t) * ray.axis.dot(forward)) as f32)
+    });
+    channel("Z", planar.collect());
+    channel("depth.Z", frame.depth.iter().copied().map(finite).collect());
+    let states = frame.state.iter().map(|s| f32::from(*s));
+    channel("state.Y", states.collect());
     if !frame.work.is_empty() {
         channel("steps.Y", frame.steps());
     }
     let size = (frame.size[0] as usize, frame.size[1] as usize);
-    let layer = exr::prelude::Layer::new(
-        size,
-        LayerAttributes::default(),
-        // Lossless, and quick on both sides.
-        Encoding::SMALL_FAST_LOSSLESS,
-        AnyChannels::sort(list),
-    );
-    let image = Image::from_layer(layer);
+    let mut attributes = LayerAttributes {
+        software_name: Some(SOFTWARE.into()),
+        ..LayerAttributes::default()
+    };
+    // The maps of further attributes are written in no certain order: one in each.
+    let text = |text: &str| AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes()));
+    attributes
+        .other
+        .insert("conemarch preset".into(), text(preset));
+    // Lines in their order, so that threads that end in any order give the same bytes.
+    let encoding = Encoding {
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+        ..Encoding::SMALL_FAST_LOSSLESS
+    };
+    let layer = exr::prelude::Layer::new(size, attributes, encoding, AnyChannels::sort(list));
+    let mut image = Image::from_layer(layer);
+    image.attributes.chromaticities = Some(SRGB);
+    let camera = text(&camera(plan));
     image
-        .write()
-        .to_buffered(to)
-        .map_err(|e| OutputError::Encode {
-            format: "EXR",
-            why: e.to_string(),
-        })
+        .attributes
+        .other
+        .insert("conemarch camera".into(), camera);
+    let written = image.write().to_buffered(to);
+    written.map_err(|e| OutputError::encode("EXR", e))
+}
+
+fn finite(t: f32) -> f32 {
+    if t.is_finite() { t } else { FAR }
+}
+
+/// The camera as a preset says it: eye, target, up and vertical field of view.
+fn camera(plan: &Plan) -> String {
+    let mut camera = plan.camera.clone();
+    let keys = camera.keys().into_iter();
+    let lines: Vec<String> = keys
+        .map(|k| format!("{} = {}", k.name, k.slot.get()))
+        .collect();
+    lines.join("\n")
 }

@@ -1,5 +1,5 @@
-//! A folder for results: made where it is missing, and gone again if nothing has come to
-//! lie in it, be it by an error or by an interrupt.
+//! A folder for results. It is made if it is missing, and removed again if it stays empty
+//! because of an error or an interrupt.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::picture::error::OutputError;
 
-/// All folders that were made and are not in use for good yet, outer ones first.
+/// All folders that were made and may still be removed, outer ones first.
 static MADE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn made() -> MutexGuard<'static, Vec<PathBuf>> {
@@ -15,15 +15,15 @@ fn made() -> MutexGuard<'static, Vec<PathBuf>> {
     MADE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A folder that is there. Dropped, it takes away what was made and is still empty.
+/// A folder that exists. Dropping it removes what was made and is still empty.
 #[derive(Debug)]
 pub struct Folder {
-    /// What did not exist before, outer ones first.
+    /// The folders that did not exist before, outer ones first.
     made: Vec<PathBuf>,
 }
 
 impl Folder {
-    /// Makes a folder, and those that it lies in, where they are missing.
+    /// Makes a folder and its parents if they are missing.
     ///
     /// # Errors
     /// One of them cannot be made, or is a file.
@@ -32,20 +32,20 @@ impl Folder {
         let missing = |p: &&Path| !p.as_os_str().is_empty() && !p.exists();
         let missing: Vec<&Path> = path.ancestors().take_while(missing).collect();
         for new in missing.into_iter().rev() {
-            // Locked while it comes to be, so that an interrupt misses none.
+            // Locked while the folder is made, so that an interrupt misses none.
             let mut list = made();
             match fs::create_dir(new) {
                 Ok(()) => {
                     list.push(new.into());
                     folder.made.push(new.into());
                 }
-                // `a/..` is there as soon as `a` is; somebody else may have made it, too.
+                // `a/..` exists as soon as `a` does, and another process may have made it.
                 Err(_) if new.is_dir() => {}
                 Err(e) => return Err(OutputError::io(path, "the folder cannot be made", &e)),
             }
         }
         if !path.is_dir() {
-            let why = "is a file; name a folder, or one that is still to be made";
+            let why = "is a file; name a folder, which need not exist";
             return Err(OutputError::file(path, why));
         }
         Ok(folder)
@@ -57,14 +57,14 @@ impl Drop for Folder {
         let mut list = made();
         for folder in self.made.drain(..).rev() {
             list.retain(|f| *f != folder);
-            // One that holds anything stays: the system removes only empty ones.
+            // A folder that holds anything stays: the system removes only empty ones.
             let _ = fs::remove_dir(folder);
         }
     }
 }
 
-/// Takes away all that were made and are still empty: for the moment before the process
-/// ends.
+/// Removes all folders that were made and are still empty. Called before an interrupted
+/// process ends.
 pub(crate) fn clear() {
     for folder in made().drain(..).rev() {
         let _ = fs::remove_dir(folder);

@@ -1,30 +1,36 @@
-//! The result of a render: layers of one value per pixel, and the figures of each pass.
+//! The result of a render: layers with one value per pixel, and the figures of each pass.
 
 use crate::base::view::View;
 use crate::base::work::{State, Work};
 use crate::heightfield::assets::Preparation;
 use crate::plan::{Extras, Pass, Plan};
 use glam::DVec3;
+use serde::{Serialize, Serializer};
 
 /// What one pass did.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct PassFigures {
-    /// The pass.
+    /// The pass; its name in JSON.
+    #[serde(rename = "name", serialize_with = "pass_name")]
     pub pass: Pass,
-    /// Cells or pixels; places of a cone map.
+    /// Number of cells or pixels; for a cone map, of its places.
     pub cells: u64,
-    /// Time on the device, where it can tell.
+    /// Time on the device, if it was measured.
     pub gpu_ms: Option<f64>,
-    /// Time on the clock, waiting included.
+    /// Time on the clock.
     pub wall_ms: f64,
-    /// Estimate evaluations, where they were counted.
+    /// Evaluations of the estimate, if they were counted.
     pub evaluations: Option<u64>,
-    /// Fold iterations, where they were counted.
+    /// Iterations of the formula, if they were counted.
     pub iterations: Option<u64>,
 }
 
+fn pass_name<S: Serializer>(pass: &Pass, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&pass.name())
+}
+
 impl PassFigures {
-    /// A pass that has taken no time yet, over so many pixels.
+    /// A pass over so many pixels that has not run yet.
     pub fn new(pass: Pass, pixels: [u32; 2]) -> Self {
         Self {
             pass,
@@ -37,51 +43,50 @@ impl PassFigures {
     }
 }
 
-/// What a cone level ended with: fronts and states, row by row.
+/// The result of a cone level, row by row.
 #[derive(Clone, Debug, Default)]
 pub struct LevelLayer {
     /// Pixels per cell along each axis.
     pub divisor: u32,
     /// Cells along each axis.
     pub cells: [u32; 2],
-    /// Distance up to which every ray of the cell is proven free.
+    /// The distance up to which every ray of the cell is proven free.
     pub front: Vec<f32>,
-    /// 0 sky, 1 stopped at something, 2 out of steps.
+    /// 0 sky, 1 stopped, 2 step limit reached.
     pub state: Vec<u8>,
-    /// Work of each cell, where it was counted.
+    /// Work of each cell, if it was counted.
     pub work: Vec<Work>,
 }
 
-/// A rendered picture. Layers are row-major from the upper left; those that were not
-/// asked for are empty.
+/// A rendered picture. Layers go row by row from the upper left. A layer that was not asked for
+/// is empty.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
-    /// Pixels along each axis.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Linear radiance, red green blue.
+    /// Linear radiance: red, green, blue.
     pub radiance: Vec<[f32; 3]>,
-    /// Radial distance from the eye; infinity for sky, the distance reached where a
-    /// limit stopped the ray.
+    /// Distance from the eye along the ray: infinite for sky, and as far as the ray came for
+    /// unconverged pixels.
     pub depth: Vec<f32>,
-    /// What each pixel is, as [`State`] codes.
+    /// The [`State`] of each pixel as a number.
     pub state: Vec<u8>,
-    /// Pixels, of any state but sky, whose shadow's ray reached its limit: how much light
-    /// they get is a guess.
+    /// Number of pixels whose shadow ray reached its step limit. Their light is a guess.
     pub undecided: usize,
     /// Unit normals in the world; zero for sky.
     pub normal: Vec<[f32; 3]>,
-    /// Work of each pixel's ray, where it was counted.
+    /// Work of each pixel's ray, if it was counted.
     pub work: Vec<Work>,
-    /// Cone levels, coarsest first, where they were kept.
+    /// Cone levels, coarsest first.
     pub levels: Vec<LevelLayer>,
-    /// What each pass did, in order.
+    /// The figures of each pass, in order.
     pub passes: Vec<PassFigures>,
-    /// March and trace together on the clock: no compilation, no files.
+    /// Time of march and trace on the clock, without compilation and files.
     pub march_ms: f64,
 }
 
 impl Frame {
-    /// A frame of the right sizes, with nothing in it yet.
+    /// An empty frame with layers of the right sizes.
     pub fn blank(plan: &Plan, extras: Extras) -> Self {
         let area = plan.size[0] as usize * plan.size[1] as usize;
         let layer = |kept: bool, count: usize| if kept { count } else { 0 };
@@ -111,8 +116,8 @@ impl Frame {
         frame
     }
 
-    /// Adds up the time of march and trace, and puts what was prepared, with its
-    /// milliseconds, before all other passes.
+    /// Adds up the time of march and trace, and inserts the figures of the prepared maps, with
+    /// their milliseconds, before the other passes.
     pub fn finish(&mut self, prepared: Vec<(Preparation, f64)>) {
         self.march_ms = self.marched().map(|p| p.wall_ms).sum();
         let figures = prepared.into_iter().map(|(map, wall_ms)| PassFigures {
@@ -136,7 +141,7 @@ impl Frame {
         count
     }
 
-    /// Evaluations and iterations of march and trace per pixel, where counted.
+    /// Evaluations and iterations of march and trace per pixel, if they were counted.
     pub fn work_per_pixel(&self) -> Option<(f64, f64)> {
         let mut sum = (0, 0);
         for pass in self.marched() {
@@ -148,7 +153,7 @@ impl Frame {
         Some((sum.0 as f64 / n as f64, sum.1 as f64 / n as f64))
     }
 
-    /// Evaluations that led to each pixel: its ray's, and those of every cell above it.
+    /// Evaluations of each pixel's ray and of all cells above it.
     pub fn steps(&self) -> Vec<f32> {
         let width = self.size[0] as usize;
         let of = |(i, work): (usize, &Work)| {
@@ -165,8 +170,7 @@ impl Frame {
         self.work.iter().enumerate().map(of).collect()
     }
 
-    /// World position of each pixel's hit seen from a view; zero for sky, as normals
-    /// are: only depth says how far that is.
+    /// The world position of each pixel's hit; zero for sky.
     pub fn positions(&self, view: &View) -> Vec<[f32; 3]> {
         let width = self.size[0] as usize;
         let at = |(i, t): (usize, &f32)| {
@@ -180,6 +184,27 @@ impl Frame {
         };
         self.depth.iter().enumerate().map(at).collect()
     }
+}
+
+/// The signed depth error of each pixel, in footprints of the reference. It is infinite where a hit is shown as
+/// sky, minus infinite where sky is shown as a hit, 0 where both are sky, and NaN where either
+/// reached a limit.
+pub fn errors(frame: &Frame, reference: &Frame, view: &View) -> Vec<f64> {
+    let width = frame.size[0] as usize;
+    let (sky, hit) = (State::Sky as u8, State::Hit as u8);
+    let states = frame.state.iter().zip(&reference.state).enumerate();
+    let error = |(i, (&s, &r)): (usize, (&u8, &u8))| match (s, r) {
+        _ if s == sky && r == sky => 0.0,
+        _ if s == sky && r == hit => f64::INFINITY,
+        _ if s == hit && r == sky => f64::NEG_INFINITY,
+        _ if s == hit && r == hit => {
+            let t = f64::from(reference.depth[i]);
+            let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
+            (f64::from(frame.depth[i]) - t) / (ray.grain * t).max(f64::MIN_POSITIVE)
+        }
+        _ => f64::NAN,
+    };
+    states.map(error).collect()
 }
 
 #[cfg(test)]

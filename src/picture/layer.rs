@@ -1,46 +1,53 @@
-//! One layer of a Frame as display values: what a picture of it shows.
+//! One layer of a frame as display values: what a picture of it shows.
 //!
-//! Colour is tone-mapped; every other layer has a mapping of its own, said at
-//! [`Layer`]. Values are encoded for display, 0..1, so that a file only has to round.
+//! Colour is tone-mapped. [`Layer`] says how each of the other layers becomes a picture.
+//! Values are encoded for display, 0..1, so that a file only has to round them.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::base::srgb::srgb;
-use crate::base::view::View;
 use crate::base::work::State;
-use crate::measure::compare::errors;
 use crate::pass::look::tone;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
 
-/// What a picture can show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Layer {
-    /// Light: exposure, tone curve, sRGB.
-    #[default]
-    Color,
-    /// Distance in grey: the nearest pixel black, the farthest 95 % white, linear
-    /// between; sky white.
-    Depth,
-    /// Unit normals in the world, x y z as red green blue, -1..1 to 0..1; sky mid grey.
-    Normal,
-    /// Positions in the world, x y z as red green blue, each from its least to its
-    /// greatest value in the picture; sky black.
-    Position,
-    /// Evaluations that led to each pixel: dark violet none, through green, to yellow
-    /// at the 99th percentile and above.
-    Steps,
-    /// Sky dark blue, hit light grey, unconverged magenta.
-    State,
-    /// Depth error against the truth: light grey none, through orange to dark red at 8
-    /// footprints too deep and for holes, through blue to dark blue at 8 too near and for
-    /// false hits; unconverged magenta.
-    Error,
+/// Lists the layers once: word, name and what the picture shows.
+macro_rules! layers {
+    ($($(#[$meta:meta])* $word:literal $name:ident $help:literal,)*) => {
+        /// What a picture can show.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub enum Layer {
+            $(#[doc = $help] $(#[$meta])* $name,)*
+        }
+
+        impl Layer {
+            /// Every layer with its word on the command line and what its picture shows.
+            pub const ALL: &'static [(&'static str, Self, &'static str)] =
+                &[$(($word, Self::$name, $help)),*];
+        }
+    };
 }
 
+layers![
+    #[default]
+    "color" Color "light, tone-mapped",
+    "depth" Depth "grey: nearest black, farthest 95 % white, linear between, sky white",
+    "normal" Normal "world normals, x y z as red green blue, -1..1 to 0..1; sky mid grey",
+    "position" Position "world positions, each axis from its least to its greatest in the picture; sky black",
+    "steps" Steps "evaluations: violet none, yellow the 99th percentile and above",
+    "state" State "sky dark blue, hit light grey, unconverged magenta",
+    "error" Error "depth against the truth in footprints (half a pixel's width): grey 0, red 8 too deep or lost, blue 8 too near",
+];
+
 impl Layer {
-    /// What a render must keep for the layer, and what it may leave out.
+    /// The layer's word on the command line.
+    pub fn word(self) -> &'static str {
+        let found = Self::ALL.iter().find(|(_, layer, _)| *layer == self);
+        found.map_or("", |(word, _, _)| *word)
+    }
+
+    /// What a render must keep for the layer.
     pub fn extras(self) -> Extras {
         Extras {
             count: self == Self::Steps,
@@ -49,11 +56,6 @@ impl Layer {
             depth_only: !matches!(self, Self::Color | Self::Normal),
             ..Extras::default()
         }
-    }
-
-    /// Whether red, green and blue are always the same.
-    pub fn is_grey(self) -> bool {
-        self == Self::Depth
     }
 }
 
@@ -81,10 +83,10 @@ const HEAT: [DVec3; 6] = [
     DVec3::new(0.993, 0.906, 0.144),
 ];
 
-/// Farthest grey of depth: sky stays apart from it.
+/// Grey of the farthest depth: sky is brighter.
 const FARTHEST: f64 = 0.95;
 
-/// Error in footprints that is as dark as any larger one.
+/// Errors in footprints above this have the same colour.
 const MOST_APART: f64 = 8.0;
 const TOO_DEEP: [DVec3; 2] = [DVec3::new(0.90, 0.55, 0.10), DVec3::new(0.55, 0.0, 0.05)];
 const TOO_NEAR: [DVec3; 2] = [DVec3::new(0.25, 0.60, 0.90), DVec3::new(0.05, 0.10, 0.50)];
@@ -127,9 +129,9 @@ impl<'a> Shades<'a> {
         shades
     }
 
-    /// The same with the truth that [`Layer::Error`] compares with.
-    pub fn against(mut self, truth: &Frame, view: &View) -> Self {
-        self.error = errors(self.frame, truth, view);
+    /// The same with the errors that [`Layer::Error`] shows: of each pixel, in footprints.
+    pub fn with_errors(mut self, errors: Vec<f64>) -> Self {
+        self.error = errors;
         self
     }
 
@@ -140,7 +142,12 @@ impl<'a> Shades<'a> {
 
     /// Whether one number per pixel is enough.
     pub fn is_grey(&self) -> bool {
-        self.layer.is_grey()
+        self.layer == Layer::Depth
+    }
+
+    /// Whether the picture shows colours, and not data.
+    pub fn is_color(&self) -> bool {
+        self.layer == Layer::Color
     }
 
     fn between(&mut self, values: impl Iterator<Item = DVec3>) {
@@ -151,9 +158,9 @@ impl<'a> Shades<'a> {
         }
     }
 
-    /// Where a value stands between black and white.
+    /// The place of a value between black and white, 0..1.
     fn share(&self, v: DVec3) -> DVec3 {
-        // An even picture has no range; any shade will do for it.
+        // A picture of one value has no range; any shade will do.
         let range = (self.high - self.low).max(DVec3::splat(f64::MIN_POSITIVE));
         ((v - self.low) / range).clamp(DVec3::ZERO, DVec3::ONE)
     }
@@ -192,10 +199,16 @@ impl<'a> Shades<'a> {
         }
     }
 
+    /// All pixels in 8 bits, as [`Shades::samples`].
+    pub(crate) fn bytes(&self) -> Vec<u8> {
+        let samples = self.samples(u16::from(u8::MAX));
+        samples.into_iter().map(|s| s.to_le_bytes()[0]).collect()
+    }
+
     /// All pixels as whole numbers up to `most`, rows over threads: three per pixel,
     /// one where the layer is grey.
     pub(crate) fn samples(&self, most: u16) -> Vec<u16> {
-        let channels = if self.layer.is_grey() { 1 } else { 3 };
+        let channels = if self.is_grey() { 1 } else { 3 };
         let width = self.frame.size[0] as usize;
         let mut out = vec![0; self.frame.state.len() * channels];
         let rows = out.par_chunks_mut((width * channels).max(1)).enumerate();
@@ -203,7 +216,7 @@ impl<'a> Shades<'a> {
             for (x, pixel) in row.chunks_mut(channels).enumerate() {
                 let shade = self.at(y * width + x).to_array();
                 for (to, value) in pixel.iter_mut().zip(shade) {
-                    // The cast saturates, and takes no number for black.
+                    // The cast saturates, and turns NaN into black.
                     *to = (value * f64::from(most) + 0.5).min(f64::from(most)) as u16;
                 }
             }
@@ -216,7 +229,7 @@ fn vector(v: [f32; 3]) -> DVec3 {
     DVec3::from_array(v.map(f64::from))
 }
 
-/// The colour of a signed error in footprints. The root makes small ones seen.
+/// The colour of a signed error in footprints. The root makes small errors visible.
 fn apart(e: f64) -> DVec3 {
     if e.is_nan() {
         return UNCONVERGED;

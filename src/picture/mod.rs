@@ -1,19 +1,23 @@
-//! Pictures on their way out: layers as pixels, file formats, and safe places.
+//! Pictures on their way out: layers as pixels, file formats, and files that appear whole
+//! or not at all.
 
 mod error;
 mod exr;
 mod folder;
 pub mod frame;
 mod layer;
-mod map;
 mod place;
 mod png;
+mod web;
 
 pub use error::OutputError;
-pub use exr::write_exr;
+pub use exr::{FAR, write_exr};
 pub use folder::Folder;
 pub(crate) use layer::heat;
 pub use layer::{Layer, Shades};
-pub use map::{WriteMapError, write_map};
 pub use place::{Place, clear, commit};
 pub use png::{BitDepth, write_png};
+pub use web::{write_jpeg, write_webp};
+
+/// The program as pictures name it.
+pub(crate) const SOFTWARE: &str = concat!("conemarch ", env!("CARGO_PKG_VERSION"));

@@ -1,16 +1,19 @@
-//! Where a file will be: written under a temporary name beside it and renamed when
-//! everything is there. A place that is dropped, or cleared by an interrupt, leaves
-//! nothing behind.
+//! Files that appear whole or not at all: each is written under a temporary name in its own
+//! folder and renamed at the end. A [`Place`] that is dropped leaves nothing behind, and
+//! [`clear`] takes away what is left when an interrupt ends the process.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use tempfile::TempPath;
+
 use crate::picture::error::OutputError;
 use crate::picture::folder;
 
-/// Names of all temporary files that exist now.
+/// Names of all temporary files that were made. They are never used twice, so one that is
+/// gone may stay in the list.
 static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn temporary() -> MutexGuard<'static, Vec<PathBuf>> {
@@ -18,31 +21,35 @@ fn temporary() -> MutexGuard<'static, Vec<PathBuf>> {
     TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A file to be.
+/// A file that will appear.
 #[derive(Debug)]
 pub struct Place {
     /// What the caller called it.
     shown: PathBuf,
     /// Where it will be: behind links, if the name is one.
     target: PathBuf,
-    /// The temporary name; none for what cannot be renamed onto, like a pipe.
-    held: Option<PathBuf>,
+    /// The temporary name; `None` for what cannot be replaced, like a pipe.
+    held: Option<TempPath>,
     file: File,
 }
 
 impl Place {
-    /// Makes sure that a file can be written, by creating its temporary.
+    /// Makes sure that a file can be written, by creating its temporary file.
     ///
     /// # Errors
-    /// The folder does not exist or cannot be written, or the name is a folder's or a
-    /// write-protected file's.
+    /// The folder does not exist or cannot be written, or the name is that of a folder or of
+    /// a write-protected file.
     pub fn prepare(path: &Path) -> Result<Self, OutputError> {
-        let shown = path.to_path_buf();
+        let place = |target, held, file| Self {
+            shown: path.to_path_buf(),
+            target,
+            held,
+            file,
+        };
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         if let Ok(meta) = fs::metadata(&target) {
             if meta.is_dir() {
-                let why = "is a folder; name a file in it";
-                return Err(OutputError::file(path, why));
+                return Err(OutputError::file(path, "is a folder; name a file in it"));
             }
             if meta.is_file() && meta.permissions().readonly() {
                 let why = "is write-protected; choose another name";
@@ -51,12 +58,7 @@ impl Place {
             if !meta.is_file() {
                 let opened = OpenOptions::new().write(true).open(&target);
                 let file = opened.map_err(|e| OutputError::io(path, "cannot be written", &e))?;
-                return Ok(Self {
-                    shown,
-                    target,
-                    held: None,
-                    file,
-                });
+                return Ok(place(target, None, file));
             }
         }
         let Some(name) = target.file_name() else {
@@ -70,22 +72,15 @@ impl Place {
             let why = format!("there is no folder `{}`; make it first", folder.display());
             return Err(OutputError::file(path, why));
         }
-        let name = format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id());
-        let held = folder.join(name);
-        // Locked while it comes to be, so that an interrupt misses none.
+        // Locked while the file is made, so that an interrupt misses none.
         let mut list = temporary();
-        let made = OpenOptions::new().write(true).create_new(true).open(&held);
-        let file = made.map_err(|e| {
+        let made = builder(&format!(".{}.", name.to_string_lossy())).tempfile_in(folder);
+        let (file, held) = made.map(tempfile::NamedTempFile::into_parts).map_err(|e| {
             let doing = format!("cannot be written in the folder `{}`", folder.display());
             OutputError::io(path, &doing, &e)
         })?;
-        list.push(held.clone());
-        Ok(Self {
-            shown,
-            target,
-            held: Some(held),
-            file,
-        })
+        list.push(held.to_path_buf());
+        Ok(place(target.clone(), Some(held), file))
     }
 
     /// Writes the content.
@@ -118,44 +113,38 @@ impl Place {
     }
 }
 
-impl Drop for Place {
-    fn drop(&mut self) {
-        if let Some(held) = self.held.take() {
-            let mut list = temporary();
-            // Nothing better can be done about a file that does not go.
-            let _ = fs::remove_file(&held);
-            list.retain(|p| *p != held);
-        }
+/// Makes temporary files with the rights of any new file: those of `tempfile` are for their
+/// owner alone.
+fn builder(prefix: &str) -> tempfile::Builder<'_, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(prefix).suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
     }
+    builder
 }
 
-/// Gives written files their names, all of them or none as far as that can be.
+/// Gives written files their names. If one of them cannot be renamed, the files after it are
+/// removed.
 ///
 /// # Errors
-/// A rename fails; files not renamed yet are removed.
+/// A rename fails.
 pub fn commit(places: Vec<Place>) -> Result<(), OutputError> {
-    let mut list = temporary();
-    let mut failed = None;
-    for mut place in places {
-        if let (None, Some(held)) = (&failed, &place.held) {
-            match fs::rename(held, &place.target) {
-                Ok(()) => {
-                    list.retain(|p| p != held);
-                    place.held = None;
-                }
-                Err(e) => failed = Some(OutputError::io(&place.shown, "cannot be renamed", &e)),
-            }
-        }
-        if let Some(held) = place.held.take() {
-            let _ = fs::remove_file(&held);
-            list.retain(|p| *p != held);
+    let _no_interrupt = temporary();
+    for place in places {
+        if let Some(held) = place.held {
+            drop(place.file);
+            let renamed = held.persist(&place.target);
+            renamed.map_err(|e| OutputError::io(&place.shown, "cannot be renamed", &e.error))?;
         }
     }
-    failed.map_or(Ok(()), Err)
+    Ok(())
 }
 
-/// Removes all temporary files, and folders that were made for them and are empty then,
-/// and lets no more be renamed: for the moment before the process ends. The guard must be kept until then.
+/// Removes all temporary files, and folders that were made for them and are empty then.
+/// Called at the end of an interrupted process: nothing is renamed while the guard lives.
 pub fn clear() -> MutexGuard<'static, Vec<PathBuf>> {
     let mut list = temporary();
     for held in list.drain(..) {
@@ -163,4 +152,23 @@ pub fn clear() -> MutexGuard<'static, Vec<PathBuf>> {
     }
     folder::clear();
     list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_has_the_rights_of_any_new_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().expect("a folder");
+        let [new, usual] = ["new", "usual"].map(|name| folder.path().join(name));
+        let mut place = Place::prepare(&new).expect("can be written");
+        place.write_all(b"content").expect("can be written");
+        commit(vec![place]).expect("can be renamed");
+        fs::write(&usual, b"content").expect("can be written");
+        let [new, usual] = [new, usual].map(|p| fs::metadata(p).expect("written above"));
+        assert_eq!(new.permissions().mode(), usual.permissions().mode());
+    }
 }

@@ -1,9 +1,10 @@
-//! PNG: 8 or 16 bits, sRGB, with the preset inside.
+//! PNG with 8 or 16 bits per channel, and with its preset, title and program as text.
 
 use std::io::Write;
 
-use png::{ColorType, Encoder, SrgbRenderingIntent};
+use png::{ColorType, Encoder, EncodingError, SrgbRenderingIntent};
 
+use crate::picture::SOFTWARE;
 use crate::picture::error::OutputError;
 use crate::picture::layer::Shades;
 use crate::preset::PNG_KEYWORD;
@@ -18,7 +19,7 @@ pub enum BitDepth {
     Sixteen,
 }
 
-/// Writes a layer as PNG. `preset` is the text of the plan as it was rendered.
+/// Writes a layer as PNG. `preset` is the text of the plan that it was rendered from.
 ///
 /// # Errors
 /// The disk is full.
@@ -26,20 +27,19 @@ pub fn write_png(
     to: &mut dyn Write,
     shades: &Shades<'_>,
     depth: BitDepth,
+    title: &str,
     preset: &str,
 ) -> Result<(), OutputError> {
-    encode(to, shades, depth, preset).map_err(|e| OutputError::Encode {
-        format: "PNG",
-        why: e.to_string(),
-    })
+    encode(to, shades, depth, title, preset).map_err(|e| OutputError::encode("PNG", e))
 }
 
 fn encode(
     to: &mut dyn Write,
     shades: &Shades<'_>,
     depth: BitDepth,
+    title: &str,
     preset: &str,
-) -> Result<(), png::EncodingError> {
+) -> Result<(), EncodingError> {
     let [width, height] = shades.size();
     let mut encoder = Encoder::new(to, width, height);
     encoder.set_color(if shades.is_grey() {
@@ -47,13 +47,26 @@ fn encode(
     } else {
         ColorType::Rgb
     });
-    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
-    encoder.add_itxt_chunk(PNG_KEYWORD.into(), preset.into())?;
+    if shades.is_color() {
+        encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    }
+    let texts = [
+        ("Title", title),
+        ("Software", SOFTWARE),
+        (PNG_KEYWORD, preset),
+    ];
+    for (keyword, text) in texts.into_iter().filter(|(_, text)| !text.is_empty()) {
+        // More programs know tEXt than iTXt, but it has no other letters.
+        if text.is_ascii() {
+            encoder.add_text_chunk(keyword.into(), text.into())?;
+        } else {
+            encoder.add_itxt_chunk(keyword.into(), text.into())?;
+        }
+    }
     let bytes: Vec<u8> = match depth {
         BitDepth::Eight => {
             encoder.set_depth(png::BitDepth::Eight);
-            let samples = shades.samples(u16::from(u8::MAX));
-            samples.into_iter().map(|s| s.to_le_bytes()[0]).collect()
+            shades.bytes()
         }
         BitDepth::Sixteen => {
             encoder.set_depth(png::BitDepth::Sixteen);

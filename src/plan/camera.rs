@@ -1,51 +1,23 @@
-//! The camera: the keys of `[camera]`.
+//! The camera: the section `[camera]` of a preset.
 
 use glam::DVec3;
 
-use crate::base::key::{Fault, Key, Number, Triple};
+use crate::base::key::{Fault, Number, Triple};
 use crate::base::view::View;
-use crate::keys;
+use crate::settings;
 
-/// Where the camera stands and how it looks.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Camera {
-    /// Position.
-    pub eye: DVec3,
-    /// Point in the middle of the image.
-    pub target: DVec3,
-    /// Direction that is up in the image; not along the view.
-    pub up: DVec3,
-    /// Vertical field of view in degrees, 1 to 170.
-    pub fov: f64,
-}
-
-impl Default for Camera {
-    fn default() -> Self {
-        Self {
-            eye: DVec3::new(10.0, -17.0, 12.0),
-            target: DVec3::ZERO,
-            up: DVec3::Z,
-            fov: 40.0,
-        }
+settings! {
+    /// Where the camera stands and where it looks.
+    pub struct Camera {
+        eye: DVec3 = DVec3::new(10.0, -17.0, 12.0), Triple(-1e9, 1e9), "position";
+        target: DVec3 = DVec3::ZERO, Triple(-1e9, 1e9), "point in the middle of the image";
+        up: DVec3 = DVec3::Z, Triple(-1e9, 1e9), "direction that is up in the image";
+        fov: f64 = 40.0, Number(1.0, 170.0), "vertical field of view, degrees";
     }
 }
 
 impl Camera {
-    /// The keys of `[camera]`.
-    pub fn keys(&mut self) -> Vec<Key<'_>> {
-        keys![
-            "eye" = Triple(&mut self.eye, -1e9, 1e9),
-                "position";
-            "target" = Triple(&mut self.target, -1e9, 1e9),
-                "point in the middle of the image";
-            "up" = Triple(&mut self.up, -1e9, 1e9),
-                "direction that is up in the image";
-            "fov" = Number(&mut self.fov, 1.0, 170.0),
-                "vertical field of view, degrees";
-        ]
-    }
-
-    /// Whether the camera has a direction to look in.
+    /// Checks that eye and target differ, and that `up` is not along the view.
     pub fn check(&self) -> Result<(), Fault> {
         let forward = self.target - self.eye;
         if forward.length() <= 1e-12 * self.eye.length() || forward == DVec3::ZERO {
@@ -64,7 +36,7 @@ impl Camera {
         Ok(())
     }
 
-    /// The camera fitted to an image; it passes [`Camera::check`].
+    /// The camera over an image of a size. The camera must pass [`Camera::check`].
     pub fn view(&self, size: [u32; 2]) -> View {
         View::new(self.eye, self.target, self.up, self.fov, size)
     }

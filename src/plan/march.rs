@@ -1,104 +1,113 @@
-//! How a picture is marched: the modes, and the settings of `[march]`.
+//! How a picture is marched: the modes, and the section `[march]` of a preset.
 
-use crate::base::cone::ConeRule;
-use crate::base::key::{AutoCount, AutoNumber, Count, Fault, Key, List, Number, Slot, Word};
-use crate::keys;
-use crate::plan::pyramid::Pyramid;
-use crate::scene::distance::{Relaxation, Stepping};
 use toml::Value;
 
-/// A way to spend work, for pictures and comparisons alike.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mode {
-    /// Exact cones at full chord, relaxed rays.
-    #[default]
-    Safe,
-    /// Exact cones with the fudge factors that a calibration recorded.
-    Calibrated,
-    /// The slides' rule, 128 steps split evenly over all passes.
-    SlidesEven,
-    /// The slides' rule, 512 steps per coarse pass and 128 for the rays.
-    SlidesDeep,
-    /// The slides' rule, 512 steps per coarse pass and 32 for the rays.
-    SlidesFast,
-    /// Classical sphere tracing: no cones, no relaxation, no shell.
-    Ray,
-    /// Sphere tracing with relaxation.
-    RayRelaxed,
-    /// Tiny steps, no cones, no relaxation: what the others are measured against.
-    Truth,
+use crate::base::cone::ConeRule;
+use crate::base::key::{AutoCount, AutoNumber, Count, Fault, List, Number, Slot, Word};
+use crate::plan::pyramid::Pyramid;
+use crate::scene::distance::{Relaxation, Stepping};
+use crate::settings;
+
+/// What sets a mode apart.
+struct Facts {
+    /// The rule of its cones; `None` for rays alone.
+    cones: Option<ConeRule>,
+    /// Whether steps keep the shell of `march.shell`.
+    shell: bool,
+    /// Whether rays are relaxed as `march.relaxation` says.
+    relaxed: bool,
+    /// The factor on ray steps where `march.stride` is `"auto"`.
+    stride: f64,
+    /// The steps of a cone and of a ray over so many passes; `None` for `march.steps`.
+    budget: Option<fn(u32) -> [u32; 2]>,
 }
 
-/// Every mode with its name.
-pub const MODES: &[(&str, Mode)] = &[
-    ("safe", Mode::Safe),
-    ("calibrated", Mode::Calibrated),
-    ("slides-even", Mode::SlidesEven),
-    ("slides-deep", Mode::SlidesDeep),
-    ("slides-fast", Mode::SlidesFast),
-    ("ray", Mode::Ray),
-    ("ray-relaxed", Mode::RayRelaxed),
-    ("truth", Mode::Truth),
+const SAFE: Facts = Facts {
+    cones: Some(ConeRule::Exact),
+    shell: true,
+    relaxed: true,
+    stride: 1.0,
+    budget: None,
+};
+const RAY: Facts = Facts {
+    cones: None,
+    shell: false,
+    relaxed: false,
+    ..SAFE
+};
+const fn slides(budget: fn(u32) -> [u32; 2]) -> Facts {
+    Facts {
+        cones: Some(ConeRule::Slides),
+        budget: Some(budget),
+        ..RAY
+    }
+}
+
+/// Makes the enum of all modes from one list: name in Rust, name in presets, facts.
+macro_rules! modes {
+    ($($(#[$doc:meta])* $mode:ident: $name:literal, $facts:expr;)*) => {
+        /// A way to spend work on a picture.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub enum Mode { $($(#[$doc])* $mode),* }
+
+        /// Every mode with its name.
+        pub const MODES: &[(&str, Mode)] = &[$(($name, Mode::$mode)),*];
+
+        impl Mode {
+            /// The mode's name.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$mode => $name),* }
+            }
+
+            fn facts(self) -> Facts {
+                match self { $(Self::$mode => $facts),* }
+            }
+        }
+    };
+}
+
+modes![
+    /// Exact cones at full width, relaxed rays.
+    #[default]
+    Safe: "safe", SAFE;
+    /// Exact cones, narrowed by the factors that a calibration found.
+    Calibrated: "calibrated", SAFE;
+    /// The slides' rule. 128 steps are split evenly over all passes.
+    SlidesEven: "slides-even", slides(|passes| [(128 / passes).max(1); 2]);
+    /// The slides' rule. Each coarse pass has 512 steps, a ray 128.
+    SlidesDeep: "slides-deep", slides(|_| [512, 128]);
+    /// The slides' rule. Each coarse pass has 512 steps, a ray 32.
+    SlidesFast: "slides-fast", slides(|_| [512, 32]);
+    /// Classical sphere tracing: no cones, no relaxation, no shell.
+    Ray: "ray", RAY;
+    /// Sphere tracing with relaxation.
+    RayRelaxed: "ray-relaxed", Facts { relaxed: true, ..RAY };
+    /// Tiny steps, no cones, no relaxation. The other modes are measured against it.
+    Truth: "truth", Facts { stride: 0.1, ..RAY };
 ];
 
-impl Mode {
-    /// The mode's name.
-    pub fn name(self) -> &'static str {
-        MODES.iter().find(|(_, m)| *m == self).map_or("", |m| m.0)
-    }
-
-    fn slides(self) -> bool {
-        matches!(self, Self::SlidesEven | Self::SlidesDeep | Self::SlidesFast)
-    }
-
-    fn cones(self) -> bool {
-        !matches!(self, Self::Ray | Self::RayRelaxed | Self::Truth)
-    }
-}
-
-/// Steps per level and of a ray, where nothing is known of the scene: the slowest rays of
-/// the presets end well before.
+/// Steps of a cone and of a ray where `march.steps` and the scene do not say. The slowest rays
+/// of the presets end well before.
 const STEPS: u32 = 256;
 
-/// The settings of `[march]`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Marching {
-    /// Which mode.
-    pub mode: Mode,
-    /// Divisor of the first cone pass, a power of two; 1 for none.
-    pub coarsest: u32,
-    /// Hit where `estimate <= detail * footprint`.
-    pub detail: f64,
-    /// Share of the hit threshold that steps keep clear of.
-    pub shell: f64,
-    /// How rays stretch their steps.
-    pub relaxation: Relaxation,
-    /// Factors on the cones' chords in mode `calibrated`, coarse to fine; the last is
-    /// repeated. The other modes march full cones.
-    pub fudge: Vec<f64>,
-    /// Steps per level and of a ray; auto is 256, and over a heightfield for rays as many as
-    /// one can take.
-    pub steps: Option<u32>,
-    /// Factor on ray steps; auto is 1, and 0.1 for the truth.
-    pub stride: Option<f64>,
-    /// Whether rays start where they enter the bounds; auto is yes after cones, no
-    /// where rays are marched alone.
-    pub clip: Option<bool>,
-}
-
-impl Default for Marching {
-    fn default() -> Self {
-        Self {
-            mode: Mode::Safe,
-            coarsest: 16,
-            detail: 1.0,
-            shell: 0.45,
-            relaxation: Relaxation::Auto,
-            fudge: vec![1.0],
-            steps: None,
-            stride: None,
-            clip: None,
-        }
+settings! {
+    /// How a picture is marched.
+    pub struct Marching {
+        mode: Mode = Mode::Safe, Word(MODES), "how the work is spent";
+        coarsest: u32 = 16, Divisor(), "divisor of the first cone pass";
+        detail: f64 = 1.0, Number(1e-3, 1e3),
+            "a ray hits where the estimate is below this many footprints";
+        shell: f64 = 0.45, Number(0.0, 0.99),
+            "share of that threshold that steps keep clear of; more costs time and lowers the error";
+        relaxation: Relaxation = Relaxation::Auto, RelaxationSlot(), "how rays stretch their steps";
+        fudge: Vec<f64> = vec![1.0], List(1..=6, 0.01, 1.0),
+            "factors on the cones' width in mode calibrated, coarse to fine; the last one repeats";
+        steps: Option<u32> = None, AutoCount(1, 1_000_000),
+            "step limit per cone level and of a ray; auto is 256, and for rays over a heightfield as many as they can need";
+        stride: Option<f64> = None, AutoNumber(1e-3, 1.0),
+            "factor on ray steps; auto is 1, and 0.1 for the truth";
+        clip: Option<bool> = None, Word(&[("auto", None), ("on", Some(true)), ("off", Some(false))]),
+            "start rays where they enter the bounds; auto is on after cones";
     }
 }
 
@@ -108,9 +117,9 @@ struct RelaxationSlot<'a>(&'a mut Relaxation);
 impl Slot for RelaxationSlot<'_> {
     fn get(&self) -> Value {
         match &*self.0 {
-            Relaxation::Off => Value::String("off".into()),
-            Relaxation::Auto => Value::String("auto".into()),
-            Relaxation::Factor(f) => Value::Float(*f),
+            Relaxation::Off => "off".into(),
+            Relaxation::Auto => "auto".into(),
+            Relaxation::Factor(f) => (*f).into(),
         }
     }
     fn put(&mut self, value: &Value) -> Option<()> {
@@ -130,12 +139,12 @@ impl Slot for RelaxationSlot<'_> {
     }
 }
 
-/// A power of two in a range.
+/// A power of two.
 struct Divisor<'a>(&'a mut u32);
 
 impl Slot for Divisor<'_> {
     fn get(&self) -> Value {
-        Value::Integer(i64::from(*self.0))
+        (*self.0).into()
     }
     fn put(&mut self, value: &Value) -> Option<()> {
         let mut n = 0;
@@ -149,34 +158,10 @@ impl Slot for Divisor<'_> {
 }
 
 impl Marching {
-    /// The keys of `[march]`.
-    pub fn keys(&mut self) -> Vec<Key<'_>> {
-        keys![
-            "mode" = Word(&mut self.mode, MODES),
-                "how the work is spent";
-            "coarsest" = Divisor(&mut self.coarsest),
-                "divisor of the first cone pass";
-            "detail" = Number(&mut self.detail, 1e-3, 1e3),
-                "hit where the estimate is below this many footprints";
-            "shell" = Number(&mut self.shell, 0.0, 0.99),
-                "share of that threshold that steps keep clear of: time against error";
-            "relaxation" = RelaxationSlot(&mut self.relaxation),
-                "how rays stretch their steps";
-            "fudge" = List(&mut self.fudge, 1..=6, 0.01, 1.0),
-                "factors on the cones' width in mode calibrated, coarse to fine, the last repeated";
-            "steps" = AutoCount(&mut self.steps, 1, 1_000_000),
-                "steps per level and of a ray; auto is 256, and for rays over a heightfield as many as they can take";
-            "stride" = AutoNumber(&mut self.stride, 1e-3, 1.0),
-                "factor on ray steps; auto is 1, and 0.1 for the truth";
-            "clip" = Word(&mut self.clip, &[("auto", None), ("on", Some(true)), ("off", Some(false))]),
-                "start rays where they enter the bounds; auto: on after cones";
-        ]
-    }
-
-    /// Whether the fudge list fits the pyramid.
+    /// Checks that the fudge list fits the pyramid.
     pub fn check(&self) -> Result<(), Fault> {
         let levels = self.coarsest.ilog2() as usize;
-        // Elsewhere nothing reads the list, and a coarser or finer start is no fault.
+        // The other modes ignore the list.
         if self.mode == Mode::Calibrated && self.fudge.len() > levels.max(1) {
             return Err(Fault::new(
                 "march.fudge",
@@ -189,72 +174,65 @@ impl Marching {
         Ok(())
     }
 
+    /// The step limits of a cone and of a ray that the mode sets.
+    fn budget(&self) -> Option<[u32; 2]> {
+        let passes = self.coarsest.ilog2() + 1;
+        Some(self.mode.facts().budget?(passes))
+    }
+
     /// The cone levels that the mode marches.
     pub fn pyramid(&self) -> Pyramid {
-        if !self.mode.cones() {
+        if self.mode.facts().cones.is_none() {
             return Pyramid::default();
         }
-        let passes = self.coarsest.ilog2() + 1;
         let fudge: &[f64] = match self.mode {
             Mode::Calibrated => &self.fudge,
             _ => &[],
         };
-        Pyramid::new(self.coarsest, fudge, |_| match self.mode {
-            Mode::SlidesEven => (128 / passes).max(1),
-            Mode::SlidesDeep | Mode::SlidesFast => 512,
-            _ => self.steps.unwrap_or(STEPS),
-        })
+        let set = self.steps.unwrap_or(STEPS);
+        let steps = self.budget().map_or(set, |[cone, _]| cone);
+        Pyramid::new(self.coarsest, fudge, steps)
     }
 
-    /// Steps that a ray may do, `crossing` being the most that one can take through the
-    /// scene, where that is known.
+    /// The step limit of a ray. `crossing` is the largest number of steps that a ray can take
+    /// through the scene, where that is known.
     pub fn ray_steps(&self, crossing: Option<u32>) -> u32 {
-        let steps = self
-            .steps
-            .unwrap_or_else(|| STEPS.max(crossing.unwrap_or(0)));
-        match self.mode {
-            Mode::SlidesEven => (128 / (self.coarsest.ilog2() + 1)).max(1),
-            Mode::SlidesDeep => 128,
-            Mode::SlidesFast => 32,
-            // As far as the steps of the others reach, in steps so much shorter.
+        let auto = STEPS.max(crossing.unwrap_or(0));
+        let steps = self.steps.unwrap_or(auto);
+        match self.budget() {
+            Some([_, ray]) => ray,
+            // Shorter steps need more of them to come as far.
             #[allow(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
                 reason = "clamped"
             )]
-            Mode::Truth => (f64::from(steps) * 16.0 / self.stride()).min(1e6) as u32,
-            _ => steps,
+            None if self.mode == Mode::Truth => {
+                (f64::from(steps) * 16.0 / self.stride()).min(1e6) as u32
+            }
+            None => steps,
         }
     }
 
     /// The factor on ray steps.
     pub fn stride(&self) -> f64 {
-        self.stride
-            .unwrap_or(if self.mode == Mode::Truth { 0.1 } else { 1.0 })
+        self.stride.unwrap_or(self.mode.facts().stride)
     }
 
     /// What the scene needs to know to take its steps.
     pub fn stepping(&self) -> Stepping {
-        let plain = self.mode.slides() || matches!(self.mode, Mode::Ray | Mode::Truth);
+        let facts = self.mode.facts();
         Stepping {
             detail: self.detail,
-            shell: if plain || self.mode == Mode::RayRelaxed {
-                0.0
-            } else {
-                self.shell
-            },
-            relaxation: if plain {
-                Relaxation::Off
-            } else {
+            shell: if facts.shell { self.shell } else { 0.0 },
+            relaxation: if facts.relaxed {
                 self.relaxation
+            } else {
+                Relaxation::Off
             },
             stride: self.stride(),
-            clip: self.clip.unwrap_or(self.mode.cones()),
-            rule: if self.mode.slides() {
-                ConeRule::Slides
-            } else {
-                ConeRule::Exact
-            },
+            clip: self.clip.unwrap_or(facts.cones.is_some()),
+            rule: facts.cones.unwrap_or_default(),
         }
     }
 }

@@ -1,8 +1,11 @@
-//! Everything that decides a picture, as one value.
+//! The plan of a picture.
 //!
-//! A [`Plan`] is a plain value: it can be printed, compared, written as a preset and tested
-//! without a GPU. It touches no file and makes no map; that is the explicit step of
-//! [`Assets`]. Nothing in it depends on a measurement.
+//! A [`Plan`] is everything that decides a picture, as one plain value. It can be printed,
+//! compared, written as a preset and tested without a GPU. It reads no file and makes no
+//! map: [`Assets`] do.
+//!
+//! - [`camera`], [`march`], [`look`]: the sections of a preset beside `[scene]`
+//! - [`pyramid`]: the cone levels, and the blocks of a large image
 
 pub mod camera;
 pub mod look;
@@ -22,13 +25,13 @@ use look::Look;
 use march::Marching;
 use pyramid::{Level, Pyramid};
 
-/// Longest image edge.
+/// The largest width and height of an image.
 pub const MOST_PIXELS: u32 = 65_536;
 
 /// Everything that decides a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// A line for people.
+    /// A line about the picture.
     pub title: String,
     /// What is in the picture.
     pub scene: Scene,
@@ -38,12 +41,12 @@ pub struct Plan {
     pub march: Marching,
     /// How it looks.
     pub look: Look,
-    /// Pixels along each axis.
+    /// Width and height in pixels.
     pub size: [u32; 2],
 }
 
 impl Plan {
-    /// A plan of a scene with defaults for everything else.
+    /// A plan of a scene, with defaults for everything else.
     pub fn new(scene: impl Into<Scene>) -> Self {
         let scene = scene.into();
         let look = Look {
@@ -60,8 +63,8 @@ impl Plan {
         }
     }
 
-    /// The keys of a section; `None` for an unknown one. `scene.kind` and `scene.formula`
-    /// are none: they choose the [`Scene`] itself.
+    /// The keys of a section; `None` if there is no such section. `scene.kind` and
+    /// `scene.formula` are not among them: they choose the [`Scene`].
     pub fn keys(&mut self, section: &str) -> Option<Vec<Key<'_>>> {
         Some(match section {
             "scene" => self.scene.keys(),
@@ -78,7 +81,7 @@ impl Plan {
     /// Checks that all settings fit together. No file is read: [`Assets::load`] does that.
     ///
     /// # Errors
-    /// The key of the first value that does not fit, and a valid alternative.
+    /// The first value that does not fit, with a valid alternative.
     pub fn check(&self) -> Result<(), Fault> {
         self.scene.check()?;
         self.camera.check()?;
@@ -86,7 +89,7 @@ impl Plan {
         self.look.check(self.scene.most_shadow_steps())
     }
 
-    /// The camera fitted to the image.
+    /// The camera over the image.
     pub fn view(&self) -> View {
         self.camera.view(self.size)
     }
@@ -96,7 +99,7 @@ impl Plan {
         self.march.pyramid()
     }
 
-    /// From where, how finely and by which steps the scene is looked at.
+    /// The eye, the finest pixel and the steps of the plan.
     pub fn viewpoint(&self) -> Viewpoint {
         Viewpoint {
             eye: self.camera.eye,
@@ -105,7 +108,8 @@ impl Plan {
         }
     }
 
-    /// The scene resolved to numbers. What the assets lack is loaded, or made on the CPU.
+    /// The scene with all settings resolved to numbers. Missing assets are loaded, or made on
+    /// the CPU.
     ///
     /// # Errors
     /// A named file cannot be read or does not fit; a cone map cannot be made.
@@ -113,25 +117,26 @@ impl Plan {
         self.scene.solid(&self.viewpoint(), assets)
     }
 
-    /// A sentence about precision, where f32 cannot hold what the plan asks for.
+    /// A warning if f32 is too coarse for the picture.
     pub fn precision_warning(&self) -> Option<String> {
         self.scene.precision_warning(&self.viewpoint())
     }
 
-    /// Steps that a ray may do.
+    /// The step limit of a ray.
     pub fn ray_steps(&self, assets: &Assets) -> u32 {
         self.march.ray_steps(self.scene.most_steps(assets))
     }
 
-    /// The passes of a frame, in order. [`Pass::Prepare`] is done once for all frames.
+    /// The passes of a frame, in order. [`Pass::Prepare`] is not among them: it runs once for
+    /// many frames.
     pub fn passes(&self, extras: Extras) -> Vec<Pass> {
         let levels = self.pyramid().levels.into_iter().map(Pass::March);
         let colours = (!extras.depth_only).then_some(Pass::Color);
         levels.chain([Pass::Trace]).chain(colours).collect()
     }
 
-    /// The plan without what a frame with these extras does not need: maps and pictures by
-    /// which only colours are picked.
+    /// The plan without maps and textures that only colours need, if these extras ask for no
+    /// colours.
     pub fn lean(&self, extras: Extras) -> Cow<'_, Self> {
         match self.scene.colorless() {
             Some(scene) if extras.depth_only => Cow::Owned(Self {
@@ -143,16 +148,16 @@ impl Plan {
     }
 }
 
-/// One step of a plan.
+/// One step of a render.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pass {
-    /// A cone map, made before all others and kept for later frames.
+    /// Makes a cone map, which is kept for later frames.
     Prepare(Preparation),
-    /// Cones of one level.
+    /// Marches the cones of one level.
     March(Level),
-    /// Rays at full size.
+    /// Follows one ray per pixel.
     Trace,
-    /// Light and colour.
+    /// Lights and colours the pixels.
     Color,
 }
 
@@ -167,7 +172,7 @@ impl Pass {
         }
     }
 
-    /// Cells along each axis, over so many pixels; places of a cone map.
+    /// Cells along each axis over so many pixels; for a cone map, its places.
     pub fn cells(&self, pixels: [u32; 2]) -> [u32; 2] {
         match self {
             Self::Prepare(map) => map.places,
@@ -176,13 +181,13 @@ impl Pass {
         }
     }
 
-    /// Whether its time and its counts are told as march and trace.
+    /// Whether its time and its counts belong to march and trace.
     pub fn marches(&self) -> bool {
         matches!(self, Self::March(_) | Self::Trace)
     }
 }
 
-/// What a render yields beside colour and depth. It never changes a picture.
+/// What a render yields beside colour and depth. This never changes a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     /// Count evaluations and iterations.
@@ -191,8 +196,8 @@ pub struct Extras {
     pub normals: bool,
     /// Keep the fronts and states of every cone level.
     pub levels: bool,
-    /// Leave the colour pass out.
+    /// Skip the colour pass.
     pub depth_only: bool,
-    /// Ask the device for its time per pass.
+    /// Measure the device's time per pass.
     pub time: bool,
 }

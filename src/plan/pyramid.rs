@@ -1,29 +1,28 @@
-//! The pyramid of image-space resolutions (docs/method.md, 1).
+//! The pyramid of cone levels (docs/method.md, 1).
 //!
-//! A level with divisor D has `ceil(W/D) x ceil(H/D)` cells; cell (i, j) covers the
-//! D x D pixels from (iD, jD), cut by the image. Divisors double exactly, so a
-//! child's square lies inside its parent's at every size.
+//! A level with divisor D has `ceil(W/D) x ceil(H/D)` cells. Cell (i, j) covers the D x D
+//! pixels from (iD, jD), as far as the image goes. Each divisor is half the one before, so
+//! a cell's four children cover the same pixels, at every image size.
 
-/// One level: cells of `divisor` x `divisor` pixels.
+/// One level, with cells of `divisor` x `divisor` pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Level {
     /// Pixels per cell along each axis; a power of two.
     pub divisor: u32,
     /// Factor on the chord of the level's cones, in (0, 1].
     pub fudge: f64,
-    /// Steps that a cell may do.
+    /// The step limit of a cell.
     pub steps: u32,
 }
 
 impl Level {
-    /// Cells of this level along each axis, over so many pixels.
+    /// Cells along each axis over so many pixels.
     pub fn cells(&self, size: [u32; 2]) -> [u32; 2] {
         size.map(|n| n.div_ceil(self.divisor))
     }
 }
 
-/// The cone levels of a picture, from the coarsest to 1/2; none where rays are
-/// marched alone.
+/// The cone levels of a picture, from the coarsest to 1/2; none in modes without cones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pyramid {
     /// Levels, coarsest first.
@@ -31,25 +30,22 @@ pub struct Pyramid {
 }
 
 impl Pyramid {
-    /// Levels from `coarsest` (a power of two; 1 for none) down to 2. `fudge` is read
-    /// coarse to fine, its last value repeated; `steps(divisor)` gives the limits.
-    pub fn new(coarsest: u32, fudge: &[f64], steps: impl Fn(u32) -> u32) -> Self {
+    /// Levels from `coarsest`, a power of two, down to 2; none for 1. `fudge` goes from coarse
+    /// to fine and its last value repeats. `steps` is the step limit of a cell.
+    pub fn new(coarsest: u32, fudge: &[f64], steps: u32) -> Self {
         let count = coarsest.max(1).ilog2();
         let last = fudge.last().copied().unwrap_or(1.0);
-        let levels = (0..count).map(|i| {
-            let divisor = coarsest >> i;
-            Level {
-                divisor,
-                fudge: fudge.get(i as usize).copied().unwrap_or(last),
-                steps: steps(divisor),
-            }
+        let levels = (0..count).map(|i| Level {
+            divisor: coarsest >> i,
+            fudge: fudge.get(i as usize).copied().unwrap_or(last),
+            steps,
         });
         Self {
             levels: levels.collect(),
         }
     }
 
-    /// Divisor of the first level, 1 without levels: block edges are its multiples.
+    /// Divisor of the first level; 1 without levels.
     pub fn coarsest(&self) -> u32 {
         self.levels.first().map_or(1, |l| l.divisor)
     }
@@ -65,8 +61,8 @@ pub struct Block {
 }
 
 impl Block {
-    /// Cuts an image into blocks of at most `edge` pixels a side, `edge` rounded down
-    /// to a multiple of `coarsest` (but at least one cell), row by row.
+    /// Cuts an image into blocks, row by row. Their edge is the largest multiple of `coarsest`
+    /// that is at most `edge`, but at least `coarsest`.
     pub fn cut(size: [u32; 2], edge: u32, coarsest: u32) -> Vec<Block> {
         let edge = (edge / coarsest).max(1) * coarsest;
         let mut blocks = Vec::new();
@@ -94,7 +90,7 @@ mod tests {
     #[test]
     fn children_lie_inside_their_parents_and_cover_the_image() {
         for size in [[1, 1], [33, 17], [1366, 768], [1, 400], [1600, 1050]] {
-            let pyramid = Pyramid::new(32, &[1.0], |_| 1);
+            let pyramid = Pyramid::new(32, &[1.0], 1);
             assert_eq!(pyramid.levels.len(), 5);
             for pair in pyramid.levels.windows(2) {
                 assert_eq!(pair[0].divisor, 2 * pair[1].divisor);

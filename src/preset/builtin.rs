@@ -1,6 +1,6 @@
-//! The presets that are compiled in, by one list.
+//! The presets that are compiled in.
 
-/// Makes the list out of the names of the files in `presets/`.
+/// Makes the list of presets from the names of the files in `presets/`.
 macro_rules! presets {
     ($($name:literal),* $(,)?) => {
         /// Name and text of every built-in preset, in alphabetical order.

@@ -1,5 +1,4 @@
-//! Presets and overrides as flat lists of entries: section, key, value, and where
-//! each was said.
+//! Presets and overrides as flat lists of entries: section, key, value and origin.
 
 use toml::Value;
 use toml::de::{DeTable, DeValue};
@@ -10,7 +9,7 @@ use crate::preset::nearest::nearest;
 /// The sections of a preset, in the order in which they are written.
 pub(crate) const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
 
-/// Where an entry was said.
+/// Where an entry comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Said {
     /// At a byte of the preset's text.
@@ -28,9 +27,9 @@ pub(crate) struct Entry {
     pub key: String,
     /// Its value.
     pub value: Value,
-    /// The value as it was said, shortened.
+    /// The value as it was written, shortened.
     pub shown: String,
-    /// Where.
+    /// Where it comes from.
     pub said: Said,
 }
 
@@ -56,12 +55,11 @@ pub struct Override {
 }
 
 impl Override {
-    /// Reads `section.key=value`. Values are TOML; what is none and reads like a word, as
-    /// `fbm:64x64,seed=3` or `maps/d8.png` do, is a string.
+    /// Reads `section.key=value`. Values are TOML. Words like `fbm:64x64,seed=3` or
+    /// `maps/d8.png` need no quotes.
     ///
     /// # Errors
-    /// The text has another form. Whether the key exists and takes the value is found
-    /// out with the preset.
+    /// The text has another form. Key and value are checked with the preset.
     pub fn read(text: &str) -> Result<Self, PresetError> {
         let fail = |why: String| PresetError::Override {
             overrides: given(text),
@@ -80,7 +78,7 @@ impl Override {
         let value = value.trim();
         let read = match DeValue::parse(value) {
             Ok(read) => convert(read.get_ref()).map_err(fail)?,
-            // A title is text in any case; elsewhere only a word needs no quotes.
+            // A title is always text; elsewhere only a word needs no quotes.
             Err(_) if section.is_empty() || bare(value) => Value::String(value.into()),
             Err(e) => {
                 let why = sentence(e.message());
@@ -104,14 +102,14 @@ fn given(text: &str) -> String {
     format!("--set {}", brief(text))
 }
 
-/// A word that may be said without quotes, be it a field with its numbers or a path.
+/// Whether a word needs no quotes: a field with its numbers, or a path.
 fn bare(text: &str) -> bool {
     let first = |c: char| c.is_alphabetic() || matches!(c, '.' | '/');
     let rest = |c: char| c.is_alphanumeric() || "_.:,=/+-".contains(c);
     text.starts_with(first) && text.chars().all(rest)
 }
 
-/// A text short enough, and tame enough, to stand in a sentence.
+/// A text on one line, shortened and without control characters, for use in a sentence.
 pub(crate) fn brief(text: &str) -> String {
     const MOST: usize = 60;
     let words = text.split_whitespace();
@@ -144,7 +142,7 @@ fn sentence(message: &str) -> String {
     lines.join(", ").trim_end_matches('.').to_string()
 }
 
-/// A parsed value without its places in the text.
+/// A parsed value without its position in the text.
 fn convert(value: &DeValue<'_>) -> Result<Value, String> {
     Ok(match value {
         DeValue::String(s) => Value::String(s.to_string()),
@@ -162,7 +160,7 @@ fn convert(value: &DeValue<'_>) -> Result<Value, String> {
             let items = list.iter().map(|v| convert(v.get_ref()));
             Value::Array(items.collect::<Result<_, _>>()?)
         }
-        // No key takes a table: that it is one is all that matters.
+        // No key takes a table: its content does not matter.
         DeValue::Table(_) => Value::Table(toml::Table::new()),
     })
 }
@@ -229,9 +227,12 @@ pub(crate) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError>
     Ok(entries)
 }
 
-/// That a section does not exist, and which one may have been meant.
+/// Says that a section does not exist, and which one may have been meant.
 pub(crate) fn unknown_section(name: &str) -> String {
-    let there = format!("there are title, {}", SECTIONS.join(", "));
+    let there = format!(
+        "the sections are {}, and title stands above them",
+        SECTIONS.join(", ")
+    );
     let name_shown = brief(name);
     match nearest(name, SECTIONS.into_iter().chain(["title"])) {
         Some(near) => format!("unknown section `{name_shown}`, perhaps `{near}`; {there}"),

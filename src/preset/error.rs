@@ -1,11 +1,10 @@
-//! Why a preset is no Plan: one sentence that says where, what, and what would do.
+//! Errors of presets: one sentence that says where, what is wrong, and what to write instead.
 
 use thiserror::Error;
 
 use crate::preset::BUILTIN;
 
-/// What can be wrong with a preset, with an override, or with the argument that names
-/// one.
+/// An error of a preset, of an override, or of the argument that names a preset.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum PresetError {
     /// The text is wrong.
@@ -13,9 +12,9 @@ pub enum PresetError {
     Content {
         /// File or built-in preset.
         origin: String,
-        /// Line in it, from 1; none where something is missing.
+        /// Line in it, from 1; `None` if something is missing.
         line: Option<usize>,
-        /// What is wrong and what would do.
+        /// What is wrong, and what to write instead.
         why: String,
     },
     /// An override is wrong, alone or together with the preset.
@@ -23,12 +22,12 @@ pub enum PresetError {
     Override {
         /// The overrides to blame, as they were given.
         overrides: String,
-        /// What is wrong and what would do.
+        /// What is wrong, and what to write instead.
         why: String,
     },
-    /// No built-in preset and no file has this name.
+    /// Neither a built-in preset nor a file has this name.
     #[error(
-        "no preset is called `{name}`{}; there is: {}; the path of a .toml file or of a .png that this program wrote would do as well",
+        "no preset is called `{name}`{}; the built-in presets are {}; a path of a .toml file, or of a .png that this program wrote, is a preset too",
         perhaps(.nearest),
         built_in()
     )]
@@ -43,7 +42,7 @@ pub enum PresetError {
     File {
         /// Its path.
         path: String,
-        /// What is wrong and what would do.
+        /// What is wrong, and what to write instead.
         why: String,
     },
 }

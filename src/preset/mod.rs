@@ -14,6 +14,6 @@ pub use document::Override;
 pub use error::PresetError;
 pub use nearest::nearest;
 pub use read::{read, read_with};
-pub use reference::reference;
-pub use source::{MOST_BYTES, PNG_KEYWORD, Preset, file, load};
+pub use reference::{keys, reference};
+pub use source::{PNG_KEYWORD, Preset, Source, file, find, load};
 pub use write::write;

@@ -1,4 +1,4 @@
-//! Text and overrides to a Plan, every value checked.
+//! Reads the text of a preset and its overrides into a plan, and checks every value.
 
 use std::path::Path;
 
@@ -22,11 +22,11 @@ fn kinds() -> Vec<&'static str> {
     kinds
 }
 
-/// Reads a preset. `origin` is what errors call it: a file's path, mostly.
+/// Reads a preset. `origin` is its name in errors, like the path of a file.
 ///
 /// # Errors
-/// Anything that is not a preset: syntax, unknown names, wrong types, impossible
-/// values. The error names file, line, key, value and what would do.
+/// Wrong syntax, unknown names, wrong types, impossible values. The error names file, line,
+/// key, value and a valid alternative.
 pub fn read(text: &str, origin: &str) -> Result<Plan, PresetError> {
     let entries = parse(text, origin)?;
     let folder = Path::new("");
@@ -38,13 +38,13 @@ pub fn read(text: &str, origin: &str) -> Result<Plan, PresetError> {
     .plan(&entries)
 }
 
-/// Reads a preset with overrides. The preset must be right without them, too.
+/// Reads a preset with overrides. It must also be valid without them.
 ///
 /// An override of `scene.kind` or `scene.formula` that changes it drops the preset's
-/// other values of the scene: they were those of another shape.
+/// other values of the scene: they belong to another one.
 ///
 /// # Errors
-/// As [`read`]; faults that only the overrides bring are theirs.
+/// As [`read`]. Faults that only the overrides cause are reported at the overrides.
 pub fn read_with(text: &str, origin: &str, overrides: &[Override]) -> Result<Plan, PresetError> {
     Ok(read_in(Path::new(""), text, origin, overrides)?.plan)
 }
@@ -117,7 +117,7 @@ pub(super) fn read_in(
     Ok(reading(reader.plan(&entries)?, entries))
 }
 
-/// Turns entries into a Plan, and knows how to call their places.
+/// Turns entries into a plan, and names their places in errors.
 struct Reader<'a> {
     text: &'a str,
     origin: &'a str,
@@ -191,7 +191,7 @@ impl Reader<'_> {
         let (kind, formula) = (plan.scene.kind(), plan.scene.formula());
         if entry.section == "scene" {
             match (entry.key.as_str(), formula) {
-                // The last of each has chosen the scene; the others are checked, too.
+                // The last of each has chosen the scene; the others are checked as well.
                 ("kind", _) => return self.word(entry, &kinds()).map(|_| ()),
                 ("formula", Some(_)) => return self.formula(entry).map(|_| ()),
                 ("formula", None) => {
@@ -217,8 +217,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A fault that the whole plan has: said at its key, or at the overrides that
-    /// brought it.
+    /// A fault of the whole plan, reported at its key or at the overrides that cause it.
     fn fault(&self, plan: &mut Plan, entries: &[Entry], fault: Fault) -> PresetError {
         let said = entries.iter().rev().find(|e| e.path() == fault.key);
         if let Some(entry) = said
@@ -261,7 +260,7 @@ impl Reader<'_> {
                 let what = format!("{} = {}", brief(&entry.path()), entry.shown);
                 self.at(entry, format!("{what}: {why}"))
             }
-            // The override's text has said key and value already.
+            // The text of the override names key and value.
             Said::Set(_) => self.at(entry, why.into()),
         }
     }
@@ -305,7 +304,7 @@ fn value_of(plan: &mut Plan, path: &str) -> Value {
     found.unwrap_or_else(|| Value::String(String::new()))
 }
 
-/// The overrides in the section of a fault, or all where it has none.
+/// The overrides in the section of a fault, or all overrides if it has none.
 fn overrides_to_blame(entries: &[Entry], path: &str) -> Vec<String> {
     let section = path.split_once('.').map_or("", |(section, _)| section);
     let sets = entries.iter().filter_map(|e| match &e.said {
@@ -320,7 +319,7 @@ fn overrides_to_blame(entries: &[Entry], path: &str) -> Vec<String> {
 fn unknown_key(entry: &Entry, keys: &[Key<'_>], of: &str) -> String {
     let mut names: Vec<&str> = keys.iter().map(|k| k.name).collect();
     if entry.section == "scene" {
-        // A distance scene has `iterations` beside its formula's keys.
+        // Only a distance scene has `iterations`, beside the keys of its formula.
         let formula = names.contains(&"iterations").then_some("formula");
         names.splice(0..0, ["kind"].into_iter().chain(formula));
     }

@@ -1,5 +1,5 @@
-//! Every key of a preset in words: what `docs/presets.md` shows. It is written from the
-//! same lists that presets are read by, so that it cannot name what there is not.
+//! The page `docs/presets.md`, which explains every key. It is written from the lists that
+//! presets are read by, so that it names exactly the keys that exist.
 
 use std::fmt::Write as _;
 
@@ -8,20 +8,20 @@ use crate::plan::Plan;
 use crate::preset::document::SECTIONS;
 use crate::scene::Scene;
 
-/// What stands above the tables.
+/// The text above the tables.
 const HEAD: &str = "# Presets
 
 <!-- Written by `cargo bench --bench pages -- presets`; do not edit. -->
 
 A preset is a TOML file with a title and the sections below. Only `scene.kind` is required,
 and `scene.formula` where the kind is \"distance\"; every other key has the default that its
-table shows. Unknown keys and values that a key does not take are refused, with the file, the
-line and what would do.
+table shows. An unknown key or a wrong value is an error that names the file, the line and a valid
+alternative.
 
 `conemarch presets NAME` prints a built-in preset to start from, and
 `conemarch render PRESET --set section.key=value` changes single values, like
 `--set camera.fov=30`; words, fields and paths need no quotes there, like
-`--set scene.field=fbm:64x64,seed=3`. Whole numbers serve where numbers are asked for.
+`--set scene.field=fbm:64x64,seed=3`. A whole number may stand for any number.
 [method.md](method.md) explains shell, detail, cones and bounds, and
 [benchmarks.md](benchmarks.md) shows what the modes and the keys of `[march]` cost in time and
 in error.
@@ -52,6 +52,28 @@ pub fn reference() -> String {
     text.truncate(text.trim_end().len());
     text.push('\n');
     text
+}
+
+/// Every `section.key` that `--set` takes, with its help.
+pub fn keys() -> Vec<(String, &'static str)> {
+    let first = [
+        ("title", "a line for people"),
+        ("scene.kind", "what kind of scene it is"),
+        ("scene.formula", "the formula of a distance scene"),
+    ];
+    let mut all = first.map(|(path, help)| (path.to_string(), help)).to_vec();
+    for section in SECTIONS {
+        for scene in Scene::all() {
+            let mut plan = Plan::new(scene);
+            for key in plan.keys(section).unwrap_or_default() {
+                let path = format!("{section}.{}", key.name);
+                if all.iter().all(|(known, _)| *known != path) {
+                    all.push((path, key.help));
+                }
+            }
+        }
+    }
+    all
 }
 
 /// A heading, and a row for each key.

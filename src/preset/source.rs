@@ -1,9 +1,11 @@
-//! Finding a preset by what the command line calls it: a built-in name, the path of a
-//! TOML file, or a picture that carries its preset.
+//! Finds a preset by its argument on the command line: a built-in name, the path of a TOML
+//! file, or a picture that carries its preset.
 
 use std::fs::{self, File};
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
+
+use png::DecodingError;
 
 use crate::plan::Plan;
 use crate::preset::builtin::{BUILTIN, builtin};
@@ -13,20 +15,38 @@ use crate::preset::nearest::nearest;
 use crate::preset::read::{Reading, read_in};
 use crate::scene::Assets;
 
-/// Largest preset that is read: far more than any preset needs, and little enough to
-/// refuse a wrong file at once.
-pub const MOST_BYTES: u64 = 1 << 20;
+/// Largest preset that is read: far more than any preset needs, so that a wrong file is
+/// rejected at once.
+const MOST_BYTES: u64 = 1 << 20;
 
-/// Keyword of the text chunk in which a picture carries its preset.
+/// Keyword of the text chunk in which a PNG carries its preset.
 pub const PNG_KEYWORD: &str = "conemarch preset";
 
 /// The first bytes of every PNG file.
 const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
+/// How the settings files of another renderer begin. They are no presets.
+const MANDELBULBER: &str = "# Mandelbulber settings file";
+
+const UNREADABLE: &str = "check its path and rights, or name a built-in preset";
+
+/// The text of a preset before it is read.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// The built-in name, or the name of the file without its extension.
+    pub name: String,
+    /// TOML.
+    pub text: String,
+    /// What errors call the preset.
+    origin: String,
+    /// The folder that files named in the preset are relative to.
+    folder: PathBuf,
+}
+
 /// A preset that was found and read.
 #[derive(Clone, Debug)]
 pub struct Preset {
-    /// The built-in name, or the file's without its ending.
+    /// As [`Source::name`].
     pub name: String,
     /// The plan.
     pub plan: Plan,
@@ -34,14 +54,6 @@ pub struct Preset {
 }
 
 impl Preset {
-    fn of(name: String, reading: Reading) -> Self {
-        Self {
-            name,
-            plan: reading.plan.clone(),
-            reading,
-        }
-    }
-
     /// Reads the files that the preset names, and keeps them in the assets.
     ///
     /// # Errors
@@ -53,40 +65,71 @@ impl Preset {
     }
 }
 
-/// The file that an argument of [`load`] names; none for a built-in preset.
-pub fn file(argument: &str) -> Option<PathBuf> {
-    builtin(argument).is_none().then(|| argument.into())
+/// The file that an argument of [`load`] names; `None` for a built-in preset.
+pub fn file(argument: &Path) -> Option<PathBuf> {
+    named(argument).is_none().then(|| argument.into())
 }
 
-/// Finds and reads what an argument means, with overrides.
+/// The text of the built-in preset that an argument names.
+fn named(argument: &Path) -> Option<&'static str> {
+    builtin(argument.to_str()?)
+}
+
+/// Finds and reads the preset that an argument names, with overrides.
 ///
 /// # Errors
 /// The name is unknown, the file cannot be read or carries no preset, or the preset or
 /// an override is wrong.
-pub fn load(argument: &str, overrides: &[Override]) -> Result<Preset, PresetError> {
-    if let Some(text) = builtin(argument) {
-        let origin = format!("built-in preset {argument}");
-        let reading = read_in(Path::new(""), text, &origin, overrides)?;
-        return Ok(Preset::of(argument.into(), reading));
-    }
-    let path = Path::new(argument);
-    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-    let is_path = argument.contains(['/', '\\'])
-        || ["toml", "png"].contains(&ending.to_lowercase().as_str())
-        || (!argument.is_empty() && path.exists());
-    if !is_path {
-        return Err(PresetError::Unknown {
-            name: brief(argument),
-            nearest: similar(argument),
-        });
-    }
-    let text = file_text(path)?;
-    let name = path.file_stem().map(|s| s.to_string_lossy().into_owned());
-    let reading = read_in(path.parent().unwrap_or(path), &text, argument, overrides)?;
-    Ok(Preset::of(name.unwrap_or_else(|| "preset".into()), reading))
+pub fn load(argument: impl AsRef<Path>, overrides: &[Override]) -> Result<Preset, PresetError> {
+    let source = find(argument.as_ref())?;
+    let reading = read_in(&source.folder, &source.text, &source.origin, overrides)?;
+    Ok(Preset {
+        name: source.name,
+        plan: reading.plan.clone(),
+        reading,
+    })
 }
 
-/// Built-in presets that may have been meant: the nearest, or those that begin alike.
+/// Finds the text of the preset that an argument names.
+///
+/// # Errors
+/// The name is unknown, or the file cannot be read or carries no preset.
+pub fn find(argument: &Path) -> Result<Source, PresetError> {
+    let shown = argument.to_string_lossy();
+    if let Some(text) = named(argument) {
+        return Ok(Source {
+            name: shown.to_string(),
+            text: text.into(),
+            origin: format!("built-in preset {shown}"),
+            folder: PathBuf::new(),
+        });
+    }
+    let extension = argument.extension().and_then(|e| e.to_str()).unwrap_or("");
+    let is_path = shown.contains(['/', '\\'])
+        || ["toml", "png"].contains(&extension.to_lowercase().as_str())
+        || (!shown.is_empty() && argument.exists());
+    if !is_path {
+        return Err(PresetError::Unknown {
+            name: brief(&shown),
+            nearest: similar(&shown),
+        });
+    }
+    let text = file_text(argument).map_err(|why| PresetError::File {
+        path: shown.to_string(),
+        why,
+    })?;
+    let name = argument
+        .file_stem()
+        .map(|s| s.to_string_lossy().into_owned());
+    Ok(Source {
+        name: name.unwrap_or_else(|| "preset".into()),
+        text,
+        origin: shown.into_owned(),
+        folder: argument.parent().unwrap_or(argument).into(),
+    })
+}
+
+/// Built-in presets that may have been meant: the nearest, or those that share a part.
 fn similar(name: &str) -> Vec<String> {
     let names = || BUILTIN.iter().map(|(n, _)| *n);
     if let Some(near) = nearest(name, names()) {
@@ -96,99 +139,71 @@ fn similar(name: &str) -> Vec<String> {
     names().filter(part).take(5).map(str::to_string).collect()
 }
 
-fn failure(path: &Path, why: impl Into<String>) -> PresetError {
-    PresetError::File {
-        path: path.display().to_string(),
-        why: why.into(),
-    }
-}
-
-/// Whether a name means a stream of this process, as a shell's `<(command)` does.
+/// Whether a path is a stream of this process, as a shell's `<(command)` makes one.
 fn is_own_stream(path: &Path) -> bool {
     path == Path::new("/dev/stdin") || path.starts_with("/dev/fd")
 }
 
-/// The preset's text in a file, be it the file itself or a picture's.
-fn file_text(path: &Path) -> Result<String, PresetError> {
-    let unreadable = |e: std::io::Error| {
-        failure(
-            path,
-            format!("cannot be read: {e}; check its path and rights, or name a built-in preset"),
-        )
-    };
-    let what = fs::metadata(path).map_err(unreadable)?;
-    if what.is_dir() {
-        return Err(failure(
-            path,
-            "is a folder; name a .toml or .png file in it",
-        ));
+/// The text of the preset in a file, which may be a picture.
+fn file_text(path: &Path) -> Result<String, String> {
+    let unreadable = |e: std::io::Error| format!("cannot be read: {e}; {UNREADABLE}");
+    let kind = fs::metadata(path).map_err(unreadable)?;
+    if kind.is_dir() {
+        return Err("is a folder; name a .toml or .png file in it".into());
     }
-    // Asked before it is opened: opening a pipe waits for somebody to write into it, and a
-    // device may never end. Streams that this process was given are open already.
-    if !what.is_file() && !is_own_stream(path) {
-        return Err(failure(
-            path,
-            "is no regular file but a pipe, a socket or a device; name a .toml or .png file, or send the preset to /dev/stdin",
-        ));
+    // Asked before the file is opened: opening a pipe waits until somebody writes into it,
+    // and a device may never end. Streams of this process are open already.
+    if !kind.is_file() && !is_own_stream(path) {
+        return Err("is no regular file but a pipe, a socket or a device; name a .toml or .png file, or send the preset to /dev/stdin".into());
     }
     let mut file = File::open(path).map_err(unreadable)?;
     let mut bytes = Vec::new();
     let mut start = (&mut file).take(PNG_SIGNATURE.len() as u64);
     start.read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes == PNG_SIGNATURE {
-        return picture_text(path, std::io::Cursor::new(bytes).chain(file));
-    }
-    let mut rest = file.take(MOST_BYTES + 1);
+    let picture = bytes == PNG_SIGNATURE;
+    // Text chunks stand before the pixels: the head of a picture holds them.
+    let most = if picture { 4 * MOST_BYTES } else { MOST_BYTES };
+    let mut rest = BufReader::new(file).take(most + 1);
     rest.read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > MOST_BYTES {
-        return Err(failure(
-            path,
-            "is larger than 1 MiB, which no preset is; is it the right file?",
-        ));
+    if picture {
+        return picture_text(bytes);
     }
-    let text = String::from_utf8(bytes).map_err(|_| {
-        failure(
-            path,
-            "is not text in UTF-8; a preset is a TOML file, or a PNG that this program wrote",
-        )
-    })?;
-    Ok(text
-        .strip_prefix('\u{feff}')
-        .map_or(text.clone(), str::to_string))
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err("is larger than 1 MiB, which no preset is; is it the right file?".into());
+    }
+    let text = String::from_utf8(bytes).map_err(
+        |_| "is not text in UTF-8; a preset is a TOML file, or a PNG that this program wrote",
+    )?;
+    if text.starts_with(MANDELBULBER) {
+        return Err("is a settings file of Mandelbulber; only presets of conemarch are read, and `conemarch presets NAME` prints one to start from".into());
+    }
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_string())
 }
 
-/// The preset in a picture's text chunks.
-fn picture_text(path: &Path, picture: impl Read) -> Result<String, PresetError> {
-    // The decoder wants to seek; text chunks stand before the pixels, so the head
-    // of the file is enough. What it lacks then shows as a broken picture.
-    let mut head = Vec::new();
-    let mut part = BufReader::new(picture).take(4 * MOST_BYTES);
-    part.read_to_end(&mut head).map_err(|e| {
-        failure(
-            path,
-            format!("cannot be read: {e}; check its path and rights, or name a built-in preset"),
-        )
-    })?;
-    let reader = png::Decoder::new(std::io::Cursor::new(head))
-        .read_info()
-        .map_err(|e| {
-            failure(
-                path,
-                format!("is a broken PNG: {e}; render it again from its preset"),
-            )
-        })?;
-    let chunks = &reader.info().utf8_text;
-    let chunk = chunks.iter().find(|c| c.keyword == PNG_KEYWORD);
-    let Some(chunk) = chunk else {
-        return Err(failure(
-            path,
-            "carries no preset; only a PNG that this program wrote does",
-        ));
-    };
-    // Another program may have saved the chunk compressed.
-    let mut chunk = chunk.clone();
-    chunk
-        .decompress_text_with_limit(MOST_BYTES as usize)
-        .and_then(|()| chunk.get_text())
-        .map_err(|e| failure(path, format!("carries a preset that cannot be read: {e}")))
+/// The preset in the text chunks of a PNG, of whose file this is the head. Other programs
+/// may have saved the chunk as another kind.
+fn picture_text(head: Vec<u8>) -> Result<String, String> {
+    let reader = png::Decoder::new(Cursor::new(head)).read_info();
+    let reader =
+        reader.map_err(|e| format!("is a broken PNG: {e}; render it again from its preset"))?;
+    let info = reader.info();
+    let latin = info.uncompressed_latin1_text.iter();
+    let latin = latin.map(|c| (&c.keyword, Ok(c.text.clone())));
+    let compressed = info.compressed_latin1_text.iter().map(|c| {
+        let mut c2 = c.clone();
+        let text = c2.decompress_text_with_limit(MOST_BYTES as usize);
+        (&c.keyword, text.and_then(|()| c2.get_text()))
+    });
+    let unicode = info.utf8_text.iter().map(|c| {
+        let mut c2 = c.clone();
+        let text = c2.decompress_text_with_limit(MOST_BYTES as usize);
+        (&c.keyword, text.and_then(|()| c2.get_text()))
+    });
+    let mut texts = latin.chain(compressed).chain(unicode);
+    match texts.find(|(keyword, _)| *keyword == PNG_KEYWORD) {
+        Some((_, text)) => {
+            text.map_err(|e: DecodingError| format!("carries a preset that cannot be read: {e}"))
+        }
+        None => Err("carries no preset; only a PNG that this program wrote does".into()),
+    }
 }

@@ -1,4 +1,4 @@
-//! A Plan as the text of a preset: every key, in the order of the lists.
+//! Writes a plan as the text of a preset: every key, in the order of its lists.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use toml::Value;
 use crate::plan::Plan;
 use crate::preset::document::SECTIONS;
 
-/// The preset of a plan. Reading it gives the same plan again, to the last bit.
+/// The preset of a plan. Reading it gives the same plan, bit for bit.
 pub fn write(plan: &Plan) -> String {
     let mut plan = plan.clone();
     let mut text = String::new();

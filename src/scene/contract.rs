@@ -1,4 +1,4 @@
-//! The questions that a pass may ask a scene (and nothing else may be asked).
+//! What passes ask a scene. They know nothing else about it.
 
 use glam::DVec3;
 
@@ -7,12 +7,12 @@ use crate::base::view::Beam;
 pub use crate::base::work::Step;
 use crate::base::work::Work;
 
-/// What one step of a cone came to.
+/// The result of one step of a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Advance {
-    /// Distance up to which every ray of the cone is proven free.
+    /// The new front: the distance up to which every ray of the cone is proven free.
     pub front: f64,
-    /// Whether another step is worth its price.
+    /// Whether another step is worth its cost.
     pub going: bool,
 }
 
@@ -21,49 +21,48 @@ pub struct Advance {
 pub struct Hit {
     /// Distance along the ray.
     pub t: f64,
-    /// What was met: a face, a cell.
+    /// The part that was met: a face or a cell.
     pub id: u32,
-    /// Where on it.
+    /// The place on it.
     pub uv: [f64; 2],
 }
 
-/// What the colour pass needs to know of a hit.
+/// What the colour pass needs to know about a hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Unit normal.
     pub normal: DVec3,
-    /// Three numbers in 0..1 to look the palette up with; of scenes that are colored
-    /// ([`Solid::is_colored`]) linear red, green and blue.
+    /// Three numbers from 0 to 1 that pick a colour of the palette. In colored scenes
+    /// ([`Solid::is_colored`]) it is a linear colour.
     pub pigment: DVec3,
 }
 
-/// A scene in f64. Points `q` are relative to the eye; functions of the same names
-/// answer in WGSL. `work` gains what the answer cost.
+/// A scene in f64. Its WGSL twin has functions of the same names. Points `q` are relative to
+/// the eye. Every function adds its cost to `work`.
 pub trait Solid: Sync {
-    /// A ray on its way.
+    /// The state of a ray between two steps.
     type Walk: Copy;
 
-    /// The new proven front of a cone, never below the old one.
+    /// One step of a cone. The new front is never below the old one.
     fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance;
 
-    /// Starts a ray at a proven front; nothing beyond `t_max` counts.
+    /// Starts a ray at a proven front. It ends at `t_max` at the latest.
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Self::Walk;
 
-    /// One step.
+    /// One step of a ray.
     fn walk_step(&self, ray: &Beam, walk: &mut Self::Walk, work: &mut Work) -> Step;
 
-    /// Where a walk stands: its hit, once it has one.
+    /// Where the ray is; its hit, once it has one.
     fn walk_hit(&self, walk: &Self::Walk) -> Hit;
 
-    /// How much room there is about where the walk stands, as penumbrae want it: the
-    /// radius of the ball that it found empty, or a guess near it.
+    /// The free room about the ray's current place, for soft shadows. It may be a guess.
     fn walk_radius(&self, ray: &Beam, walk: &Self::Walk) -> f64;
 
-    /// Radius of a surely empty ball about a point.
+    /// The radius of a ball about a point that is proven empty.
     fn clearance(&self, q: DVec3) -> f64;
 
-    /// How much room there seems to be about a point, as occlusion wants it: the clearance,
-    /// or a guess that is nearer to the truth than that and may lie beyond it.
+    /// The free room about a point, for occlusion. It may be a guess that exceeds the
+    /// clearance.
     fn room(&self, q: DVec3) -> f64 {
         self.clearance(q)
     }
@@ -71,26 +70,26 @@ pub trait Solid: Sync {
     /// Normal and pigment of a hit.
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface;
 
-    /// The distance from the eye past which there is nothing.
+    /// The distance from the eye beyond which there is nothing.
     fn bounds_far(&self) -> f64;
 
-    /// Whether pigments are colours themselves, not numbers to look the palette up with.
+    /// Whether pigments are colours and need no palette.
     fn is_colored(&self) -> bool {
         false
     }
 }
 
-/// The GPU's side of a scene: modules to join and values to bind.
+/// What a GPU needs of a scene: modules to join and values to bind.
 pub trait Twin {
-    /// The scene's modules, its formula's included.
+    /// The WGSL modules.
     fn modules(&self) -> Vec<Module>;
-    /// Bytes of the uniforms by the names of the WGSL variables.
+    /// The bytes of each WGSL parameter variable.
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)>;
-    /// A line for people: what it is, with the numbers that it was resolved to.
+    /// A line about the scene, with the numbers that it was resolved to.
     fn describe(&self) -> String;
-    /// Rounds of inner loops that one step may take: what a step costs at most.
+    /// An upper bound of the inner loop rounds in one step.
     fn rounds(&self) -> u32;
-    /// Whether its hits carry an id and a place beside their distance.
+    /// Whether hits carry an id and a place as well as a distance.
     fn marks_hits(&self) -> bool {
         true
     }

@@ -1,11 +1,10 @@
 //! A scene given by a distance estimate.
 //!
-//! Cones advance by the exact step, rays by sphere tracing with relaxation (docs/method.md, 2).
-//! The bounds are part of the field: its value is the larger of the estimate and the
-//! distance to the bounds, for steps, hits and normals alike. So the surface that is
-//! seen is closed and within the hit threshold of the bounds, instead of being cut by
-//! them. A step keeps clear of a share of the hit threshold, the *shell*, so that a long one
-//! does not jump over the thin skin in which small steps would find a hit.
+//! Cones advance by the cone step, rays by sphere tracing with relaxation (docs/method.md, 2).
+//! Steps, hits and normals all use one field: the larger of the estimate and the distance to
+//! the bounds. So the bounds do not cut the visible surface open.
+//! A step keeps clear of a share of the hit threshold, the *shell*. Without it, a long step
+//! could jump over a thin part of the surface that short steps would hit.
 //! Twin: `wgsl/scene/distance.wgsl`.
 
 use bytemuck::{Pod, Zeroable, bytes_of};
@@ -23,19 +22,20 @@ use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::scene::{AnySolid, Assets, Scene, SceneSettings, Viewpoint};
 use crate::wgsl;
 
-/// A cone that gains less than this share of its ball leaves the rest to its four
-/// children. A large share also keeps cones from creeping along surfaces that they
-/// graze, where short steps would find hits and long ones pass through the thin skin:
-/// at 0.3 such cones start pixels behind, at 0.8 none did on the five bench presets.
+/// A cone that gains less than this share of its ball stops and leaves the rest to its four
+/// children. With a small share, cones creep along surfaces that they graze and pass places
+/// that rays would hit. At 0.3 some pixels start behind the surface, at 0.8 none does on the
+/// five bench presets.
 const DISTANCE_ENOUGH: f64 = 0.8;
 /// Weight of the newest slope in the automatic relaxation.
 const DISTANCE_SMOOTHING: f64 = 0.3;
 /// Where a clipped ray starts, in hit thresholds from the bounds. At 1 the first sample
-/// would lie on the threshold, and rounding would decide whether it is a hit; much under
-/// 1 a grazing ray would start far behind the place where it came under the threshold
-/// (at 0.9 on `bench-graze` 2.8 % of pixels did, at 0.99 0.2 %).
+/// lies on the threshold, and rounding decides whether it is a hit. At less, a grazing ray
+/// starts behind the place where it reaches the threshold: on `bench-graze` 2.8 % of the pixels
+/// do at 0.9, and 0.2 % at 0.99.
 const DISTANCE_WITHIN: f64 = 0.99;
-/// Gradients, as sums of four differences, below this are none, here as in the shader.
+/// A gradient, as a sum of four differences, that is shorter than this has no direction. The
+/// shader uses the same limit.
 const DISTANCE_FLAT: f64 = 1e-20;
 /// The longest automatic step, in radii of the last ball.
 const DISTANCE_MOST_RELAXED: f64 = 3.0;
@@ -56,9 +56,9 @@ pub struct DistanceUniform {
     pub half: Vec3,
     /// Nothing is farther from the eye.
     pub far: f32,
-    /// The estimate's largest slope.
+    /// The Lipschitz constant. Steps divide by it.
     pub lipschitz: f32,
-    /// Share of the threshold that steps keep clear of.
+    /// Share of the hit threshold that steps keep clear of.
     pub shell: f32,
     /// 0 automatic, 1 off, else a factor.
     pub relaxation: f32,
@@ -74,7 +74,7 @@ pub struct DistanceUniform {
     pub pad1: u32,
 }
 
-/// How rays may stretch their steps.
+/// How rays stretch their steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Relaxation {
     /// Steps are the radius of the empty ball.
@@ -87,6 +87,7 @@ pub enum Relaxation {
 }
 
 impl Relaxation {
+    /// The number in the WGSL struct.
     fn code(self) -> f64 {
         match self {
             Self::Off => 1.0,
@@ -96,27 +97,34 @@ impl Relaxation {
     }
 }
 
-/// A formula as it is marched: everything resolved to numbers.
+/// How a scene takes its steps. A ray's *hit threshold* at a distance is `detail` footprints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stepping {
+    /// A ray hits where the estimate is at most so many footprints.
+    pub detail: f64,
+    /// Share of the hit threshold that steps keep clear of, from 0 to less than 1.
+    pub shell: f64,
+    /// How rays stretch their steps.
+    pub relaxation: Relaxation,
+    /// Factor on ray steps; less than 1 for the truth.
+    pub stride: f64,
+    /// The rule of the cones.
+    pub rule: ConeRule,
+    /// Whether rays start where they enter the bounds.
+    pub clip: bool,
+}
+
+/// A formula seen from an eye, with all settings resolved to numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distance {
     /// The formula.
     pub formula: Formula,
-    /// Iteration limit.
+    /// Its iteration limit.
     pub iterations: u32,
     /// Camera position.
     pub eye: DVec3,
-    /// Hit where `estimate <= detail * footprint`.
-    pub detail: f64,
-    /// Steps keep clear of `shell * detail * footprint`, 0 <= shell < 1.
-    pub shell: f64,
-    /// How rays stretch their steps.
-    pub relaxation: Relaxation,
-    /// Factor on ray steps: 1, or less for the truth.
-    pub stride: f64,
-    /// Which rule carries cones.
-    pub rule: ConeRule,
-    /// Whether rays start where they enter the bounds.
-    pub clip: bool,
+    /// How steps are taken.
+    pub stepping: Stepping,
     bounds: Bounds,
     lipschitz: f64,
     far: f64,
@@ -127,13 +135,13 @@ pub struct Distance {
 pub struct DistanceSettings {
     /// The formula and its parameters.
     pub formula: Formula,
-    /// Iteration limit; `None` follows the finest footprint.
+    /// Iteration limit; `None` for as many as the finest footprint needs.
     pub iterations: Option<u32>,
 }
 
-/// Most iterations that a formula may run. `auto` stops following the footprint there.
+/// The largest iteration limit.
 pub const MOST_ITERATIONS: u32 = 1000;
-/// Most steps of a shadow ray: each has the iterations of a formula in it, and Mesa's software
+/// The largest step limit of a shadow ray. Each step iterates the formula, and Mesa's software
 /// Vulkan ends loops after 65 535 rounds.
 const DISTANCE_MOST_SHADOW_STEPS: u32 = 512;
 
@@ -143,24 +151,23 @@ impl DistanceSettings {
         Formula::all().into_iter().map(Self::from).collect()
     }
 
-    /// The iteration limit: the given one, or the one that the finest footprint needs.
+    /// The iteration limit: the given one, or as many as the finest footprint needs.
     fn limit(&self, from: &Viewpoint) -> u32 {
-        // A quarter of the hit threshold: the skin of an unconverged estimate must not
-        // move the surface by what a comparison could see.
+        // A quarter of the hit threshold: too little to see in a comparison.
         let eps = 0.25 * from.stepping.detail * self.finest_footprint(from);
         let auto = || self.formula.iterations(eps).min(MOST_ITERATIONS);
         self.iterations.unwrap_or_else(auto)
     }
 
-    /// The smallest footprint that any hit can have: that of the nearest point that
-    /// could be hit, seen through the corner of the image.
+    /// The smallest footprint that any hit can have: in a corner of the image, at the
+    /// nearest point that a ray could hit.
     fn finest_footprint(&self, from: &Viewpoint) -> f64 {
         let bounds = self.formula.bounds();
         let (raw, _) = self.formula.estimate(from.eye, MOST_ITERATIONS);
         let clear = bounds
             .distance(from.eye)
             .max(raw / self.formula.lipschitz());
-        // A camera on the surface would ask for infinitely fine work.
+        // On the surface the footprint would be zero.
         let least = 1e-7 * bounds.farthest(from.eye);
         from.grain * clear.max(least)
     }
@@ -194,7 +201,7 @@ impl SceneSettings for DistanceSettings {
         let mut keys = self.formula.keys();
         keys.extend(keys![
             "iterations" = AutoCount(&mut self.iterations, 1, MOST_ITERATIONS),
-                "iteration limit; auto follows the finest footprint, up to 1000";
+                "iteration limit; auto is as many as the finest footprint needs, up to 1000";
         ]);
         keys
     }
@@ -217,35 +224,18 @@ impl SceneSettings for DistanceSettings {
         DISTANCE_MOST_SHADOW_STEPS
     }
 
-    /// The estimate's noise in f32 is about 2e-8 of the size of the coordinates
-    /// (docs/method.md, 6), and those of an orbit are of the size of the bounds
-    /// wherever it starts; a footprint under a hundred times that is damaged.
+    /// The estimate's noise in f32 is about 2e-8 of the coordinates (docs/method.md, 6), and
+    /// the coordinates of any orbit are as large as the bounds. A footprint below a hundred
+    /// times this noise is damaged.
     fn precision_warning(&self, from: &Viewpoint) -> Option<String> {
         let finest = self.finest_footprint(from);
         let floor = 2e-6 * self.formula.bounds().half.max_element();
         (finest < 0.99 * floor).then(|| {
             format!(
-                "the finest footprint, {finest:.1e}, is under the f32 floor of about {floor:.0e}: details that near are noise. Move the camera away, or render with --device cpu"
+                "the finest footprint, {finest:.1e}, is below the f32 limit of about {floor:.0e}, so the nearest details are noise. Move the camera away, or render with --device cpu"
             )
         })
     }
-}
-
-/// Numbers that a [`Distance`] is made from, beside its formula.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stepping {
-    /// See [`Distance::detail`].
-    pub detail: f64,
-    /// See [`Distance::shell`].
-    pub shell: f64,
-    /// See [`Distance::relaxation`].
-    pub relaxation: Relaxation,
-    /// See [`Distance::stride`].
-    pub stride: f64,
-    /// See [`Distance::rule`].
-    pub rule: ConeRule,
-    /// See [`Distance::clip`].
-    pub clip: bool,
 }
 
 impl Distance {
@@ -255,17 +245,17 @@ impl Distance {
         Self {
             iterations,
             eye,
-            detail: stepping.detail,
-            shell: stepping.shell,
-            relaxation: stepping.relaxation,
-            stride: stepping.stride,
-            rule: stepping.rule,
-            clip: stepping.clip,
+            stepping,
             bounds,
             lipschitz: formula.lipschitz(),
             far: bounds.farthest(eye),
             formula,
         }
+    }
+
+    /// The hit threshold of a beam at a distance.
+    fn threshold(&self, beam: &Beam, t: f64) -> f64 {
+        self.stepping.detail * footprint(beam, t)
     }
 
     fn estimate_at(&self, q: DVec3, work: &mut Work) -> f64 {
@@ -275,9 +265,8 @@ impl Distance {
         d
     }
 
-    /// Value of the field, and a ball's radius in which it exceeds `clear`. Inside the
-    /// bounds the value is the estimate's alone, negative ones too: the gradient needs
-    /// them.
+    /// The value of the field, and the radius of a ball in which it exceeds `clear`. Inside the
+    /// bounds the value may be negative: the gradient needs it.
     fn field(&self, q: DVec3, clear: f64, work: &mut Work) -> (f64, f64) {
         let outside = self.bounds.distance(self.eye + q);
         let inside = self.estimate_at(q, work);
@@ -290,18 +279,18 @@ impl Distance {
         (value, ball)
     }
 
-    /// The part of a ray where the bounds are within nearly the hit threshold, as
-    /// (near, far); near > far if it misses. The threshold grows along the ray, so the
-    /// faces lean outwards by its slope.
+    /// The part of a ray, as (near, far), that is nearer to the bounds than
+    /// [`DISTANCE_WITHIN`] hit thresholds; near > far for none. The threshold grows along the
+    /// ray, so the faces of the box lean outwards.
     pub fn bounds_interval(&self, ray: &Beam) -> (f64, f64) {
         let p = self.eye - self.bounds.centre + ray.origin;
-        let within = DISTANCE_WITHIN * self.detail;
+        let within = DISTANCE_WITHIN * self.stepping.detail;
         let room = self.bounds.half + DVec3::splat(within * ray.grain0);
         let lean = within * ray.grain;
         let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
         for i in 0..3 {
             let a = ray.axis[i];
-            // A ray as flat as the lean may stay between two faces for ever.
+            // A ray no steeper than the lean may never cross a face.
             if a.abs() <= lean + 1e-9 {
                 continue;
             }
@@ -310,7 +299,7 @@ impl Distance {
             near = near.max(low.min(high));
             far = far.min(low.max(high));
         }
-        let margin = self.detail * footprint(ray, self.far);
+        let margin = self.threshold(ray, self.far);
         let b = p.dot(ray.axis);
         let off = p - b * ray.axis;
         let q = (self.bounds.radius + margin).powi(2) - off.length_squared();
@@ -329,7 +318,7 @@ impl Twin for Distance {
     fn modules(&self) -> Vec<Module> {
         let mut all = vec![
             wgsl!("base/real.wgsl"),
-            self.rule.module(),
+            self.stepping.rule.module(),
             wgsl!(
                 "scene/distance.wgsl",
                 "DISTANCE_ENOUGH" = DISTANCE_ENOUGH,
@@ -347,20 +336,19 @@ impl Twin for Distance {
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {
         let scene = DistanceUniform {
             eye: self.eye.as_vec3(),
-            detail: self.detail as f32,
+            detail: self.stepping.detail as f32,
             centre: self.bounds.centre.as_vec3(),
             radius: self.bounds.radius as f32,
             half: self.bounds.half.as_vec3(),
-            // Rounded up: the corner itself must not count as past everything.
+            // Rounded up: the farthest corner must not lie beyond it.
             far: (self.far * (1.0 + 1e-6)) as f32,
             lipschitz: self.lipschitz as f32,
-            shell: self.shell as f32,
-            relaxation: self.relaxation.code() as f32,
-            stride: self.stride as f32,
+            shell: self.stepping.shell as f32,
+            relaxation: self.stepping.relaxation.code() as f32,
+            stride: self.stepping.stride as f32,
             iterations: self.iterations,
-            clip: u32::from(self.clip),
-            pad0: 0,
-            pad1: 0,
+            clip: u32::from(self.stepping.clip),
+            ..Zeroable::zeroed()
         };
         let mut all = vec![("distance_parameters", bytes_of(&scene).to_vec())];
         all.extend(self.formula.uniforms(self.iterations));
@@ -380,10 +368,15 @@ impl Twin for Distance {
 /// The state of a ray between two steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
+    /// The last accepted point.
     t: f64,
+    /// Radius of the empty ball there.
     radius: f64,
+    /// Length of the next step.
     pace: f64,
+    /// The smoothed slope of the radius.
     slope: f64,
+    /// Where the ray ends.
     end: f64,
 }
 
@@ -392,27 +385,26 @@ impl Solid for Distance {
 
     fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance {
         let q = cone.at(front);
-        let eps = self.detail * footprint(cone, front);
-        let mut d = self.bounds.distance(self.eye + q) - cone.r0 - self.shell * eps;
-        // Outside the bounds their distance will do, while it carries the cone.
+        let shell = self.stepping.shell * self.threshold(cone, front);
+        let mut d = self.bounds.distance(self.eye + q) - cone.r0 - shell;
+        // Far from the bounds their distance is enough.
         if d <= 2.0 * cone.k * front {
-            let e = (self.estimate_at(q, work) - self.shell * eps) / self.lipschitz;
+            let e = (self.estimate_at(q, work) - shell) / self.lipschitz;
             d = d.max(e - cone.r0);
         }
-        let next = self.rule.cone_front(front, front, d, cone.k);
+        let next = self.stepping.rule.cone_front(front, front, d, cone.k);
         Advance {
             front: next,
-            // After a short gain the rest is better left to the four thinner children;
-            // where there is no ball, so is all of it.
+            // After a short gain, or without a ball, the four thinner children go on.
             going: next - front > DISTANCE_ENOUGH * d.max(0.0),
         }
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Work) -> Walk {
         let (near, far) = self.bounds_interval(ray);
-        let t = if self.clip { front.max(near) } else { front };
+        let clip = self.stepping.clip;
         Walk {
-            t,
+            t: if clip { front.max(near) } else { front },
             radius: 0.0,
             pace: 0.0,
             slope: -1.0,
@@ -427,10 +419,10 @@ impl Solid for Distance {
         }
         let t = (w.t + w.pace).min(w.end);
         let gone = t - w.t;
-        let eps = self.detail * footprint(ray, t);
-        let (value, ball) = self.field(ray.at(t), self.shell * eps, work);
-        let radius = ball * self.stride;
-        // Only a stretched step can leave a gap: what else exceeds the radius is rounding.
+        let eps = self.threshold(ray, t);
+        let (value, ball) = self.field(ray.at(t), self.stepping.shell * eps, work);
+        let radius = ball * self.stepping.stride;
+        // Only a stretched step can leave a gap. Any other difference is rounding.
         if w.pace > w.radius && gone > w.radius + radius.max(0.0) {
             walk.pace = w.radius;
             walk.slope = -1.0;
@@ -440,7 +432,7 @@ impl Solid for Distance {
         if value <= eps {
             return Step::Hit;
         }
-        let factor = match self.relaxation {
+        let factor = match self.stepping.relaxation {
             Relaxation::Off => 1.0,
             Relaxation::Factor(f) => f,
             Relaxation::Auto => {
@@ -473,6 +465,7 @@ impl Solid for Distance {
 
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface {
         let q = ray.at(hit.t);
+        // The corners of a tetrahedron half a pixel wide.
         let h = 0.5 * footprint(ray, hit.t) + self.far * 1e-7;
         let corners = [
             DVec3::new(1.0, -1.0, -1.0),
@@ -486,8 +479,7 @@ impl Solid for Distance {
             .map(|&c| c * self.field(q + h * c, 0.0, work).0)
             .sum();
         Surface {
-            // A flat estimate has no gradient: turn such a point to the viewer. Deep in the
-            // set its squares would come under the range of f64, too.
+            // A point without a gradient faces the viewer.
             normal: if g.length() > DISTANCE_FLAT {
                 g.normalize()
             } else {

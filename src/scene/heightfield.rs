@@ -1,11 +1,9 @@
-//! A scene of a relief: a block whose top is a height map (docs/method.md, 4).
+//! A heightfield: a block whose top is a height map (docs/method.md, 4).
 //!
-//! Rays are traced by one of the tracers of [`crate::heightfield::tracer`], in local
-//! units. Coarse cones and empty balls ask the maxima under them; what these prove holds
-//! for any surface under the cells' apexes. Occlusion by `clearance` therefore knows
-//! nothing finer than a cell. Twin: `wgsl/scene/heightfield.wgsl`.
-
-use std::sync::Arc;
+//! A tracer of [`crate::heightfield::tracer`] follows the rays, in local units: texels along
+//! the sides of the block, and heights from 0 to 1. Cones and empty balls are tested against
+//! the highest point of the map below them, so nothing finer than a cell limits them.
+//! Twin: `wgsl/scene/heightfield.wgsl`.
 
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec2, DVec3, Vec3};
@@ -15,30 +13,30 @@ use crate::base::key::{Fault, Key};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
-use crate::heightfield::assets::{Assets, Preparation, Ready};
-use crate::heightfield::height_surface::HeightSurface;
+use crate::heightfield::assets::{Assets, Ready};
+
 use crate::heightfield::heights::Patches;
 use crate::heightfield::paint::Colors;
-use crate::heightfield::placement::Placement;
+
 use crate::heightfield::region_max::{self, region_max};
 use crate::heightfield::settings::HeightfieldSettings;
 use crate::heightfield::tracer::grid::{FAR, FLAT};
-use crate::heightfield::tracer::settings::{Make, PrepareError};
-use crate::heightfield::tracer::{self, LocalRay, Trace, TraceHit, Tracer};
+use crate::heightfield::tracer::settings::PrepareError;
+use crate::heightfield::tracer::{self, LocalRay, Trace, TraceHit};
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use crate::scene::{AnySolid, MOST_SHADOW_STEPS, Scene, SceneSettings, Viewpoint};
+use crate::scene::{AnySolid, MOST_SHADOW_STEPS, SceneSettings, Viewpoint};
 use crate::wgsl;
-use std::path::{Path, PathBuf};
 
-/// Halvings of the longest sweep, and doublings of the least ball: enough to come from
-/// a map of 8192 texels down to a quarter of one.
+/// How often the longest sweep is halved, and the smallest ball doubled. This spans a map of
+/// 8192 texels down to a quarter of one.
 const HEIGHTFIELD_HALVINGS: u32 = 15;
-/// Share of the height above the surface in a guess of the room there is.
+/// Weight of the height above the surface in a guess of the free room; the rest is the proven
+/// clearance.
 const HEIGHTFIELD_GUESS: f64 = 0.5;
-/// Linear grey of the walls under a texture, which has nothing to say of them: earth.
+/// Linear grey of the walls of a textured block: earth.
 const HEIGHTFIELD_WALL: f64 = 0.06;
-/// Rounds of all loops in one step: of `advance` that many sweeps, each a walk over the
-/// levels of the pyramid in up to four runs.
+/// An upper bound of the loop rounds in one step: `advance` makes so many sweeps, and each
+/// visits up to 16 levels of the pyramid in up to four runs.
 const HEIGHTFIELD_ROUNDS: u32 = HEIGHTFIELD_HALVINGS * 4 * 16;
 
 /// The scene as WGSL reads it.
@@ -47,11 +45,11 @@ const HEIGHTFIELD_ROUNDS: u32 = HEIGHTFIELD_HALVINGS * 4 * 16;
 pub struct HeightfieldUniform {
     /// World directions to texels along x.
     pub row_x: Vec3,
-    /// Length of a texel.
+    /// World length of a texel.
     pub texel: f32,
     /// World directions to texels along y.
     pub row_y: Vec3,
-    /// Length of the whole height.
+    /// World length of the height 1.
     pub depth: f32,
     /// World directions to heights.
     pub row_z: Vec3,
@@ -61,7 +59,7 @@ pub struct HeightfieldUniform {
     pub eye: Vec3,
     /// Unused.
     pub pad0: f32,
-    /// More than what local coordinates are rounded by.
+    /// More than the rounding error of local coordinates.
     pub slack: Vec3,
     /// Unused.
     pub pad1: f32,
@@ -73,11 +71,11 @@ impl SceneSettings for HeightfieldSettings {
     }
 
     fn keys(&mut self) -> Vec<Key<'_>> {
-        Self::keys(self)
+        self.keys()
     }
 
     fn check(&self) -> Result<(), Fault> {
-        Self::check(self)
+        self.check()
     }
 
     fn solid(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
@@ -96,61 +94,17 @@ impl SceneSettings for HeightfieldSettings {
         MOST_SHADOW_STEPS
     }
 
-    /// The papers' tracers run out of their own steps; a fractal's pixels that run out are
-    /// next to what they would have met.
+    /// A tracer of the papers can run out of steps anywhere; a fractal's ray does so only next
+    /// to a hit.
     fn flags_unconverged(&self) -> bool {
         true
     }
-
-    fn exact(&self) -> Option<Scene> {
-        Some(Self::exact(self).into())
-    }
-
-    fn colorless(&self) -> Option<Scene> {
-        Some(Self::colorless(self).into())
-    }
-
-    fn set_folder(&mut self, folder: &Path) {
-        self.source.folder = folder.to_path_buf();
-    }
-
-    fn files(&self) -> Vec<(&'static str, PathBuf)> {
-        Self::files(self)
-    }
-
-    fn load(&self, assets: &Assets) -> Result<(), Fault> {
-        assets.load(self)
-    }
-
-    fn prepare(&self, assets: &Assets, make: Make<'_>) -> Result<(), PrepareError> {
-        assets.prepare(self, make)
-    }
-
-    fn preparations(&self, assets: &Assets) -> Vec<Preparation> {
-        assets.preparations(self)
-    }
-
-    fn notes(&self, assets: &Assets) -> Vec<String> {
-        assets.notes(self)
-    }
-
-    fn contents(&self, assets: &Assets) -> Vec<u8> {
-        assets.contents(self)
-    }
-
-    fn most_steps(&self, assets: &Assets) -> Option<u32> {
-        assets.most_steps(self)
-    }
 }
 
-/// A relief seen from an eye.
+/// A heightfield seen from an eye.
 #[derive(Clone, Debug)]
 pub struct Heightfield {
-    relief: Arc<HeightSurface>,
-    tracer: Arc<dyn Tracer>,
-    colors: Colors,
-    name: &'static str,
-    placed: Placement,
+    made: Ready,
     eye: DVec3,
     far: f64,
     rule: ConeRule,
@@ -158,21 +112,10 @@ pub struct Heightfield {
 
 impl Heightfield {
     /// A heightfield seen from an eye.
-    pub fn new(ready: Ready, eye: DVec3, rule: ConeRule) -> Self {
-        let Ready {
-            surface: relief,
-            tracer,
-            colors,
-            placement: placed,
-            name,
-        } = ready;
+    pub fn new(made: Ready, eye: DVec3, rule: ConeRule) -> Self {
         Self {
-            relief,
-            tracer,
-            colors,
-            name,
-            far: placed.farthest(eye),
-            placed,
+            far: made.placement.farthest(eye),
+            made,
             eye,
             rule,
         }
@@ -180,63 +123,67 @@ impl Heightfield {
 
     fn local(&self, ray: &Beam) -> LocalRay {
         LocalRay {
-            origin: self.placed.position(self.eye + ray.origin),
-            axis: self.placed.direction(ray.axis),
+            origin: self.made.placement.position(self.eye + ray.origin),
+            axis: self.made.placement.direction(ray.axis),
         }
     }
 
-    /// The pigment at a place of a cell, of a surface so high that faces up so much.
+    /// The pigment at a place in a cell, where the surface has a height and its normal an
+    /// upward part `up`.
     fn pigment(&self, cell: [i32; 2], uv: [f64; 2], height: f64, up: f64) -> DVec3 {
-        let hue = match &self.colors {
+        let hue = match &self.made.colors {
             Colors::Height => height,
-            Colors::Cones(paint) => paint.at(&self.relief, cell, uv),
-            Colors::Texture(texture) => return texture.at(&self.relief, cell, uv),
+            Colors::Cones(paint) => paint.at(&self.made.surface, cell, uv),
+            Colors::Texture(texture) => return texture.at(&self.made.surface, cell, uv),
         };
         // Steep ground is darker.
         DVec3::new(hue, up, 0.5)
     }
 
     fn units(&self) -> DVec3 {
-        DVec3::new(self.placed.texel, self.placed.texel, self.placed.depth)
+        DVec3::new(
+            self.made.placement.texel,
+            self.made.placement.texel,
+            self.made.placement.depth,
+        )
     }
 
-    /// Whether a ball of a world radius swept from one local position to another meets
-    /// no part of the block that is filled.
+    /// Whether a ball of a world radius that moves between two local positions meets nothing
+    /// solid.
     fn sweep_is_free(&self, one: DVec3, two: DVec3, radius: f64, work: &mut Work) -> bool {
         work.evaluations += 1;
         let room = radius / self.units();
         let (low, high) = (one.min(two) - room, one.max(two) + room);
-        let top = || region_max(&self.relief, low.truncate(), high.truncate());
+        let top = || region_max(&self.made.surface, low.truncate(), high.truncate());
         high.z < 0.0 || low.z > 1.0 || low.z > top()
     }
 
-    /// Room between a local position and the surface, in the world's length: its height
-    /// above the surface under it, or above the rim that is nearest and how far off that is.
+    /// The world distance from a local position to the surface straight below it. Beside the
+    /// block it is the distance to the edge of the top, or to the wall below that edge.
     fn surface_gap(&self, p: DVec3) -> f64 {
         let xy = p.truncate();
-        let inside = xy.clamp(DVec2::ZERO, self.placed.sides);
-        let last = (self.placed.sides - 1.0).max(DVec2::ZERO);
+        let inside = xy.clamp(DVec2::ZERO, self.made.placement.sides);
+        let last = (self.made.placement.sides - 1.0).max(DVec2::ZERO);
         let cell = inside.floor().min(last);
         let at = inside - cell;
-        let height = self
-            .relief
-            .height([cell.x as i32, cell.y as i32], at.x, at.y);
-        let above = ((p.z - height) * self.placed.depth).max(0.0);
-        let off = (xy - inside) * self.placed.texel;
+        let cell = [cell.x as i32, cell.y as i32];
+        let height = self.made.surface.height(cell, at.x, at.y);
+        let above = ((p.z - height) * self.made.placement.depth).max(0.0);
+        let off = (xy - inside) * self.made.placement.texel;
         off.extend(above).length()
     }
 
-    /// What f32 may be off by in local coordinates: some roundings of numbers of the size
-    /// of the eye's distance and of the block.
+    /// An upper bound of the rounding error of local coordinates in f32: a few roundings of
+    /// numbers as large as the block and the distance of the eye.
     fn slack(&self) -> DVec3 {
-        let eye = self.placed.position(self.eye).abs();
-        let sides = self.placed.sides.extend(1.0);
+        let eye = self.made.placement.position(self.eye).abs();
+        let sides = self.made.placement.sides.extend(1.0);
         5e-7 * (eye + sides + self.far / self.units())
     }
 }
 
-/// The normal that faces out of the side by which a ray came into a box: that of the line
-/// which it crossed last on its way to a place in the box.
+/// The local normal of the side through which a ray entered a box: that of the grid line
+/// that it crossed last before the place `uv`.
 fn box_side(axis: DVec3, uv: [f64; 2]) -> DVec3 {
     let since = |a: usize| {
         let way = if axis[a] > 0.0 { uv[a] } else { 1.0 - uv[a] };
@@ -268,36 +215,38 @@ impl Twin for Heightfield {
                 "HIT_CARRIES_MARK" = 1.0
             ),
         ];
-        all.push(self.colors.module());
-        all.extend(self.tracer.modules());
+        all.push(self.made.colors.module());
+        all.extend(self.made.tracer.modules());
         all
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {
-        let [row_x, row_y, row_z] = self.placed.rows().map(|r| r.as_vec3());
+        let [row_x, row_y, row_z] = self.made.placement.rows().map(|r| r.as_vec3());
         let scene = HeightfieldUniform {
             row_x,
-            texel: self.placed.texel as f32,
+            texel: self.made.placement.texel as f32,
             row_y,
-            depth: self.placed.depth as f32,
+            depth: self.made.placement.depth as f32,
             row_z,
-            // Rounded up: the corner itself must not count as past everything.
+            // Rounded up: the farthest corner must not lie beyond it.
             far: (self.far * (1.0 + 1e-6)) as f32,
-            eye: self.placed.position(self.eye).as_vec3(),
-            pad0: 0.0,
+            eye: self.made.placement.position(self.eye).as_vec3(),
             slack: self.slack().as_vec3(),
-            pad1: 0.0,
+            ..Zeroable::zeroed()
         };
         let mut all = vec![("heightfield_parameters", bytes_of(&scene).to_vec())];
-        all.extend(self.tracer.buffers());
-        all.extend(self.colors.buffer());
+        all.extend(self.made.tracer.buffers());
+        all.extend(self.made.colors.buffer());
         all
     }
 
     fn describe(&self) -> String {
-        let [w, h] = self.relief.heights().size();
-        format!("heightfield: {w} x {h} samples, traced by {}", self.name)
+        let [w, h] = self.made.surface.heights().size();
+        format!(
+            "heightfield: {w} x {h} samples, traced by {}",
+            self.made.name
+        )
     }
 
     fn rounds(&self) -> u32 {
@@ -311,8 +260,8 @@ impl Solid for Heightfield {
     fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance {
         let ray = self.local(cone);
         let here = ray.at(front);
-        let away = self.placed.distance(here) - cone.r0;
-        // Far outside, the distance to the block carries the cone farther.
+        let away = self.made.placement.distance(here) - cone.r0;
+        // Far outside the block, the distance to it is enough.
         let carried = self.rule.cone_front(front, front, away, cone.k);
         if away > 0.0 && carried - front > 0.5 * away {
             return Advance {
@@ -331,7 +280,7 @@ impl Solid for Heightfield {
                 };
             }
             length *= 0.5;
-            // A short gain is better left to the four thinner children.
+            // The four thinner children gain more.
             if length < 0.5 * thick {
                 break;
             }
@@ -343,12 +292,12 @@ impl Solid for Heightfield {
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Work) -> Trace {
-        // The tracer ends it with the block.
-        self.tracer.begin(&self.local(ray), front, t_max)
+        // The tracer ends the ray where the block ends.
+        self.made.tracer.begin(&self.local(ray), front, t_max)
     }
 
     fn walk_step(&self, ray: &Beam, walk: &mut Trace, work: &mut Work) -> Step {
-        self.tracer.step(&self.local(ray), walk, work)
+        self.made.tracer.step(&self.local(ray), walk, work)
     }
 
     fn walk_hit(&self, walk: &Trace) -> Hit {
@@ -366,13 +315,13 @@ impl Solid for Heightfield {
     }
 
     fn clearance(&self, q: DVec3) -> f64 {
-        let p = self.placed.position(self.eye + q);
-        let mut free = self.placed.distance(p);
-        let mut radius = 0.5 * self.placed.texel;
+        let p = self.made.placement.position(self.eye + q);
+        let mut free = self.made.placement.distance(p);
+        let mut radius = 0.5 * self.made.placement.texel;
         for _ in 0..HEIGHTFIELD_HALVINGS {
-            let room = DVec2::splat(radius / self.placed.texel);
-            let top = region_max(&self.relief, p.truncate() - room, p.truncate() + room);
-            let gap = (p.z - top) * self.placed.depth;
+            let room = DVec2::splat(radius / self.made.placement.texel);
+            let top = region_max(&self.made.surface, p.truncate() - room, p.truncate() + room);
+            let gap = (p.z - top) * self.made.placement.depth;
             free = free.max(radius.min(gap));
             if gap < radius {
                 break;
@@ -382,10 +331,10 @@ impl Solid for Heightfield {
         free.max(0.0)
     }
 
-    /// Proven balls are far too small over steep ground, heights above it know nothing of
-    /// what stands beside it: halfway between them is a good guess.
+    /// A mean of two values: the proven clearance is far too small over steep ground, and the
+    /// height above the surface ignores what stands beside the point.
     fn room(&self, q: DVec3) -> f64 {
-        let gap = self.surface_gap(self.placed.position(self.eye + q));
+        let gap = self.surface_gap(self.made.placement.position(self.eye + q));
         let proven = self.clearance(q);
         proven + HEIGHTFIELD_GUESS * (gap - proven)
     }
@@ -406,7 +355,7 @@ impl Solid for Heightfield {
         };
         if let Some(side) = wall {
             return Surface {
-                normal: self.placed.side(side),
+                normal: self.made.placement.side(side),
                 pigment: if self.is_colored() {
                     DVec3::splat(HEIGHTFIELD_WALL)
                 } else {
@@ -414,15 +363,15 @@ impl Solid for Heightfield {
                 },
             };
         }
-        let (cell, width) = (hit.cell(), self.relief.cells()[0]);
+        let (cell, width) = (hit.cell(), self.made.surface.cells()[0]);
         let cell = [cell % width, cell / width].map(|n| n as i32);
-        let [a, b, c, d] = self.relief.corners(cell);
+        let [a, b, c, d] = self.made.surface.corners(cell);
         let ray = self.local(ray);
         let z = ray.height(hit.s);
-        // Under the top of its box by more than a rounding: on a side.
-        if self.relief.patches() == Patches::Boxes && z < a - self.slack().z {
+        // Below the top of its box by more than rounding: the hit is on a side.
+        if self.made.surface.patches() == Patches::Boxes && z < a - self.slack().z {
             return Surface {
-                normal: self.placed.side(box_side(ray.axis, hit.uv)),
+                normal: self.made.placement.side(box_side(ray.axis, hit.uv)),
                 pigment: self.pigment(cell, hit.uv, z, 0.0),
             };
         }
@@ -433,10 +382,10 @@ impl Solid for Heightfield {
         );
         let low = a + u * (b - a);
         let high = c + u * (d - c);
-        let steep = slope * (self.placed.depth / self.placed.texel);
+        let steep = slope * (self.made.placement.depth / self.made.placement.texel);
         let up = steep.extend(1.0).length().recip();
         Surface {
-            normal: self.placed.normal(slope),
+            normal: self.made.placement.normal(slope),
             pigment: self.pigment(cell, hit.uv, low + v * (high - low), up),
         }
     }
@@ -446,6 +395,6 @@ impl Solid for Heightfield {
     }
 
     fn is_colored(&self) -> bool {
-        matches!(self.colors, Colors::Texture(_))
+        matches!(self.made.colors, Colors::Texture(_))
     }
 }

@@ -1,8 +1,14 @@
-//! What there is to see: one list of the kinds of scenes.
+//! Scenes: what there is to see.
 //!
-//! A [`Scene`] is the settings of one kind, a plain value. [`SceneSettings::solid`] resolves it to an
-//! [`AnySolid`], which answers what passes ask ([`Solid`]) and what a GPU needs ([`Twin`]).
-//! Nothing else tells one kind from another.
+//! - [`distance`]: a formula
+//! - [`heightfield`]: a block with heights on top
+//! - [`slab`]: a slab between two planes, the smallest complete scene
+//! - `contract`: [`Solid`], what passes ask a scene; [`Twin`], what a GPU needs of it
+//! - `settings`: [`SceneSettings`], what the settings of a scene answer
+//!
+//! A [`Scene`] holds the settings of one kind as a plain value. [`SceneSettings::solid`]
+//! resolves them to an [`AnySolid`], which answers [`Solid`] and [`Twin`]. The list `scenes!`
+//! below names all kinds; passes and executors do not know them.
 
 mod contract;
 pub mod distance;
@@ -11,31 +17,35 @@ mod settings;
 pub mod slab;
 
 use std::ops::{Deref, DerefMut};
+use std::path::{Path, PathBuf};
 
+use crate::base::key::Fault;
 pub use crate::heightfield::assets::Assets;
+use crate::heightfield::assets::Preparation;
 use crate::heightfield::settings::HeightfieldSettings;
+use crate::heightfield::tracer::settings::{Make, PrepareError};
 pub use contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use distance::{Distance, DistanceSettings};
 use heightfield::Heightfield;
 pub use settings::{MOST_SHADOW_STEPS, SceneSettings, Viewpoint};
 use slab::{Slab, SlabSettings};
 
-/// Work that is the same for every kind of scene.
+/// Generic work on a scene of any kind.
 pub trait Task {
-    /// What it yields.
+    /// Its result.
     type Output;
-    /// Does it on one kind.
+    /// Does the work on one scene.
     fn run<S: Solid>(self, solid: &S) -> Self::Output;
 }
 
-/// Makes the enums of all kinds of scenes out of one list.
+/// Makes the enums of all kinds of scenes from one list: name, settings, solid.
 macro_rules! scenes {
     ($($(#[$doc:meta])* $kind:ident: $settings:ty => $solid:ty),* $(,)?) => {
-        /// What there is to see, as a preset says it.
+        /// The settings of a scene.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Scene { $($(#[$doc])* $kind($settings)),* }
 
-        /// A scene resolved to numbers, seen from one eye.
+        /// A scene seen from one eye, with all settings resolved to numbers.
         #[derive(Clone, Debug)]
         pub enum AnySolid { $($(#[$doc])* $kind($solid)),* }
 
@@ -53,7 +63,7 @@ macro_rules! scenes {
         }
 
         impl AnySolid {
-            /// Does a task on the scene, whatever its kind.
+            /// Does a task on the scene.
             pub fn run<T: Task>(&self, task: T) -> T::Output {
                 match self { $(Self::$kind(s) => task.run(s)),* }
             }
@@ -91,10 +101,80 @@ impl Scene {
         ];
         formulas.chain(others).collect()
     }
+
+    /// The settings of a heightfield, the only kind that names files and needs assets.
+    fn heightfield(&self) -> Option<&HeightfieldSettings> {
+        match self {
+            Self::Heightfield(settings) => Some(settings),
+            _ => None,
+        }
+    }
+
+    /// The same scene with an exact tracer, for the truth; `None` if it has no other.
+    pub fn exact(&self) -> Option<Self> {
+        Some(self.heightfield()?.exact().into())
+    }
+
+    /// The same scene without what only colours need; `None` if it has nothing of this kind.
+    pub fn colorless(&self) -> Option<Self> {
+        Some(self.heightfield()?.colorless().into())
+    }
+
+    /// Sets the folder that names of files are relative to.
+    pub fn set_folder(&mut self, folder: &Path) {
+        if let Self::Heightfield(settings) = self {
+            settings.source.folder = folder.to_path_buf();
+        }
+    }
+
+    /// The named files, each with the key that names it.
+    pub fn files(&self) -> Vec<(&'static str, PathBuf)> {
+        self.heightfield().map(|h| h.files()).unwrap_or_default()
+    }
+
+    /// Reads the named files and checks that they fit.
+    ///
+    /// # Errors
+    /// The key of a file that cannot be read or does not fit.
+    pub fn load(&self, assets: &Assets) -> Result<(), Fault> {
+        self.heightfield().map_or(Ok(()), |h| assets.load(h))
+    }
+
+    /// Makes the cone maps by `make`.
+    ///
+    /// # Errors
+    /// A file does not fit, or `make` fails.
+    pub fn prepare(&self, assets: &Assets, make: Make<'_>) -> Result<(), PrepareError> {
+        let made = |h| assets.prepare(h, make);
+        self.heightfield().map_or(Ok(()), made)
+    }
+
+    /// The cone maps that [`Scene::prepare`] makes.
+    pub fn preparations(&self, assets: &Assets) -> Vec<Preparation> {
+        let all = self.heightfield().map(|h| assets.preparations(h));
+        all.unwrap_or_default()
+    }
+
+    /// Notes about the named files: what was ignored in them, and what could not be checked.
+    pub fn notes(&self, assets: &Assets) -> Vec<String> {
+        let all = self.heightfield().map(|h| assets.notes(h));
+        all.unwrap_or_default()
+    }
+
+    /// The numbers in the named files. They decide a picture as the settings do.
+    pub fn contents(&self, assets: &Assets) -> Vec<u8> {
+        let all = self.heightfield().map(|h| assets.contents(h));
+        all.unwrap_or_default()
+    }
+
+    /// The largest number of steps that a ray can take through the scene, where it is known.
+    pub fn most_steps(&self, assets: &Assets) -> Option<u32> {
+        assets.most_steps(self.heightfield()?)
+    }
 }
 
 impl AnySolid {
-    /// Whether pigments are colours themselves.
+    /// Whether pigments are colours.
     pub fn is_colored(&self) -> bool {
         struct Asked;
         impl Task for Asked {

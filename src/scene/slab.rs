@@ -1,6 +1,7 @@
-//! A round slab between two parallel planes, solved in closed form: the smallest
-//! complete scene, and the proof that passes do not know what they march.
-//! Twin: `wgsl/scene/slab.wgsl`.
+//! A round slab between two parallel planes, solved in closed form.
+//!
+//! It is the smallest complete scene, without distance estimate, formula or map. It shows that
+//! passes work with any scene. Twin: `wgsl/scene/slab.wgsl`.
 
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec2, DVec3, Vec3};
@@ -11,10 +12,9 @@ use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
 use crate::heightfield::tracer::settings::PrepareError;
-use crate::keys;
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::scene::{AnySolid, Assets, MOST_SHADOW_STEPS, SceneSettings, Viewpoint};
-use crate::wgsl;
+use crate::{settings, wgsl};
 
 /// The slab as WGSL reads it.
 #[repr(C)]
@@ -38,24 +38,12 @@ pub struct SlabUniform {
     pub pad: f32,
 }
 
-/// The settings of a slab, centred on the origin.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SlabSettings {
-    /// Direction of the planes' normal.
-    pub normal: DVec3,
-    /// Half the distance between the planes.
-    pub half: f64,
-    /// Radius of the disc that it ends at.
-    pub radius: f64,
-}
-
-impl Default for SlabSettings {
-    fn default() -> Self {
-        Self {
-            normal: DVec3::Z,
-            half: 0.5,
-            radius: 6.0,
-        }
+settings! {
+    /// The settings of a slab about the origin.
+    pub struct SlabSettings {
+        normal: DVec3 = DVec3::Z, Triple(-1e6, 1e6), "direction of the planes' normal";
+        half: f64 = 0.5, Number(1e-6, 1e6), "half the thickness";
+        radius: f64 = 6.0, Number(1e-6, 1e6), "radius of the disc";
     }
 }
 
@@ -65,11 +53,7 @@ impl SceneSettings for SlabSettings {
     }
 
     fn keys(&mut self) -> Vec<Key<'_>> {
-        keys![
-            "normal" = Triple(&mut self.normal, -1e6, 1e6), "direction of the planes' normal";
-            "half" = Number(&mut self.half, 1e-6, 1e6), "half the thickness";
-            "radius" = Number(&mut self.radius, 1e-6, 1e6), "radius of the disc";
-        ]
+        self.keys()
     }
 
     /// Checks that the normal is a direction.
@@ -84,11 +68,8 @@ impl SceneSettings for SlabSettings {
     }
 
     fn solid(&self, from: &Viewpoint, _: &Assets) -> Result<AnySolid, PrepareError> {
-        Ok(AnySolid::Slab(Slab::new(
-            self,
-            from.eye,
-            from.stepping.rule,
-        )))
+        let slab = Slab::new(self, from.eye, from.stepping.rule);
+        Ok(AnySolid::Slab(slab))
     }
 
     fn most_shadow_steps(&self) -> u32 {
@@ -110,18 +91,19 @@ pub struct Slab {
 }
 
 impl Slab {
-    /// A slab that passes [`SceneSettings::check`], seen from an eye.
-    pub fn new(shape: &SlabSettings, eye: DVec3, rule: ConeRule) -> Self {
-        let normal = shape.normal.normalize();
+    /// A slab seen from an eye. The settings must pass [`SceneSettings::check`].
+    pub fn new(settings: &SlabSettings, eye: DVec3, rule: ConeRule) -> Self {
+        let (half, radius) = (settings.half, settings.radius);
+        let normal = settings.normal.normalize();
         let side = normal.any_orthonormal_vector();
         Self {
             eye,
-            half: shape.half,
-            radius: shape.radius,
+            half,
+            radius,
             normal,
             side,
             other: normal.cross(side),
-            far: eye.length() + shape.half.hypot(shape.radius),
+            far: eye.length() + half.hypot(radius),
             rule,
         }
     }
@@ -129,14 +111,12 @@ impl Slab {
     fn slab_distance(&self, q: DVec3) -> f64 {
         let p = self.eye + q;
         let z = p.dot(self.normal);
-        let o = DVec2::new(
-            (p - z * self.normal).length() - self.radius,
-            z.abs() - self.half,
-        );
+        let off = (p - z * self.normal).length();
+        let o = DVec2::new(off - self.radius, z.abs() - self.half);
         o.max(DVec2::ZERO).length() + o.max_element().min(0.0)
     }
 
-    /// The same coordinates as the WGSL: along the two sides.
+    /// Coordinates along the two unit directions in the plane, as in WGSL.
     fn along(&self, v: DVec3) -> DVec2 {
         DVec2::new(v.dot(self.side), v.dot(self.other))
     }
@@ -160,7 +140,7 @@ impl Twin for Slab {
             side: self.side.as_vec3(),
             far: (self.far * (1.0 + 1e-6)) as f32,
             other: self.other.as_vec3(),
-            pad: 0.0,
+            ..Zeroable::zeroed()
         };
         vec![("slab_parameters", bytes_of(&slab).to_vec())]
     }
@@ -174,7 +154,7 @@ impl Twin for Slab {
     }
 }
 
-/// A ray whose meeting with the slab is already solved.
+/// A ray whose hit is already known.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
     t: f64,
@@ -200,22 +180,15 @@ impl Solid for Slab {
         let p = self.eye + ray.origin;
         let (z, dz) = (p.dot(self.normal), ray.axis.dot(self.normal));
         let (s, ds) = (self.along(p), self.along(ray.axis));
-        let found = |t: f64, id| {
-            let at = s + t * ds;
-            Hit {
-                t,
-                id,
-                uv: at.to_array(),
-            }
-        };
+        // The distance and the face of the hit.
         let mut hit = None;
         if self.slab_distance(ray.at(front)) <= 0.0 {
-            hit = Some(found(front, 0));
+            hit = Some((front, 0));
         }
         if hit.is_none() && z.abs() > self.half && dz.abs() > 1e-12 {
             let t = (self.half.copysign(z) - z) / dz;
             if t >= front && (s + t * ds).length() <= self.radius {
-                hit = Some(found(t, u32::from(z > 0.0)));
+                hit = Some((t, u32::from(z > 0.0)));
             }
         }
         let a = ds.length_squared();
@@ -224,12 +197,13 @@ impl Solid for Slab {
             let q = self.radius.powi(2) - (s + middle * ds).length_squared();
             let t = middle - (q.max(0.0) / a).sqrt();
             if q > 0.0 && t >= front && (z + t * dz).abs() <= self.half {
-                hit = Some(found(t, 2));
+                hit = Some((t, 2));
             }
         }
+        let uv = |t: f64| (s + t * ds).to_array();
         Walk {
             t: front,
-            hit,
+            hit: hit.map(|(t, id)| Hit { t, id, uv: uv(t) }),
             end: self.far.min(t_max),
         }
     }

@@ -3,20 +3,21 @@
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
-use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A folder of its own for each test, removed at the end.
-pub struct Folder(pub PathBuf);
+use tempfile::TempDir;
+
+/// A folder of its own for each test, removed at the end. The crate `assert_cmd` would add
+/// nothing: what every failure must show is checked in [`Folder::fails`].
+pub struct Folder(
+    pub PathBuf,
+    #[allow(dead_code, reason = "removes it")] TempDir,
+);
 
 impl Folder {
     /// An empty one.
     pub fn new() -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let n = COUNT.fetch_add(1, Ordering::SeqCst);
-        let name = format!("conemarch-cli-{}-{n}", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        fs::create_dir_all(&path).expect("a folder for the test");
-        Self(path)
+        let folder = TempDir::with_prefix("conemarch-cli-").expect("a folder for the test");
+        Self(folder.path().to_path_buf(), folder)
     }
 
     pub fn command(&self, args: &[&str]) -> Command {
@@ -62,14 +63,8 @@ impl Folder {
 
     pub fn files(&self) -> Vec<String> {
         let files = fs::read_dir(&self.0).expect("the folder");
-        let mut names: Vec<String> = files
-            .map(|f| {
-                f.expect("a file")
-                    .file_name()
-                    .to_string_lossy()
-                    .into_owned()
-            })
-            .collect();
+        let names = files.map(|f| f.expect("a file").file_name());
+        let mut names: Vec<String> = names.map(|n| n.to_string_lossy().into()).collect();
         names.sort();
         names
     }
@@ -83,12 +78,6 @@ impl Folder {
     }
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 pub fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
@@ -97,9 +86,9 @@ pub fn text(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("text")
 }
 
-/// Sends an interrupt to a process, by a shell: a bare machine has no program for it.
-pub fn interrupt(process: u32) {
-    let command = format!("kill -INT {process}");
+/// Sends a signal to a process, by a shell: a bare machine has no program for it.
+pub fn signal(process: u32, name: &str) {
+    let command = format!("kill -{name} {process}");
     let sent = Command::new("sh").args(["-c", &command]).status();
     assert!(sent.expect("a shell").success());
 }

@@ -92,6 +92,12 @@ pub fn solid(plan: &Plan) -> AnySolid {
     solid.unwrap_or_else(|e| panic!("{e}, {plan:?}"))
 }
 
+/// The same without what takes long to make; its programs are the same.
+pub fn outline(plan: &Plan, assets: &Assets) -> AnySolid {
+    let solid = plan.scene.outline(&plan.viewpoint(), assets);
+    solid.unwrap_or_else(|e| panic!("{e}, {plan:?}"))
+}
+
 /// The same for a plan of a formula.
 pub fn distance_solid(plan: &Plan) -> Distance {
     match solid(plan) {

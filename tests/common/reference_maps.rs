@@ -38,7 +38,7 @@ impl Grid {
     }
 
     /// The index of a place, if it is on the grid.
-    fn index(&self, at: [i64; 2]) -> Option<usize> {
+    pub fn index(&self, at: [i64; 2]) -> Option<usize> {
         let on = |a: usize| self.wrap[a] || (0..self.size[a]).contains(&at[a]);
         let [x, y] = [0, 1].map(|a| at[a].rem_euclid(self.size[a]));
         (on(0) && on(1)).then_some((y * self.size[0] + x) as usize)

@@ -2,12 +2,12 @@
 //! are seen.
 
 use conemarch::base::work::State;
-use conemarch::heightfield::height_surface::HeightSurface;
-use conemarch::heightfield::tracer::{Accuracy, LocalRay, TracerKind};
+use conemarch::heightfield::tracer::{Accuracy, TracerKind};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use glam::DVec3;
 
+use crate::cases::first_box;
 use crate::scenes::{SCENES, local, ready};
 use crate::{both, plan};
 
@@ -36,28 +36,6 @@ fn normal(frame: &Frame, pixel: usize) -> DVec3 {
     DVec3::from_array(frame.normal[pixel].map(f64::from))
 }
 
-/// The first of all boxes that a ray meets, and the normal of the side, in
-/// local directions; each box is met by its three pairs of planes.
-fn met(surface: &HeightSurface, ray: &LocalRay) -> Option<(f64, DVec3)> {
-    let [w, h] = surface.domain();
-    let mut first: Option<(f64, DVec3)> = None;
-    for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
-        let low = DVec3::new(f64::from(x), f64::from(y), 0.0);
-        let high = low + DVec3::new(1.0, 1.0, surface.apex([x, y]));
-        let [a, b] = [
-            (low - ray.origin) / ray.axis,
-            (high - ray.origin) / ray.axis,
-        ];
-        let (near, far) = (a.min(b), a.max(b).min_element());
-        let enter = near.max_element();
-        if enter > 0.0 && enter < far && first.is_none_or(|(s, _)| enter < s) {
-            let side = DVec3::AXES.into_iter().find(|n| near.dot(*n) == enter)?;
-            first = Some((enter, -side * ray.axis.dot(side).signum()));
-        }
-    }
-    first
-}
-
 #[test]
 fn the_sides_of_boxes_face_sideways() {
     let kinds = TracerKind::ALL.into_iter();
@@ -67,7 +45,7 @@ fn the_sides_of_boxes_face_sideways() {
             for frame in rendered(&plan) {
                 check_normals(&name, &frame, |pixel| {
                     let ray = local(&ready.placement, view.eye, &view.view_ray(pixel));
-                    let (_, normal) = met(&ready.surface, &ray)?;
+                    let (_, normal) = first_box(&ready.surface, &ray)?;
                     Some(ready.placement.side(normal))
                 });
             }

@@ -257,6 +257,45 @@ fn variants(surface: &Arc<HeightSurface>, kind: TracerKind) -> Vec<Named> {
     all
 }
 
+/// Column and row of a hit's cell.
+pub fn cell_of(surface: &HeightSurface, hit: &TraceHit) -> [u32; 2] {
+    let width = surface.cells()[0];
+    [hit.cell() % width, hit.cell() / width]
+}
+
+/// The first of all boxes that a ray meets, each by its three pairs of planes: where, and the
+/// normal of the side.
+pub fn first_box(surface: &HeightSurface, ray: &LocalRay) -> Option<(f64, DVec3)> {
+    let [w, h] = surface.domain();
+    let mut first: Option<(f64, DVec3)> = None;
+    for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
+        let low = DVec3::new(f64::from(x), f64::from(y), 0.0);
+        let high = low + DVec3::new(1.0, 1.0, surface.apex([x, y]));
+        let (mut near, mut far, mut normal) = (0.0_f64, f64::INFINITY, DVec3::ZERO);
+        for a in 0..3 {
+            let (p, d) = (ray.origin[a], ray.axis[a]);
+            if d == 0.0 {
+                // A ray between two boxes runs in the one with the higher index.
+                if p < low[a] || p > high[a] || (a < 2 && p == high[a]) {
+                    near = f64::INFINITY;
+                }
+                continue;
+            }
+            let [s, t] = [(low[a] - p) / d, (high[a] - p) / d];
+            if s.min(t) > near {
+                near = s.min(t);
+                normal = -d.signum() * DVec3::AXES[a];
+            }
+            far = far.min(s.max(t));
+        }
+        // A point that is touched on an edge may be met or not.
+        if far - near > 1e-9 && first.is_none_or(|(s, _)| near < s) {
+            first = Some((near, normal));
+        }
+    }
+    first
+}
+
 /// How a ray ends: its state, its hit and its steps; `None` for a ray that does not end.
 pub fn run(tracer: &dyn Tracer, ray: &LocalRay, to: f64) -> Option<(Step, TraceHit, u32)> {
     let (trace, steps) = traced(tracer, ray, to)?;

@@ -8,6 +8,7 @@
 #[path = "../adapter/mod.rs"]
 mod adapter;
 mod cases;
+mod closed_forms;
 #[path = "../common"]
 #[allow(dead_code, reason = "other crates use the rest")]
 mod common {

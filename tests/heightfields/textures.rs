@@ -252,33 +252,18 @@ fn what_is_read_is_never_written_over() {
     let before = ["t.png", "p.toml"].map(|name| folder.bytes(name));
     let terrain = "render terrain --device cpu --size 24x16 --set scene.field=fbm:8x8";
     let colored = format!("{terrain} --set scene.texture=t.png");
-    for (command, words) in [
-        (
-            format!("{colored} -o t.png"),
-            &["the picture", "scene.texture", "-o"][..],
-        ),
-        (
-            format!("{colored} -o ./t.png"),
-            &["the picture", "scene.texture", "-o"],
-        ),
-        (
-            format!("{colored} -o b.png --stats t.png"),
-            &["--stats", "scene.texture"],
-        ),
-        (
-            "render p.toml --device cpu -o b.png --stats p.toml".into(),
-            &["--stats", "the preset"],
-        ),
-        (
-            "bench steps p.toml --device cpu --json t.png".into(),
-            &["--json", "scene.field"],
-        ),
-        (
-            "bench steps p.toml --device cpu --json p.toml".into(),
-            &["--json", "a preset"],
-        ),
+    for line in [
+        "COLORED -o t.png: the picture, scene.texture, -o",
+        "COLORED -o ./t.png: the picture, scene.texture, -o",
+        "COLORED -o b.png --stats t.png: --stats, scene.texture",
+        "render p.toml --device cpu -o b.png --stats p.toml: --stats, the preset",
+        "bench steps p.toml --device cpu --json t.png: --json, scene.field",
+        "bench steps p.toml --device cpu --json p.toml: --json, a preset",
     ] {
-        folder.fails(&words_of(&command), 2, words);
+        let (command, words) = line.split_once(": ").unwrap();
+        let command = command.replace("COLORED", &colored);
+        let words: Vec<&str> = words.split(", ").collect();
+        folder.fails(&words_of(&command), 2, &words);
     }
     // A built-in preset is no file, whatever an output is called.
     let own = "render mandelbox --device cpu --size 8x8 -o b.png --stats mandelbox";

@@ -10,7 +10,6 @@ use conemarch::heightfield::conemap::file::{
 };
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::pattern::Pattern;
-use conemarch::picture::write_map;
 use png::{BitDepth, ColorType};
 
 use crate::folder::Folder;
@@ -39,8 +38,8 @@ fn a_map_is_refused_for_what_it_was_not_made_for() {
     let heights = field([12, 10], [true, false]);
     let path = folder.0.join("a.png");
     let file = made(&heights, MapKind::Samples);
-    write_map(&path, &file, &MapFormat::new(Layout::Dummer)).expect("a file");
-    assert_eq!(folder.files(), ["a.png"]);
+    let bytes = encode(&file, &MapFormat::new(Layout::Dummer)).expect("a layout that fits");
+    std::fs::write(&path, bytes).expect("a file");
     let read = read_map(&path).expect("a map");
     let good = MapUse {
         who: "the tracer `csm-exact`",
@@ -65,42 +64,25 @@ fn a_map_is_refused_for_what_it_was_not_made_for() {
     touched[77] = touched[77].next_down();
     let touched = Heights::new([12, 10], [true, false], touched).expect("heights");
     let turned = field([10, 12], [true, false]);
-    let walks = &[MapKind::Walk, MapKind::WalkRelaxed];
-    let over = |heights| MapUse { heights, ..good };
-    for (file, wanted, words) in [
-        (
-            &read,
-            MapUse {
-                kinds: walks,
-                ..good
-            },
-            &["`samples`", "csm-exact", "needs `walk` or `walk-relaxed`"][..],
-        ),
-        (
-            &read,
-            over(&unwrapped),
-            &["wrap along x", "wrap along none", "--wrap none"],
-        ),
-        (&read, over(&touched), &["other heights", "--invert"]),
-        (&read, over(&turned), &["12 x 10", "10 x 12"]),
-        (
-            &walk,
-            MapUse {
-                kinds: &[],
-                ..boxes
-            },
-            &["bilinear patches", "boxes"],
-        ),
-    ] {
-        let why = file
-            .check_use(&path, &wanted)
-            .expect_err("a misfit")
-            .to_string();
+    let refuse = |file: &MapFile, wanted: &MapUse<'_>, words: &[&str]| {
+        let why = file.check_use(&path, wanted).expect_err("a misfit");
+        let why = why.to_string();
         assert!(why.contains("a.png") && !why.contains('\n'), "{why}");
         for word in words {
             assert!(why.contains(word), "`{word}` not in: {why}");
         }
-    }
+    };
+    let over = |heights| MapUse { heights, ..good };
+    let kinds = &[MapKind::Walk, MapKind::WalkRelaxed];
+    let words = ["`samples`", "csm-exact", "needs `walk` or `walk-relaxed`"];
+    refuse(&read, &MapUse { kinds, ..good }, &words);
+    let words = ["wrap along x", "wrap along none", "--wrap none"];
+    refuse(&read, &over(&unwrapped), &words);
+    refuse(&read, &over(&touched), &["other heights", "--invert"]);
+    refuse(&read, &over(&turned), &["12 x 10", "10 x 12"]);
+    let kinds = &[];
+    let words = ["bilinear patches", "boxes"];
+    refuse(&walk, &MapUse { kinds, ..boxes }, &words);
 }
 
 #[test]

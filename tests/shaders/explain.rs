@@ -4,7 +4,7 @@
 use conemarch::pass::LookFeature;
 use conemarch::plan::{Extras, Pass, Plan};
 
-use super::common::plans::{explain, preset, program, solid};
+use super::common::plans::{explain, mandelbox_of, preset, program, solid};
 use super::has;
 use super::programs::{programs_of, switch};
 
@@ -23,12 +23,16 @@ fn assert_joins(text: &str, on: bool, module: &str, stand_in: &str) {
 #[test]
 fn a_rotation_by_nothing_is_no_rotation() {
     let none = explained("mandelbox", &[]);
-    let turned = |degrees: &str| explained("mandelbox", &[&format!("scene.rotation={degrees}")]);
+    let turned = |degrees: [f64; 3]| {
+        let mut plan = preset("mandelbox", &[]);
+        mandelbox_of(&mut plan).rotation = degrees.into();
+        explain(&plan, Extras::default())
+    };
     // Three half turns about three axes bring everything back.
-    for turns in ["[360, 0, -360]", "[180, 180, 180]", "[-180, 540, 180]"] {
+    for turns in [[360.0, 0.0, -360.0], [180.0; 3], [-180.0, 540.0, 180.0]] {
         assert_eq!(none, turned(turns));
     }
-    let degree = turned("[0, 0, 1]");
+    let degree = turned([0.0, 0.0, 1.0]);
     assert_ne!(none, degree);
     for (text, on) in [(&none, false), (&degree, true)] {
         assert_joins(
@@ -101,7 +105,8 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
     let generate = program_lines(&text, "generate");
     assert!(generate.contains("wgsl/heightfield/conemap/generate/search.wgsl"));
     // What is explained is what is run, though no cones are made for it.
-    for program in programs_of(&preset("terrain", &[])) {
+    let plan = preset("terrain", &[]);
+    for program in programs_of(&plan, &solid(&plan)) {
         let listing = program.describe();
         let extras =
             listing.contains("base/counters.wgsl") || listing.contains("COLOR_KEEPS_NORMALS=1");
@@ -148,7 +153,7 @@ fn work_is_counted_only_where_it_is_asked_for() {
 
 #[test]
 fn what_a_slider_moves_compiles_nothing_new() {
-    let programs = |plan: &Plan| programs_of(plan);
+    let programs = |plan: &Plan| programs_of(plan, &solid(plan));
     let still = preset("mandelbox", &[]);
     let sliders = [
         "camera.eye=[3, -9, 1]",

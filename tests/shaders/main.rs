@@ -206,7 +206,8 @@ fn no_program_binds_more_buffers_than_are_asked_for() {
         "scene.tracer=quad",
         "scene.paint=exact",
     ];
-    let quads = programs::programs_of(&preset("terrain", &quads));
+    let quads = preset("terrain", &quads);
+    let quads = programs::programs_of(&quads, &solid(&quads));
     let most = of_plans.chain(quads.iter().map(bound)).max();
     assert_eq!(most, Some(STORAGE_BUFFERS as usize));
     // To make maps what every device has is enough.

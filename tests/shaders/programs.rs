@@ -11,12 +11,12 @@ use conemarch::pass::LookFeature;
 use conemarch::plan::march::MODES;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
-use conemarch::scene::Scene;
+use conemarch::scene::{AnySolid, Assets, Scene};
 use rayon::prelude::*;
 use toml::Value;
 use wgpu::naga::{self, valid::Capabilities};
 
-use super::common::plans::{distance, preset, program, solid};
+use super::common::plans::{distance, outline, preset, program};
 
 /// Switches a feature of the look, by the key that does and nothing else.
 pub fn switch(plan: &mut Plan, feature: LookFeature, on: bool) {
@@ -127,8 +127,7 @@ fn plans() -> Vec<Plan> {
 
 /// All different programs of a plan's passes, with work counted or not and normals kept or
 /// not.
-pub fn programs_of(plan: &Plan) -> Vec<Program> {
-    let solid = solid(plan);
+pub fn programs_of(plan: &Plan, solid: &AnySolid) -> Vec<Program> {
     let mut all: Vec<Program> = Vec::new();
     for pass in plan.passes(Extras::default()) {
         for [count, normals] in [[false; 2], [true, false], [false, true], [true; 2]] {
@@ -137,7 +136,7 @@ pub fn programs_of(plan: &Plan) -> Vec<Program> {
                 normals,
                 ..Extras::default()
             };
-            let program = program(plan, &solid, pass, extras);
+            let program = program(plan, solid, pass, extras);
             if !all.contains(&program) {
                 all.push(program);
             }
@@ -160,7 +159,9 @@ pub struct Made {
 /// When one is not valid in f32 with exactly its constants.
 pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     let mut found = BTreeMap::new();
-    let of_plans = plans().into_iter().flat_map(|plan| programs_of(&plan));
+    let assets = Assets::default();
+    let plans = plans().into_iter();
+    let of_plans = plans.flat_map(|plan| programs_of(&plan, &outline(&plan, &assets)));
     for program in every_program().into_iter().chain(of_plans) {
         let listing = format!("{}\n{}", program.entry, program.describe());
         found.entry(listing).or_insert(program);

@@ -1,16 +1,14 @@
-// The exact cone step (docs/method.md, 2): how far one empty ball carries a cone's front.
+// The exact cone step: how far one empty ball carries a cone's front (docs/method.md, 2).
 
 override CONE_TRUST: f32;
 override CONE_ROUND_DOWN: f32;
 
-/// All rays within the chord `k` of the axis are free up to `front`; the ball of
-/// radius `d` about the axis point at `t` is empty. The new front, never below the
-/// old one.
+/// The new front, never below the old one. All rays within the chord `k` of the axis are free
+/// up to `front`, and the ball of radius `d` about the axis point at `t` is empty.
 ///
-/// A ray at the cone's edge leaves the ball at `t cos + sqrt(d^2 - t^2 sin^2)` and
-/// enters it at the same with a minus; inner rays are covered for longer. The ball
-/// counts only if it leaves no gap behind: where it is entered beyond the front,
-/// nothing follows.
+/// A ray at the cone's edge enters the ball at `t cos - sqrt(d^2 - t^2 sin^2)` and leaves it at
+/// `t cos + sqrt(d^2 - t^2 sin^2)`; inner rays are in the ball for longer. The ball counts only
+/// if it leaves no gap: rays must enter it before the front.
 fn cone_front(front: f32, t: f32, d: f32, k: f32) -> f32 {
     let ball = d * CONE_TRUST;
     if !(ball > 0.0) {

@@ -1,8 +1,8 @@
 // The step of the 2012 slides, for comparison: `t += d` while `d > k t`.
 //
-// It is not conservative: between two balls it leaves lenses at the cone's edge
-// uncovered, and hands on a distance up to a cone's radius beyond the proven one.
-// The stand-in of `base/cone.wgsl` in the `slides-*` modes.
+// It is not conservative: it leaves gaps between two balls at the cone's edge, and its front
+// can be a cone's radius beyond the proven one. It replaces `base/cone.wgsl` in the modes
+// `slides-*`.
 
 fn cone_front(front: f32, t: f32, d: f32, k: f32) -> f32 {
     if d <= k * t {

@@ -1,7 +1,5 @@
-// Work counters: estimate evaluations and fold iterations of this invocation.
-//
-// Joined only when work is counted; `base/counters_off.wgsl` has the same three names
-// and does nothing, so that an uncounted render carries no counter at all.
+// Work counters: evaluations of the estimate and iterations of the formula in this invocation.
+// The stand-in `base/counters_off.wgsl` is joined where work is not counted.
 
 var<private> evaluations: u32 = 0u;
 var<private> iterations: u32 = 0u;

@@ -1,4 +1,4 @@
-// The empty stand-in of `base/counters.wgsl`.
+// The stand-in of `base/counters.wgsl` where work is not counted.
 
 fn count_evaluation() {}
 

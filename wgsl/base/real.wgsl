@@ -1,5 +1,5 @@
-// The number type that formulas and scenes compute in. Joining `base/real64.wgsl`
-// instead compiles the very same text in f64 where an adapter has it.
+// The number type of formulas and scenes. With `base/real64.wgsl` in its place the same text
+// computes in f64, if the adapter has it.
 
 alias real = f32;
 alias real3 = vec3<f32>;

@@ -1,29 +1,28 @@
 // The pinhole camera: the ray of a pixel and the cone of a cell (docs/method.md, 1).
 //
-// Every index is one of the full image's pixel grid, also when only a block of the
-// image is rendered: the same pixel gives the same bits in any block.
-// Origins are relative to the eye, which only the scene knows.
+// Indices are those of the full image, even if only a block of it is rendered, so a pixel has
+// the same bits in any block. Origins are relative to the eye; only scenes add the eye.
 
 struct ViewUniform {
     right: vec3<f32>,
-    /// Width of a pixel in the image plane at distance 1.
+    /// A pixel's width in the image plane at distance 1.
     pixel: f32,
     up: vec3<f32>,
     /// Added to every cone's chord: the rounding of two unit vectors.
     slack: f32,
     forward: vec3<f32>,
     pad: f32,
-    /// Pixels of the full image.
+    /// Width and height of the full image in pixels.
     size: vec2<u32>,
-    /// First pixel of the block that is being rendered.
+    /// First pixel of the block.
     block_origin: vec2<u32>,
-    /// Pixels of the block.
+    /// Width and height of the block in pixels.
     block_size: vec2<u32>,
     pad2: vec2<u32>,
 }
 
-/// A bundle of rays. At distance t its rays lie within `r0 + k t` of the axis; the
-/// pixel that a ray stands for has the half width `grain0 + grain t`.
+/// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint,
+/// half a pixel's width, is `grain0 + grain t`.
 struct Beam {
     origin: vec3<f32>,
     axis: vec3<f32>,
@@ -40,12 +39,13 @@ fn view_load() {
     view = view_parameters;
 }
 
-/// Half a pixel's width at distance t, seen along the beam.
+/// Half a pixel's width at distance t along the beam.
 fn footprint(beam: Beam, t: f32) -> f32 {
     return beam.grain0 + beam.grain * t;
 }
 
-/// Un-normalised direction through a point of the image, in pixels from its corner.
+/// The direction through a point of the image, given in pixels from the upper left corner. Its
+/// length is not 1.
 fn view_direction(x: f32, y: f32) -> vec3<f32> {
     let sx = (x - 0.5 * f32(view.size.x)) * view.pixel;
     let sy = (0.5 * f32(view.size.y) - y) * view.pixel;
@@ -59,12 +59,10 @@ fn view_ray(pixel: vec2<u32>) -> Beam {
     return Beam(vec3<f32>(0.0), u / n, 0.0, 0.0, 0.0, 0.5 * view.pixel / n);
 }
 
-/// The cone over the centres of a cell's pixels, the cell cut by the image.
+/// The cone over the pixel centres of a cell. The image's border cuts the cell.
 ///
-/// k is the largest chord between the axis and any of its rays:
-/// `2|h| / (2|u| - |h|)` with h the half diagonal, conservative and free of
-/// cancellation; at most 2. The grain is that of the nearest corner, the coarsest
-/// pixel in the cell.
+/// The chord k is at most `2|h| / (2|u| - |h|)`, where h is half the diagonal. This bound is
+/// free of cancellation. The grain is that of the coarsest pixel in the cell.
 fn view_cone(cell: vec2<u32>, divisor: u32) -> Beam {
     let low = cell * divisor;
     let high = min(low + vec2<u32>(divisor), view.size);
@@ -75,7 +73,7 @@ fn view_cone(cell: vec2<u32>, divisor: u32) -> Beam {
     if h < n {
         k = min(2.0, 2.0 * h / (2.0 * n - h) + view.slack);
     }
-    // |u| >= 1 for every ray, the image plane being at distance 1.
+    // |u| >= 1 for every ray, as the image plane is at distance 1.
     let nearest = max(1.0, n - h);
     return Beam(vec3<f32>(0.0), u / n, 0.0, k, 0.0, 0.5 * view.pixel / nearest);
 }

@@ -1,5 +1,4 @@
-// Balls and boxes with an exact distance field: the union of a lattice-free handful
-// of solids. It keeps the contract honest, and tests of cones exact.
+// Balls, boxes and a rod with an exact distance. Tests of cones on them need no tolerance.
 
 struct BallsUniform {
     /// Centre and radius of each ball.

@@ -3,12 +3,12 @@
 //     b = 2 clamp(z, -L, L) - z;   m = f2 / clamp(|b|^2, r2, f2)
 //     z' = s m R b + c;            w' = |s| m w + 1
 //
-// The estimate is the same at every exit and never exceeds the converged |z|/w:
+// The estimate grows with every iteration and never exceeds the limit of |z|/w:
 //
 //     DE = (|z| - K) / (w + 1/(|s| - 1)),   K = (2 sqrt(3) L |s| + |c|) / (|s| - 1)
 //
-// In Julia mode c is a constant, w starts at 1 and gains nothing, DE = (|z| - K)/w.
-// It does not colour: `trap` walks the orbit again, for the pixels that need it.
+// In Julia mode c is a constant, w gains no 1, and DE = (|z| - K)/w. `trap` follows the orbit
+// again, for the colour of a hit.
 
 struct MandelboxUniform {
     julia: vec3<f32>,
@@ -17,7 +17,7 @@ struct MandelboxUniform {
     /// Squares of the two radii.
     min2: f32,
     fixed2: f32,
-    /// |z|^2 past which the orbit has escaped: (20 K)^2 at the largest |c|.
+    /// The orbit has escaped where |z|^2 exceeds this: (20 K)^2 at the largest |c|.
     bail2: f32,
     /// 2 sqrt(3) L |s| / (|s| - 1), and 1 / (|s| - 1).
     reach: f32,
@@ -30,8 +30,8 @@ struct MandelboxUniform {
 override MANDELBOX_JULIA: bool;
 override MANDELBOX_CLASSIC: bool;
 
-/// w is held below this: past it the estimate is zero in f32 anyhow, and a
-/// product with the next fold's factor could overflow.
+/// w stays below this, as its product with the next factor could overflow. The estimate is
+/// zero in f32 before this limit.
 const MANDELBOX_MOST_W = 1e30;
 
 @group(0) @binding(1) var<storage, read> mandelbox_parameters: MandelboxUniform;
@@ -80,8 +80,8 @@ fn estimate(p: real3, most: u32) -> real {
     return (sqrt(z2) - bound) / (w + tail);
 }
 
-/// Orbit traps in 0..1, in this order: nearness of the orbit to the origin, to the
-/// coordinate planes, and to the fixed sphere.
+/// Three orbit traps from 0 to 1: how near the orbit comes to the origin, to the coordinate
+/// planes and to the fixed sphere.
 fn trap(p: real3, most: u32) -> vec3<f32> {
     let limit = real(mandelbox.fold_limit);
     let low = real(mandelbox.min2);
@@ -95,7 +95,7 @@ fn trap(p: real3, most: u32) -> vec3<f32> {
     var plane = real(1e10);
     var sphere = real(1e10);
     var n = 0u;
-    // The first folds shape the whole; later ones only add grain to the colour.
+    // Later iterations only add noise to the colour.
     let last = min(most, 10u);
     while n < last && dot(z, z) <= real(mandelbox.bail2) {
         let b = real(2.0) * clamp(z, real3(-limit), real3(limit)) - z;

@@ -1,4 +1,4 @@
-// The stand-in of `rotation.wgsl` where nothing is rotated.
+// The stand-in of `rotation.wgsl` without a rotation.
 
 fn rotate(v: real3) -> real3 {
     return v;

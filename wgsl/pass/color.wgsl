@@ -1,22 +1,20 @@
-// The colour pass: every hit is lit by a key light with its shadow, a sky above and
-// a faint bounce from below, both as far as the point sees out. Linear light; tone
-// and sRGB come when the picture is written.
+// The colour pass: key light with shadow, light from the sky and from the ground with
+// occlusion, and fog. Light is linear. Tone and sRGB follow when the picture is written.
 
 @group(2) @binding(0) var<storage, read> depth: array<f32>;
 @group(2) @binding(1) var<storage, read> state: array<u32>;
 @group(2) @binding(2) var<storage, read> marks: array<Mark>;
-/// Red, green, blue, and 0 where the shadow's ray reached its limit.
+/// Red, green, blue, and 0 where the shadow ray reached its step limit.
 @group(2) @binding(4) var<storage, read_write> radiance: array<vec4<f32>>;
-/// Only for layers that show them; else a stub.
+/// Written only for layers that show them.
 @group(2) @binding(5) var<storage, read_write> normals: array<vec4<f32>>;
 
 override COLOR_KEEPS_NORMALS: bool;
-/// Whether pigments are linear colours themselves.
+/// Whether pigments are linear colours.
 override COLOR_IS_PIGMENT: bool;
 
-/// Radiance towards the eye of a hit at q, relative to the eye, and 1, or 0 where the
-/// shadow's ray reached its limit; `grain` is half a pixel there, by which shadow and
-/// occlusion stand off the surface.
+/// Radiance that leaves a hit towards the eye, and 0 if the shadow ray reached its step limit,
+/// else 1. `q` is the hit relative to the eye, `grain` half a pixel's width there.
 fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec4<f32> {
     let n = surface.normal;
     var albedo = surface.pigment;
@@ -24,24 +22,24 @@ fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec4<f32> {
         albedo = pigment_color(surface.pigment);
     }
     let facing = dot(n, look.light);
-    // What faces away is dark without asking: it needs no shadow ray.
+    // A surface that faces away is dark: it needs no shadow ray.
     var light = Shadow(0.0, true);
     if facing > 0.0 {
         light = shadow(q, n, grain);
     }
     let lit = facing * light.open;
     let open = occlusion(q, n, grain);
-    // From 0 for what faces down to 1 for what faces up: between the two skies. The lower
-    // one is dimmed, as the ground keeps back more than half of what falls on it.
+    // From 0 for a surface that faces down to 1 for one that faces up. The lower sky is dimmed,
+    // as the ground absorbs more than half of the light.
     let up = 0.5 + 0.5 * dot(n, look.world_up);
     let ambient = mix(0.45 * look.sky_low, look.sky_high, up) * look.fill;
-    // Light thrown back by lit neighbours: warm, from below and behind.
+    // Light from lit neighbours: warm, from below.
     let bounce = look.light_color * (0.12 * look.fill * (1.0 - up));
     var c = albedo * (look.light_color * (look.key * lit) + (ambient + bounce) * open);
-    // Of no length where a ray goes straight into the light, which has no direction then.
+    // Zero where the ray goes straight to the light. There is no direction then.
     let between = look.light - ray.axis;
     let half_way = between / max(length(between), 1e-20);
-    // Blinn and Phong's highlight: dry, narrow, and dark in shadow like the key light.
+    // A narrow Blinn-Phong highlight.
     let shine = pow(max(0.0, dot(n, half_way)), 40.0);
     c += look.light_color * (look.gloss * lit * shine);
     return vec4<f32>(c, select(0.0, 1.0, light.decided));
@@ -55,7 +53,7 @@ fn color(
     scene_load();
     view_load();
     look_load();
-    // No list of pixels here: every pixel gets a colour, the sky too.
+    // Every pixel gets a colour, also the sky.
     let local = tile_cell(group.xy, lane);
     if any(local >= view.block_size) {
         return;
@@ -66,7 +64,7 @@ fn color(
     var c = sky(ray.axis);
     var decided = 1.0;
     var n = vec3<f32>(0.0);
-    // Pixels that no cone listed were never written: they are sky too.
+    // A pixel under a sky cell was never written: it is sky.
     if s == STATE_HIT || s == STATE_UNCONVERGED {
         var hit = Hit(depth[index], 0u, vec2<f32>(0.0));
         if HIT_CARRIES_MARK {
@@ -75,7 +73,7 @@ fn color(
             hit.uv = vec2<f32>(mark.u, mark.v);
         }
         let at = surface(ray, hit);
-        // An unconverged ray is lit where it stopped, which is mostly close to a surface.
+        // An unconverged ray is lit where it stopped, mostly close to a surface.
         let grain = footprint(ray, hit.t);
         let shaded = shade(ray, ray.origin + hit.t * ray.axis, at, grain);
         c = fog(shaded.rgb, ray.axis, hit.t);

@@ -1,4 +1,4 @@
-// Exponential fog towards the sky's colour, over the distance from the eye.
+// Exponential fog, which blends towards the sky with the distance from the eye.
 
 fn fog(color: vec3<f32>, axis: vec3<f32>, t: f32) -> vec3<f32> {
     let seen = exp(-look.fog * t);

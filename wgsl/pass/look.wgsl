@@ -1,4 +1,4 @@
-// Light, palette and tone: what a picture's look is made of, without geometry.
+// Light and palette: the part of a look that needs no geometry.
 
 struct LookUniform {
     /// Unit vector to the light, and the light's strength.
@@ -27,11 +27,11 @@ struct LookUniform {
     palette: array<vec4<f32>, 8>,
 }
 
-/// What a shadow's ray has found.
+/// What a shadow ray found.
 struct Shadow {
     /// Share of the light that arrives, as far as the ray came.
     open: f32,
-    /// Whether it came to its end within its steps.
+    /// Whether the ray reached its end before its step limit.
     decided: bool,
 }
 
@@ -52,24 +52,23 @@ fn sky(axis: vec3<f32>) -> vec3<f32> {
     return c;
 }
 
-/// The palette at x, its stops evenly spaced over 0..1, blended smoothly.
+/// The palette at x. Its colours are evenly spaced from 0 to 1 and blended smoothly.
 fn palette_at(x: f32) -> vec3<f32> {
     let last = f32(look.stops - 1u);
-    // Triangle wave: cycles without a seam.
+    // A triangle wave repeats without a seam.
     let phase = abs(x * look.palette_cycles - 2.0 * round(0.5 * x * look.palette_cycles));
     let at = clamp(phase, 0.0, 1.0) * last;
     let i = min(u32(at), look.stops - 1u);
     let j = min(i + 1u, look.stops - 1u);
     let f = at - f32(i);
-    // Not from the copy: an array that is indexed freely cannot live in registers.
+    // Not from the copy: an array with a variable index cannot be in registers.
     let one = look_parameters.palette[i].rgb;
     let two = look_parameters.palette[j].rgb;
     return mix(one, two, f * f * (3.0 - 2.0 * f));
 }
 
 fn pigment_color(pigment: vec3<f32>) -> vec3<f32> {
-    // The orbit's nearness to the origin picks the hue, the planes darken the
-    // creases, the sphere lifts the ridges.
+    // The first number picks the hue, the other two the brightness.
     let base = palette_at(pigment.x);
     return base * (0.55 + 0.45 * pigment.y) * (0.85 + 0.3 * pigment.z);
 }

@@ -1,6 +1,5 @@
-// One level of the pyramid: every cell advances its cone as far as the scene can
-// prove it free, starting where its parent's proof ended. A child of a sky cell
-// is never visited.
+// One level of the pyramid: every cell advances its cone from the front of its parent, as far
+// as the scene proves it free. Children of sky cells are not visited.
 
 struct LevelUniform {
     /// Pixels per cell, along each axis.
@@ -15,7 +14,7 @@ struct LevelUniform {
 @group(2) @binding(0) var<storage, read> level_parameters: LevelUniform;
 @group(2) @binding(5) var<storage, read_write> front: array<f32>;
 @group(2) @binding(6) var<storage, read_write> state: array<u32>;
-/// The list that the next pass starts with: the cells that are not sky.
+/// The cells that are not sky. The next pass starts with their children.
 @group(2) @binding(7) var<storage, read_write> next_parents: Queue;
 
 @compute @workgroup_size(64)
@@ -40,8 +39,7 @@ fn march(
     }
     var cone = view_cone(level.origin + local, level.divisor);
     cone.k *= level.fudge;
-    // A cell that stops holds something, or may: its children look closer. One that
-    // runs out of steps hands on what it has proven so far, which is as good.
+    // The children go on from the front, whether the cell stopped or reached its step limit.
     var s = STATE_MOVING;
     let last = queue_steps();
     for (var i = 0u; i < last; i++) {

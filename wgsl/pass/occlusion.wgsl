@@ -1,5 +1,5 @@
-// Ambient occlusion: how much emptier than it is the space above a point could be,
-// at distances doubling up to the reach.
+// Ambient occlusion: how much of the sky a point sees, from the free room at a few distances
+// along the normal. The distances double up to the reach.
 
 const OCCLUSION_TAPS = 5u;
 

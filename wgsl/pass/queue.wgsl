@@ -1,25 +1,24 @@
-// Which cells a dispatch visits. The first pass visits every cell; a later one only the
-// children of cells that are not sky, which the pass before it listed as parents. Within
-// a pass, the first dispatch does a few steps; each later one visits only the cells that
-// still move, packed densely, so that a few long walks do not hold up the lanes of their
-// neighbours.
+// The cells that a dispatch visits. The first pass visits every cell. A later pass visits the
+// children of the cells that are not sky, which the pass before it listed. Within a pass, the
+// first dispatch does a few steps, and each later one visits the cells that still move. They
+// are packed densely, so that a few long rays do not keep other lanes waiting.
 //
-// The order of a list depends on the machine; what is computed for a cell does not.
+// The order of a list may vary, the result of a cell does not.
 
-/// The numbers of a dispatch. They lead the list that it reads, in storage: lavapipe
-/// inlines uniforms that steer branches, compiling anew whenever one changes.
+/// The numbers of a dispatch, at the head of the list that it reads. They are in storage, as
+/// lavapipe inlines uniforms that steer branches and compiles again whenever one changes.
 struct Turn {
-    /// Steps that this dispatch may do, that all before it did, and that all may.
+    /// The step limit of this dispatch, the steps done before it, and the limit of the pass.
     chunk: u32,
     done: u32,
     limit: u32,
     /// Workgroups per row of the dispatch.
     row: u32,
-    /// Cells per row of the parent level in the block; 0 where there is none.
+    /// Cells per row of the parent level in the block; 0 if there is no parent level.
     parent_width: u32,
-    /// What is visited: QUEUE_ALL, QUEUE_PARENTS or QUEUE_CELLS.
+    /// The cells to visit: QUEUE_ALL, QUEUE_PARENTS or QUEUE_CELLS.
     visits: u32,
-    /// Cells or parents in the list.
+    /// Number of cells or parents in the list.
     count: u32,
 }
 
@@ -28,7 +27,7 @@ struct Listed {
     cells: array<u32>,
 }
 
-/// The same, to be filled: only the count and the cells are.
+/// The same layout for the list that is filled. Only the count and the cells are written.
 struct Queue {
     chunk: u32,
     done: u32,
@@ -40,7 +39,7 @@ struct Queue {
     cells: array<u32>,
 }
 
-/// Every cell of the block, the list being empty.
+/// Every cell of the block.
 const QUEUE_ALL = 0u;
 /// The children of the listed cells of the parent level.
 const QUEUE_PARENTS = 1u;
@@ -58,7 +57,7 @@ fn queue_load() {
     turn = listed.turn;
 }
 
-/// The cell of this invocation in a block of so many, or QUEUE_NONE.
+/// The index of this invocation's cell in a block of so many cells, or QUEUE_NONE.
 fn queue_take(group: vec2<u32>, lane: u32, cells: vec2<u32>) -> u32 {
     var cell = tile_cell(group, lane);
     if turn.visits != QUEUE_ALL {
@@ -82,7 +81,7 @@ fn queue_take(group: vec2<u32>, lane: u32, cells: vec2<u32>) -> u32 {
     return cell.y * cells.x + cell.x;
 }
 
-/// Where the proof of a cell's parent ended.
+/// The front of a cell's parent.
 fn queue_front(cell: vec2<u32>) -> f32 {
     if turn.parent_width == 0u {
         return 0.0;
@@ -90,12 +89,12 @@ fn queue_front(cell: vec2<u32>) -> f32 {
     return parent_front[(cell.y / 2u) * turn.parent_width + cell.x / 2u];
 }
 
-/// Steps that a cell may do in this dispatch.
+/// The step limit of a cell in this dispatch.
 fn queue_steps() -> u32 {
     return min(turn.chunk, turn.limit - turn.done);
 }
 
-/// Whether a cell that still moves has come to its limit; if not, it is queued.
+/// Whether a cell that still moves has reached its limit. If not, it is queued.
 fn queue_push(cell: u32) -> bool {
     if turn.done + turn.chunk >= turn.limit {
         return true;

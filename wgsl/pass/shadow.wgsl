@@ -1,8 +1,8 @@
-// A soft shadow: a ray to the light, any hit of which is dark; the narrowest empty
-// ball on the way, seen from the surface, gives the penumbra.
+// The soft shadow of the key light. A ray goes from the point to the light: a hit is full
+// shadow, and the narrowest empty ball on the way gives the penumbra.
 
 fn shadow(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> Shadow {
-    // Start off the surface, or its own hit shell would shade it.
+    // Off the surface, whose hit threshold would end the ray at once.
     let ray = Beam(q + (4.0 * grain) * normal, look.light, 0.0, 0.0, grain, 0.0);
     var walk = begin(ray, 0.0, 2.0 * bounds_far());
     var open = 1.0;

@@ -1,13 +1,13 @@
-// The last level: one ray per pixel, from the front of its cell to the surface.
-// The loop counts and caps; what a step is, the scene knows. A ray that needs more steps
-// than one dispatch may do is put down in `walks` and taken up by the next, so that no
-// dispatch is long; the walk is the same whatever the cuts.
+// The trace pass: one ray per pixel, from the front of its cell to the surface.
+//
+// A ray that needs more steps than a dispatch may do is stored in `walks`, and the next
+// dispatch goes on with it. This does not change the ray.
 
 @group(2) @binding(5) var<storage, read_write> depth: array<f32>;
 @group(2) @binding(6) var<storage, read_write> state: array<u32>;
-/// Rays that still move, between two dispatches; of all others the content is old.
+/// The rays that still move between two dispatches. All others are out of date.
 @group(2) @binding(7) var<storage, read_write> walks: array<Walk>;
-/// What was hit, of scenes whose hits name something; else a stub.
+/// What was hit, in scenes whose hits carry a mark.
 @group(2) @binding(8) var<storage, read_write> marks: array<Mark>;
 
 @compute @workgroup_size(64)
@@ -22,8 +22,7 @@ fn trace(
     if index == QUEUE_NONE {
         return;
     }
-    // Buffers are of a block, rays of the whole image: only so is a picture made in blocks
-    // the same as one made at once.
+    // Buffers belong to a block, rays to the whole image: so blocks do not change a picture.
     let local = vec2<u32>(index % view.block_size.x, index / view.block_size.x);
     let ray = view_ray(view.block_origin + local);
     var walk: Walk;
@@ -47,8 +46,7 @@ fn trace(
             walks[index] = walk;
         }
     }
-    // Written in every dispatch, be the ray done or not: at the limit t is how far it got,
-    // which is what an unconverged pixel shows.
+    // Written in every dispatch: an unconverged pixel shows how far its ray came.
     let hit = walk_hit(walk);
     depth[index] = hit.t;
     state[index] = s;

@@ -1,28 +1,26 @@
-// A scene given by a distance estimate: cones by the exact step, rays by sphere
-// tracing with relaxation (docs/method.md, 2). Positions come relative to the eye.
+// A scene given by a distance estimate. Cones advance by the cone step, rays by sphere tracing
+// with relaxation (docs/method.md, 2). Positions are relative to the eye.
 //
-// The bounds are part of the field: its value is the larger of the estimate and the
-// distance to the bounds, for steps, hits and normals alike. So the surface that is
-// seen, {value = eps}, is closed and within eps of the bounds, instead of being cut by
-// them.
+// Steps, hits and normals all use one field: the larger of the estimate and the distance to the
+// bounds. So the bounds do not cut the visible surface open.
 
 struct DistanceUniform {
     eye: vec3<f32>,
     /// Hit where estimate <= detail * footprint.
     detail: f32,
-    /// The bounds: a box about a centre, cut by a ball about the same centre.
+    /// The bounds: a box cut by a ball about the same centre.
     centre: vec3<f32>,
     radius: f32,
     half: vec3<f32>,
     /// Nothing is farther from the eye than this.
     far: f32,
-    /// Steps divide by this: the estimate's largest slope.
+    /// The Lipschitz constant. Steps divide by it.
     lipschitz: f32,
-    /// A step keeps clear of `shell * eps` of the surface.
+    /// Steps keep clear of `shell * eps`, where eps is the hit threshold.
     shell: f32,
-    /// Of rays: 0 automatic, 1 off, else a fixed factor.
+    /// How rays stretch their steps: 0 automatic, 1 off, else a factor.
     relaxation: f32,
-    /// Factor on every ray step; 1 but for the truth.
+    /// Factor on ray steps; less than 1 for the truth.
     stride: f32,
     iterations: u32,
     /// 1 to start rays where they enter the bounds, 0 at their front.
@@ -31,8 +29,8 @@ struct DistanceUniform {
     pad1: u32,
 }
 
-/// A ray on its way: the last accepted point, the ball proven empty about it, the
-/// length of the next step, the smoothed slope of the radius, and the end.
+/// The state of a ray between two steps: the last accepted point, the radius of the empty ball
+/// there, the length of the next step, the smoothed slope of the radius, and the end.
 struct Walk {
     t: f32,
     radius: f32,
@@ -59,15 +57,15 @@ fn estimate_at(q: vec3<f32>) -> f32 {
     return f32(estimate(real3(distance_scene.eye) + real3(q), distance_scene.iterations));
 }
 
-/// Distance to the bounds, 0 inside.
+/// Distance to the bounds; 0 inside.
 fn bounds_distance(q: vec3<f32>) -> f32 {
     let p = (distance_scene.eye - distance_scene.centre) + q;
     let o = max(abs(p) - distance_scene.half, vec3<f32>(0.0));
     return max(length(o), max(0.0, length(p) - distance_scene.radius));
 }
 
-/// Value of the field, and a ball's radius in which it exceeds `clear`. Inside the bounds
-/// the value is the estimate's alone, negative ones too: the gradient needs them.
+/// The value of the field, and the radius of a ball in which it exceeds `clear`. Inside the
+/// bounds the value may be negative: the gradient needs it.
 fn field(q: vec3<f32>, clear: f32) -> vec2<f32> {
     let outside = bounds_distance(q);
     let inside = estimate_at(q);
@@ -75,28 +73,28 @@ fn field(q: vec3<f32>, clear: f32) -> vec2<f32> {
     return vec2<f32>(select(inside, max(inside, outside), outside > 0.0), ball);
 }
 
-/// The distance past which there is nothing.
+/// The distance from the eye beyond which there is nothing.
 fn bounds_far() -> f32 {
     return distance_scene.far;
 }
 
-/// The part of a ray where the bounds are within nearly the hit threshold, as
-/// (near, far); near > far if it misses. The threshold grows along the ray, so the
-/// faces lean outwards by its slope.
+/// The part of a ray, as (near, far), that is nearer to the bounds than DISTANCE_WITHIN hit
+/// thresholds; near > far for none. The threshold grows along the ray, so the faces of the box
+/// lean outwards.
 fn bounds_interval(ray: Beam) -> vec2<f32> {
     let p = (distance_scene.eye - distance_scene.centre) + ray.origin;
     let within = DISTANCE_WITHIN * distance_scene.detail;
     let room = distance_scene.half + within * ray.grain0;
-    // More than p and the quotients are rounded by. The near faces stand back by it: a
-    // start before the threshold is reached would miss what lies just within; but no
-    // farther than a part of the threshold, or hits very near the eye would lie behind the
-    // faces. The far ones stand out.
+    // More than the rounding of p and of the quotients. The near faces move inwards by it, so
+    // that no ray starts before it reaches the threshold. They move by at most a part of the
+    // threshold, or hits very near the eye would be in front of them. The far faces move
+    // outwards.
     let slack = 5e-7 * (abs(p) + distance_scene.half);
     let clear = max(abs(p) - distance_scene.half, vec3<f32>(0.0));
     let back = min(slack, 0.25 * within * (ray.grain0 + ray.grain * clear));
     let lean = within * ray.grain;
-    // A ray as flat as the lean may stay between two faces for ever: its quotients are
-    // made huge, with no infinity in between.
+    // A ray no steeper than the lean may never cross a face. Its quotients are replaced by
+    // huge numbers.
     let flat = abs(ray.axis) <= vec3<f32>(lean + 1e-7);
     let low = 1.0 / (ray.axis + lean);
     let high = 1.0 / (ray.axis - lean);
@@ -111,7 +109,7 @@ fn bounds_interval(ray: Beam) -> vec2<f32> {
     let margin = distance_scene.detail * footprint(ray, distance_scene.far);
     let b = dot(p, ray.axis);
     let r = (distance_scene.radius + margin) * (1.0 + 1e-6);
-    // Squared distance of the ray's line from the centre, without b^2 - |p|^2.
+    // From the centre to the ray's line. |p|^2 - b^2 would cancel.
     let off = p - b * ray.axis;
     let q = r * r - dot(off, off);
     if q < 0.0 {
@@ -121,19 +119,18 @@ fn bounds_interval(ray: Beam) -> vec2<f32> {
     return vec2<f32>(max(near, -b - span), min(far, span - b));
 }
 
-/// The new proven front of a cone, and whether it is worth asking again.
+/// One step of a cone.
 fn advance(cone: Beam, front: f32) -> Advance {
     let q = cone.origin + front * cone.axis;
     let eps = distance_scene.detail * footprint(cone, front);
     var d = bounds_distance(q) - cone.r0 - distance_scene.shell * eps;
-    // Outside the bounds their distance will do, while it carries the cone.
+    // Far from the bounds their distance is enough.
     if d <= 2.0 * cone.k * front {
         let e = (estimate_at(q) - distance_scene.shell * eps) / distance_scene.lipschitz;
         d = max(d, e - cone.r0);
     }
     let next = cone_front(front, front, d, cone.k);
-    // After a short gain the rest is better left to the four thinner children; where there
-    // is no ball, so is all of it.
+    // After a short gain, or without a ball, the four thinner children go on.
     return Advance(next, next - front > DISTANCE_ENOUGH * max(d, 0.0));
 }
 
@@ -150,12 +147,12 @@ fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
     return Walk(t, 0.0, 0.0, -1.0, end);
 }
 
-/// One step along a ray: STATE_MOVING, STATE_HIT, or STATE_SKY when past the end.
+/// One step of a ray: STATE_MOVING, STATE_HIT, or STATE_SKY beyond the end.
 ///
-/// The next sample lies `pace` ahead. If the ball there and the last one leave a gap
-/// between them, nothing is accepted and the next sample is taken at the ball's edge
-/// (Keinert et al. 2014). The automatic pace extrapolates the radius linearly, so
-/// that the two balls just touch (Ban and Valasek 2023).
+/// The next sample is `pace` ahead. If its ball and the last one leave a gap, the sample is
+/// rejected, and the next one is at the edge of the last ball (Keinert et al. 2014). The
+/// automatic pace extrapolates the radius linearly, so that the two balls just touch (Ban and
+/// Valasek 2023).
 fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     let w = *walk;
     if w.t + w.radius > w.end {
@@ -166,7 +163,7 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     let eps = distance_scene.detail * footprint(ray, t);
     let f = field(ray.origin + t * ray.axis, distance_scene.shell * eps);
     let radius = f.y * distance_scene.stride;
-    // Only a stretched step can leave a gap: what else exceeds the radius is rounding.
+    // Only a stretched step can leave a gap. Any other difference is rounding.
     if w.pace > w.radius && gone > w.radius + max(radius, 0.0) {
         (*walk).pace = w.radius;
         (*walk).slope = -1.0;
@@ -190,28 +187,28 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     return STATE_MOVING;
 }
 
-/// What the walk has found.
+/// Where the ray is.
 fn walk_hit(walk: Walk) -> Hit {
     return Hit(walk.t, 0u, vec2<f32>(0.0));
 }
 
-/// Room about where a walk stands.
+/// The free room about the ray's current place, for soft shadows.
 fn walk_radius(ray: Beam, walk: Walk) -> f32 {
     return walk.radius;
 }
 
-/// Radius of a surely empty ball about a point.
+/// The radius of a ball about a point that is proven empty.
 fn clearance(q: vec3<f32>) -> f32 {
     return max(0.0, field(q, 0.0).y);
 }
 
-/// Room about a point, for occlusion.
+/// The free room about a point, for occlusion.
 fn room(q: vec3<f32>) -> f32 {
     return clearance(q);
 }
 
-/// Normal by the estimate's gradient over the corners of a tetrahedron half a pixel
-/// wide; pigment from the orbit.
+/// The normal is the gradient over the corners of a tetrahedron half a pixel wide, the pigment
+/// comes from the orbit.
 fn surface(ray: Beam, hit: Hit) -> Surface {
     let q = ray.origin + hit.t * ray.axis;
     let h = 0.5 * footprint(ray, hit.t) + distance_scene.far * 1e-7;
@@ -222,7 +219,7 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
     let g = a * field(q + h * a, 0.0).x + b * field(q + h * b, 0.0).x
         + c * field(q + h * c, 0.0).x + d * field(q + h * d, 0.0).x;
     let n = length(g);
-    // A flat estimate has no gradient: turn such a point to the viewer.
+    // A point without a gradient faces the viewer.
     var normal = -ray.axis;
     if n > 1e-20 {
         normal = g / n;

@@ -1,14 +1,14 @@
-// A scene of a relief: a block whose top is a height map. Rays are traced by a module of
-// `heightfield/trace`, in local units: texels along the block's sides, heights upwards.
-// Coarse cones and empty balls are tested against the maxima under them.
+// A heightfield: a block whose top is a height map. A module of `heightfield/tracer` follows the
+// rays, in local units: texels along the sides of the block, and heights from 0 to 1. Cones and
+// empty balls are tested against the highest point of the map below them.
 
 struct HeightfieldUniform {
     /// Rows of the matrix from world directions to local units.
     row_x: vec3<f32>,
-    /// Length of a texel.
+    /// World length of a texel.
     texel: f32,
     row_y: vec3<f32>,
-    /// Length of the whole height.
+    /// World length of the height 1.
     depth: f32,
     row_z: vec3<f32>,
     /// Nothing is farther from the eye.
@@ -16,17 +16,17 @@ struct HeightfieldUniform {
     /// The eye, in local units.
     eye: vec3<f32>,
     pad0: f32,
-    /// More than what local coordinates are rounded by.
+    /// More than the rounding error of local coordinates.
     slack: vec3<f32>,
     pad1: f32,
 }
 
-/// Regions that a cone is tested over are halved at most so often.
+/// How often the sweep of a cone is halved, and an empty ball doubled.
 override HEIGHTFIELD_HALVINGS: u32;
-/// Share of the height above the surface in a guess of the room there is.
+/// Weight of the height above the surface in a guess of the free room.
 override HEIGHTFIELD_GUESS: f32;
 override HIT_CARRIES_MARK: bool;
-/// Whether pigments are colours themselves, and the grey of walls then.
+/// Whether pigments are colours, and the grey of walls then.
 override HEIGHTFIELD_COLORED: bool;
 override HEIGHTFIELD_WALL: f32;
 
@@ -58,15 +58,14 @@ fn local_units() -> vec3<f32> {
     return vec3<f32>(heightfield.texel, heightfield.texel, heightfield.depth);
 }
 
-/// Distance from a local position to the block, in the world's length; negative inside.
+/// The world distance from a local position to the block; negative inside.
 fn block_distance(p: vec3<f32>) -> f32 {
     let half = 0.5 * vec3<f32>(vec2<f32>(relief.domain), 1.0);
     let o = (abs(p - half) - half) * local_units();
     return length(max(o, vec3<f32>(0.0))) + min(max(o.x, max(o.y, o.z)), 0.0);
 }
 
-/// Whether a ball of a world radius swept from one local position to another meets no
-/// part of the block that is filled.
+/// Whether a ball of a world radius that moves between two local positions meets nothing solid.
 fn sweep_is_free(one: vec3<f32>, two: vec3<f32>, radius: f32) -> bool {
     count_evaluation();
     let room = radius / local_units() + heightfield.slack;
@@ -75,14 +74,14 @@ fn sweep_is_free(one: vec3<f32>, two: vec3<f32>, radius: f32) -> bool {
     return high.z < 0.0 || low.z > 1.0 || low.z > region_max(low.xy, high.xy);
 }
 
-/// How far a cone is free: the longest of a row of halved lengths whose whole sweep
-/// clears the maxima under it. Rays of the cone at t are within r0 + k t of the axis.
+/// One step of a cone: the longest of several lengths, each half the one before, whose whole
+/// sweep is free. At t the rays of the cone are within r0 + k t of the axis.
 fn advance(cone: Beam, front: f32) -> Advance {
     let origin = heightfield.eye + to_local(cone.origin);
     let axis = to_local(cone.axis);
     let here = origin + front * axis;
     let away = block_distance(here) - cone.r0;
-    // Far outside, the distance to the block carries the cone farther.
+    // Far outside the block, the distance to it is enough.
     let carried = cone_front(front, front, away, cone.k);
     if away > 0.0 && carried - front > 0.5 * away {
         return Advance(carried, true);
@@ -95,7 +94,7 @@ fn advance(cone: Beam, front: f32) -> Advance {
             return Advance(end, true);
         }
         length *= 0.5;
-        // A short gain is better left to the four thinner children.
+        // The four thinner children gain more.
         if length < 0.5 * thick {
             break;
         }
@@ -105,7 +104,7 @@ fn advance(cone: Beam, front: f32) -> Advance {
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
     let origin = heightfield.eye + to_local(ray.origin);
-    // The tracer ends it with the block.
+    // The tracer ends the ray where the block ends.
     let trace = trace_begin(origin, to_local(ray.axis), front, t_max);
     return Walk(front, trace);
 }
@@ -123,13 +122,13 @@ fn walk_hit(walk: Walk) -> Hit {
     return trace_hit(walk.trace);
 }
 
-/// Room about where a walk stands.
+/// The free room about the ray's current place, for soft shadows.
 fn walk_radius(ray: Beam, walk: Walk) -> f32 {
     return surface_gap(heightfield.eye + to_local(ray.origin + walk.t * ray.axis));
 }
 
-/// Room between a local position and the surface, in the world's length: its height above
-/// the surface under it, or above the rim that is nearest and how far off that is.
+/// The world distance from a local position to the surface straight below it. Beside the block
+/// it is the distance to the edge of the top, or to the wall below that edge.
 fn surface_gap(p: vec3<f32>) -> f32 {
     let sides = vec2<f32>(relief.domain);
     let inside = clamp(p.xy, vec2<f32>(0.0), sides);
@@ -139,8 +138,7 @@ fn surface_gap(p: vec3<f32>) -> f32 {
     return length(vec3<f32>((p.xy - inside) * heightfield.texel, above));
 }
 
-/// Radius of a surely empty ball: for boxes of doubling size about the point, what lies
-/// under them, or the box.
+/// The radius of a ball about a point that is proven empty, from boxes of doubling size.
 fn clearance(q: vec3<f32>) -> f32 {
     let p = heightfield.eye + to_local(q);
     var free = block_distance(p);
@@ -159,21 +157,22 @@ fn clearance(q: vec3<f32>) -> f32 {
     return max(0.0, free);
 }
 
-/// Room about a point. Proven balls are far too small over steep ground, heights above it
-/// know nothing of what stands beside it: halfway between them is a good guess.
+/// The free room about a point, for occlusion. It is a mean of two values: the proven clearance
+/// is far too small over steep ground, and the height above the surface ignores what stands
+/// beside the point.
 fn room(q: vec3<f32>) -> f32 {
     let p = heightfield.eye + to_local(q);
     return mix(clearance(q), surface_gap(p), HEIGHTFIELD_GUESS);
 }
 
-/// The world's direction of a local one of unit lengths.
+/// The world direction of a local normal.
 fn to_world(v: vec3<f32>) -> vec3<f32> {
     return heightfield.texel * (v.x * heightfield.row_x + v.y * heightfield.row_y)
         + heightfield.depth * v.z * heightfield.row_z;
 }
 
-/// The normal that faces out of the side by which a ray came into a box: that of the line
-/// which it crossed last on its way to a place in the box.
+/// The local normal of the side through which a ray entered a box: that of the grid line that
+/// it crossed last before the place `uv`.
 fn box_side(d: vec3<f32>, uv: vec2<f32>) -> vec3<f32> {
     let flat = abs(d.xy) < vec2<f32>(GRID_FLAT);
     let slope = select(abs(d.xy), vec2<f32>(1.0), flat);
@@ -201,7 +200,7 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
     if RELIEF_BOXES {
         let d = to_local(ray.axis);
         let height = heightfield.eye.z + to_local(ray.origin).z + hit.t * d.z;
-        // Under the top of its box by more than a rounding: on a side.
+        // Below the top of its box by more than rounding: the hit is on a side.
         if height < c.x - heightfield.slack.z {
             return Surface(to_world(box_side(d, hit.uv)), relief_paint(cell, hit.uv, height, 0.0));
         }

@@ -1,14 +1,14 @@
-// A slab between two parallel planes, solved in closed form: the smallest complete
-// scene. It has no distance estimate and no formula, its hits name a face and carry
-// coordinates on it, and it proves that the passes do not know what they march.
+// A round slab between two parallel planes, solved in closed form: the smallest complete scene.
+// It has no distance estimate, no formula and no map. A hit carries its face and its
+// coordinates on it.
 
 struct SlabUniform {
     eye: vec3<f32>,
     /// Half thickness.
     half: f32,
-    /// Unit normal of the planes; the slab is centred on the origin.
+    /// Unit normal of the planes. The slab is about the origin.
     normal: vec3<f32>,
-    /// Radius of the disc that the slab ends at.
+    /// Radius of the disc.
     radius: f32,
     /// Two unit directions in the plane.
     side: vec3<f32>,
@@ -17,12 +17,12 @@ struct SlabUniform {
     pad: f32,
 }
 
-/// A ray that is solved already: `begin` finds the hit, and the one step reports it.
+/// A ray whose hit is already known: `begin` finds it, and the only step reports it.
 struct Walk {
     t: f32,
-    /// Shadow rays read an empty ball's radius of walks that go on, and none of these does.
+    /// Shadow rays read this from rays that go on, but these rays end at once.
     radius: f32,
-    /// Distance of the hit; negative where there is none.
+    /// Distance of the hit; negative if there is none.
     hit: f32,
     end: f32,
     /// 0 the lower plane, 1 the upper one, 2 the rim.
@@ -45,8 +45,8 @@ fn bounds_far() -> f32 {
     return slab.far;
 }
 
-/// Distance to the solid disc with flat faces, negative inside: that to a rectangle, in
-/// the half plane of distance from the axis and height.
+/// The distance to the solid disc; negative inside. It is the distance to a rectangle in the
+/// plane of the distance from the axis and the height.
 fn slab_distance(q: vec3<f32>) -> f32 {
     let p = slab.eye + q;
     let z = dot(p, slab.normal);
@@ -54,7 +54,7 @@ fn slab_distance(q: vec3<f32>) -> f32 {
     return length(max(o, vec2<f32>(0.0))) + min(max(o.x, o.y), 0.0);
 }
 
-/// The distance is exact, so one ball after another is worth it as long as there is any.
+/// One step of a cone. The distance is exact, so any gain is worth another step.
 fn advance(cone: Beam, front: f32) -> Advance {
     count_evaluation();
     let d = slab_distance(cone.origin + front * cone.axis) - cone.r0;
@@ -62,7 +62,7 @@ fn advance(cone: Beam, front: f32) -> Advance {
     return Advance(next, next > front);
 }
 
-/// The ray against both planes and the rim; the first that it meets from outside.
+/// Finds the first of the planes and the rim that the ray enters.
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
     count_evaluation();
     let p = slab.eye + ray.origin;
@@ -71,12 +71,12 @@ fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
     let s = vec2<f32>(dot(p, slab.side), dot(p, slab.other));
     let ds = vec2<f32>(dot(ray.axis, slab.side), dot(ray.axis, slab.other));
     var walk = Walk(front, 0.0, -1.0, min(slab.far, t_max), 0u, 0.0, 0.0);
-    // Already inside: the surface is where the ray starts.
+    // Inside, the hit is where the ray starts.
     if slab_distance(ray.origin + front * ray.axis) <= 0.0 {
         walk.hit = front;
     }
-    // Of two planes only that on the eye's side can be entered. A ray along it is left to
-    // the rim: its quotient would be noise.
+    // Only the plane on the eye's side can be entered. The quotient of a ray along it would be
+    // noise: only the rim counts.
     let face = select(-slab.half, slab.half, z > 0.0);
     if walk.hit < 0.0 && abs(z) > slab.half && abs(dz) > 1e-12 {
         let t = (face - z) / dz;
@@ -88,11 +88,11 @@ fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
     }
     let a = dot(ds, ds);
     if walk.hit < 0.0 && a > 1e-12 {
-        // Nearest approach first: b^2 - a c would cancel for a far eye.
+        // From the nearest point of the line, as b^2 - a c would cancel for a far eye.
         let middle = -dot(s, ds) / a;
         let nearest = s + middle * ds;
         let q = slab.radius * slab.radius - dot(nearest, nearest);
-        // The first of both crossings: from within, the rim is left and not entered.
+        // The first of two crossings: at the second one the ray leaves.
         let t = middle - sqrt(max(q, 0.0) / a);
         if q > 0.0 && t >= front && abs(z + t * dz) <= slab.half {
             walk.hit = t;
@@ -120,7 +120,7 @@ fn walk_hit(walk: Walk) -> Hit {
     return Hit(walk.t, walk.face, vec2<f32>(walk.u, walk.v));
 }
 
-/// Room about where a walk stands.
+/// The free room about the ray's current place, for soft shadows.
 fn walk_radius(ray: Beam, walk: Walk) -> f32 {
     return walk.radius;
 }
@@ -130,7 +130,7 @@ fn clearance(q: vec3<f32>) -> f32 {
     return max(0.0, slab_distance(q));
 }
 
-/// Room about a point, for occlusion.
+/// The free room about a point, for occlusion.
 fn room(q: vec3<f32>) -> f32 {
     return clearance(q);
 }
@@ -143,7 +143,7 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
     if hit.id == 2u {
         normal = (hit.uv.x * slab.side + hit.uv.y * slab.other) / slab.radius;
     }
-    // A board of unit squares.
+    // A chessboard of unit squares.
     let square = floor(hit.uv.x) + floor(hit.uv.y);
     let light = square - 2.0 * floor(0.5 * square);
     return Surface(normal, vec3<f32>(0.15 + 0.7 * light, 0.5, 0.5));

@@ -1,4 +1,5 @@
-//! `conemarch bench calibrate`: what a preset can afford, for a stated share of lost pixels.
+//! `conemarch bench calibrate`: the fastest settings of a preset that lose no more than a given
+//! share of its pixels.
 
 use anyhow::Result;
 use clap::Args;
@@ -6,14 +7,15 @@ use serde::Serialize;
 
 use crate::base::work::State;
 use crate::command::bench::common::Common;
-use crate::command::bench::row::flat;
+use crate::command::bench::runner::{COUNTED, Runner, TIMED, of_how_many};
 use crate::command::bench::table;
 use crate::command::executor::Executor;
 use crate::command::interrupt;
+use crate::command::progress::Progress;
 use crate::gpu::RenderError;
 use crate::measure::calibrate::{Calibration, calibrate};
+use crate::plan::Plan;
 use crate::plan::march::Mode;
-use crate::plan::{Extras, Plan};
 use crate::scene::Assets;
 
 /// Options of `bench calibrate`.
@@ -24,7 +26,7 @@ pub struct CalibrateBench {
     /// Share of pixels that may be lost: behind, holes or unconverged
     #[arg(long, value_name = "SHARE", default_value_t = 0.002, value_parser = share)]
     budget: f64,
-    /// Camera rays to probe with
+    /// Number of camera rays that probe the preset
     #[arg(long, value_name = "COUNT", default_value_t = 8192, value_parser = count)]
     rays: u32,
 }
@@ -47,20 +49,15 @@ struct CalibrateRow {
     device: String,
     budget: f64,
     rays: usize,
-    slope: f64,
-    slack: f64,
-    lipschitz: f64,
-    shell: f64,
-    fudge: Vec<f64>,
-    lost: f64,
-    within: bool,
-    /// On the device, at the probed pixels.
+    #[serde(flatten)]
+    found: Calibration,
+    /// Share of the probed pixels that the device loses.
     lost_on_device: f64,
     safe_evaluations_per_pixel: f64,
     evaluations_per_pixel: f64,
     safe_ms: f64,
     wall_ms: f64,
-    /// A warning where f32 cannot hold what the preset asks for.
+    /// A warning if f32 is not precise enough for the preset.
     precision: Option<String>,
 }
 
@@ -75,48 +72,61 @@ pub fn run(args: &CalibrateBench) -> Result<()> {
     let files = args.common.files(None, &plans)?;
     let mut executor = args.common.executor()?;
     let mut rows = Vec::new();
-    for (name, plan) in &plans {
-        let found = calibrate(plan, &assets, args.budget, args.rays as usize, &|| {
-            !interrupt::asked()
-        })?;
-        let row = measure(&mut executor, name, plan, &assets, &found, args.budget)?;
+    for (i, (name, plan)) in plans.iter().enumerate() {
+        let what = of_how_many(name, i, plans.len());
+        let mut progress = Progress::start(&format!("calibrating {what}"));
+        let found = calibrate(
+            plan,
+            &assets,
+            args.budget,
+            args.rays as usize,
+            &mut |share| {
+                progress.report(share, "");
+                !interrupt::asked()
+            },
+        )?;
+        drop(progress);
+        let row = measure(
+            &mut executor,
+            &assets,
+            name,
+            &what,
+            plan,
+            found,
+            args.budget,
+        )?;
         files.show(&sentence(&row, plan))?;
         rows.push(row);
     }
-    let flat: Vec<_> = rows.iter().map(flat).collect();
-    files.write(&rows, &flat)
+    files.write(&rows)
 }
 
-/// The proposal on the device, beside `safe`.
+/// Measures the proposal on the device, and `safe` for comparison.
 fn measure(
     executor: &mut Executor,
-    name: &str,
-    plan: &Plan,
     assets: &Assets,
-    found: &Calibration,
+    name: &str,
+    what: &str,
+    plan: &Plan,
+    found: Calibration,
     budget: f64,
 ) -> Result<CalibrateRow, RenderError> {
-    let watch = &mut |_: &_| !interrupt::asked();
+    /// Warm runs that the shortest time is taken of.
+    const RUNS: usize = 4;
+    let (device, precision) = (executor.name(), executor.precision_warning(plan));
+    let mut runner = Runner::new(executor, assets, what, 2 * (RUNS + 1));
     let mut safe = plan.clone();
     safe.march.mode = Mode::Safe;
     let calibrated = found.apply(plan);
-    let counted = Extras {
-        count: true,
-        depth_only: true,
-        ..Extras::default()
-    };
-    let timed = Extras {
-        depth_only: true,
-        ..Extras::default()
-    };
     let mut work = [0.0; 2];
     let mut time = [f64::INFINITY; 2];
     let mut lost = 0;
     for (i, plan) in [&safe, &calibrated].into_iter().enumerate() {
-        let frame = executor.render(plan, assets, counted, watch)?;
+        let mode = plan.march.mode.name();
+        let frame = runner.render(plan, COUNTED, mode)?;
         work[i] = frame.work_per_pixel().map_or(0.0, |w| w.0);
-        for _ in 0..4 {
-            time[i] = time[i].min(executor.render(plan, assets, timed, watch)?.march_ms);
+        for _ in 0..RUNS {
+            time[i] = time[i].min(runner.render(plan, TIMED, mode)?.march_ms);
         }
         let width = plan.size[0] as usize;
         let gone = found.probes.iter().filter(|probe| {
@@ -130,57 +140,51 @@ fn measure(
     Ok(CalibrateRow {
         preset: name.into(),
         size: plan.size,
-        device: executor.name(),
+        device,
         budget,
         rays: found.probes.len(),
-        slope: found.slope,
-        slack: found.slack,
-        lipschitz: found.lipschitz,
-        shell: found.shell,
-        fudge: found.fudge.clone(),
-        lost: found.lost,
-        within: found.within,
         lost_on_device: lost as f64 / found.probes.len().max(1) as f64,
+        found,
         safe_evaluations_per_pixel: work[0],
         evaluations_per_pixel: work[1],
         safe_ms: time[0],
         wall_ms: time[1],
-        precision: executor.precision_warning(plan),
+        precision,
     })
 }
 
-/// What was found, and what to write into the preset.
+/// The result as text, with the lines to write into the preset.
 fn sentence(row: &CalibrateRow, plan: &Plan) -> String {
     let [w, h] = row.size;
-    let verdict = if row.within {
+    let verdict = if row.found.within {
         String::new()
     } else {
         format!(
-            "\nThe budget of {:.3} % is out of reach: this is the nearest that was found.\n",
+            "\nThe budget of {:.3} % is out of reach: these settings come nearest.\n",
             100.0 * row.budget
         )
     };
-    let fudge: Vec<String> = row.fudge.iter().map(|f| format!("{f}")).collect();
+    let fudge: Vec<String> = row.found.fudge.iter().map(|f| format!("{f}")).collect();
     let precision = table::precision(row.precision.as_deref());
     let mut text = format!(
         "\n### {}, {w} x {h}, {} rays\n\n{precision}Largest slope {:.3}, slack {:.1} in the median. Lost {:.3} % of rays in f64, {:.3} % on the\ndevice. Evaluations per pixel {:.2}, `safe` {:.2}; {:.1} ms of wall\ntime, `safe` {:.1}.\n{verdict}\n",
         row.preset,
         row.rays,
-        row.slope,
-        row.slack,
-        100.0 * row.lost,
+        row.found.slope,
+        row.found.slack,
+        100.0 * row.found.lost,
         100.0 * row.lost_on_device,
         row.evaluations_per_pixel,
         row.safe_evaluations_per_pixel,
         row.wall_ms,
         row.safe_ms,
     );
-    if row.lipschitz > plan.scene.lipschitz() {
-        text += &format!("    [scene]\n    lipschitz = {}\n", row.lipschitz);
+    if row.found.lipschitz > plan.scene.lipschitz() {
+        text += &format!("    [scene]\n    lipschitz = {}\n", row.found.lipschitz);
     }
     text += &format!(
         "    [march]\n    mode = \"calibrated\"\n    shell = {}\n    fudge = [{}]\n",
-        row.shell,
+        row.found.shell,
         fudge.join(", ")
     );
     text

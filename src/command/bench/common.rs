@@ -1,17 +1,17 @@
-//! What all measurements share: which presets, on which device, and where rows go.
+//! The options that all measurements share: presets, size, device and the files for rows.
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::Args;
 use serde::Serialize;
 
+use crate::command::bench::row::flat;
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
-use crate::command::memory;
 use crate::command::print::{print, say, tell};
 use crate::command::sink::{Parcel, Sink, apart, is_stdout, spared};
-use crate::command::size;
+use crate::command::{completions, memory, size};
 use crate::gpu::device::{Choice, DeviceError, STORAGE_BUFFERS};
 use crate::plan::Plan;
 use crate::preset;
@@ -24,56 +24,56 @@ const BYTES_PER_PIXEL: u64 = 450;
 /// Options of every measurement.
 #[derive(Debug, Args)]
 pub struct Common {
-    /// Presets; all built-in ones where none is named
-    pub names: Vec<String>,
-    /// Pixels, instead of the presets' own
+    /// Presets; all built-in ones if none is named
+    #[arg(add = completions::presets())]
+    pub names: Vec<PathBuf>,
+    /// Width and height in pixels, in place of the presets'
     #[arg(long, value_name = "WxH", value_parser = size::read)]
     pub size: Option<[u32; 2]>,
     /// auto, gpu, software, cpu, an index or a part of a name
     #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
     pub device: Choice,
-    /// Write the rows as JSON too; - is standard output, and the tables go to stderr then
+    /// Also write the rows as JSON; - is standard output, and the tables then go to stderr
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write the rows as CSV too, - as above
+    /// Also write the rows as CSV; - as above
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
 }
 
 impl Common {
-    /// Every preset's name and plan.
+    /// The name and the plan of every preset.
     ///
     /// # Errors
     /// A preset is unknown or wrong, two have one name, or one does not fit into memory.
     pub fn plans(&self, assets: &Assets) -> Result<Vec<(String, Plan)>> {
-        let all = || preset::BUILTIN.iter().map(|(name, _)| (*name).to_string());
-        let names: Vec<String> = if self.names.is_empty() {
-            all().collect()
-        } else {
-            self.names.clone()
-        };
-        let load = |name: String| {
+        let mut names = self.names.clone();
+        if names.is_empty() {
+            names = preset::BUILTIN
+                .iter()
+                .map(|(name, _)| name.into())
+                .collect();
+        }
+        let load = |name: PathBuf| {
             let found = preset::load(&name, &[])?;
             found.load_assets(assets)?;
             let mut plan = found.plan;
             plan.size = self.size.unwrap_or(plan.size);
             Ok((found.name, plan))
         };
-        let plans: Result<Vec<(String, Plan)>> = names.into_iter().map(load).collect();
-        let plans = plans?;
+        let plans: Vec<(String, Plan)> = names.into_iter().map(load).collect::<Result<_>>()?;
         for (i, (name, _)) in plans.iter().enumerate() {
             if plans[..i].iter().any(|(n, _)| n == name) {
                 return Err(usage(format!(
-                    "two of the presets are called `{name}`, and rows and pictures go by the name; leave one out, or give its file another name"
+                    "two presets are called `{name}`, and rows and pictures are told apart by the name; leave one out, or rename its file"
                 )));
             }
         }
         for (name, plan) in &plans {
-            if let Some(why) = memory::lacking(plan.size, BYTES_PER_PIXEL, memory::available()) {
-                anyhow::bail!("{name}: {why}");
-            }
-            if let Some(why) = memory::lacking_for(plan, assets, memory::available()) {
-                anyhow::bail!("{name}: {why}");
+            let available = memory::available();
+            let lacking = memory::lacking(plan.size, BYTES_PER_PIXEL, available);
+            if let Some(why) = lacking.or_else(|| memory::lacking_for(plan, assets, available)) {
+                bail!("{name}: {why}");
             }
         }
         Ok(plans)
@@ -100,11 +100,12 @@ impl Common {
         Ok(executor)
     }
 
-    /// Makes sure that the asked files can be written, before anything is measured;
-    /// `plot` is that of a measurement that draws.
+    /// Makes sure before the measurement that its files can be written; `plot` is one of
+    /// them where a measurement draws.
     ///
     /// # Errors
-    /// One of them cannot, two are the same, or one is a preset or a file that a plan names.
+    /// One of them cannot be written, two are the same, or one is a preset or a file that a
+    /// plan names.
     pub fn files(&self, plot: Option<&Path>, plans: &[(String, Plan)]) -> Result<Files> {
         let named = [
             ("--json", self.json.as_deref()),
@@ -139,7 +140,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Shows a table: on standard output, unless that carries rows or a picture.
+    /// Prints a table to standard output, or to standard error if the other carries a file.
     ///
     /// # Errors
     /// Standard output cannot be written.
@@ -162,38 +163,45 @@ impl Files {
         Ok(())
     }
 
-    /// Writes all rows, and hands over everything that was written, or nothing.
+    /// Writes all rows, and hands over all files or none.
     ///
     /// # Errors
     /// A file or standard output cannot be written.
-    pub fn write<R: Serialize>(mut self, rows: &[R], flat: &[Vec<(String, String)>]) -> Result<()> {
+    pub fn write<R: Serialize>(mut self, rows: &[R]) -> Result<()> {
         if let Some(sink) = self.json {
-            let mut text =
-                serde_json::to_string_pretty(rows).context("the rows cannot be written")?;
-            text.push('\n');
-            self.parcel.put(sink, text.as_bytes())?;
+            let mut text = serde_json::to_vec_pretty(rows).context("the rows cannot be written")?;
+            text.push(b'\n');
+            self.parcel.put(sink, &text)?;
         }
         if let Some(sink) = self.csv {
-            self.parcel.put(sink, &csv(flat)?)?;
+            let rows: Vec<_> = rows.iter().map(flat).collect();
+            self.parcel.put(sink, &csv(&rows)?)?;
         }
         self.parcel.hand_over()
     }
 }
 
-/// Rows of names and values as CSV: a line of names first.
+/// Rows of names and values as CSV: one line of all names, and empty cells for the names
+/// that a row lacks.
 fn csv(rows: &[Vec<(String, String)>]) -> Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    if let Some(first) = rows.first() {
-        writer.write_record(first.iter().map(|(name, _)| name))?;
+    let mut names: Vec<&String> = Vec::new();
+    for (name, _) in rows.iter().flatten() {
+        if !names.contains(&name) {
+            names.push(name);
+        }
     }
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&names)?;
     for row in rows {
-        writer.write_record(row.iter().map(|(_, value)| value))?;
+        let value = |name: &&String| row.iter().find(|(n, _)| n == *name);
+        let values = names.iter().map(|name| value(name).map_or("", |(_, v)| v));
+        writer.write_record(values)?;
     }
     writer.into_inner().context("the rows cannot be written")
 }
 
-/// The middle of some values; sorts them.
-pub fn median(values: &mut [f64]) -> Option<f64> {
+/// The median of some values; sorts them.
+pub fn median_of(values: &mut [f64]) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }

@@ -11,7 +11,6 @@ use serde::Serialize;
 
 use crate::command::bench::common::Common;
 use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
-use crate::command::bench::row::flat;
 use crate::command::bench::table;
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
@@ -22,7 +21,7 @@ use crate::gpu::device::{Choice, PROMISED_BUFFERS};
 use crate::gpu::render::RenderError;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::cpu;
-use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
+use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options, Watch};
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::max_mip::MaxMip;
@@ -157,11 +156,11 @@ pub fn run(args: &ConesBench) -> Result<()> {
             tracers.extend(rows);
         }
     }
-    let generators = generators.into_iter().map(ConesRow::Generator);
-    let tracers = tracers.into_iter().map(ConesRow::Tracer);
-    let all: Vec<_> = generators.chain(tracers).collect();
-    let flat = one_header(all.iter().map(flat).collect());
-    files.write(&all, &flat)
+    let all = generators.into_iter().map(ConesRow::Generator);
+    let all: Vec<_> = all
+        .chain(tracers.into_iter().map(ConesRow::Tracer))
+        .collect();
+    files.write(&all)
 }
 
 /// The named fields, or the default ones if there are no names.
@@ -179,30 +178,6 @@ fn fields(names: &[String]) -> Result<Vec<Pattern>> {
         Pattern::named(name).ok_or_else(why)
     };
     names.iter().map(one).collect()
-}
-
-/// Rows of two kinds under one header. A value that a kind lacks stays empty.
-fn one_header(rows: Vec<Vec<(String, String)>>) -> Vec<Vec<(String, String)>> {
-    let mut names: Vec<String> = Vec::new();
-    for (name, _) in rows.iter().flatten() {
-        if !names.contains(name) {
-            names.push(name.clone());
-        }
-    }
-    let fill = |row: Vec<(String, String)>| {
-        let value = |name: &String| {
-            let found = row.iter().find(|(n, _)| n == name);
-            found.map_or(String::new(), |(_, v)| v.clone())
-        };
-        names.iter().map(|n| (n.clone(), value(n))).collect()
-    };
-    rows.into_iter().map(fill).collect()
-}
-
-/// A map with its time, or the time that it would have taken.
-enum Made {
-    Map(ConeMap, f64),
-    TooSlow(f64),
 }
 
 impl Measured<'_> {
@@ -233,13 +208,23 @@ impl Measured<'_> {
         let mut rows = Vec::new();
         for generator in Generator::ALL {
             let mut row = self.row(generator.name());
-            match self.one_map(&mut maker, generator)? {
-                Made::Map(map, ms) => {
+            let (start, mut done) = (Instant::now(), 0.0);
+            let made = self.one_map(&mut maker, generator, &mut |share| {
+                done = share;
+                !interrupt::asked() && (share >= 1.0 || start.elapsed() < BUDGET)
+            });
+            let ms = start.elapsed().as_secs_f64() * 1e3;
+            match made {
+                Ok(map) => {
                     row.ms = Some(ms);
                     row.mean_ratio = Some(mean_ratio(&map));
                     maps.push((generator, Arc::new(map)));
                 }
-                Made::TooSlow(ms) => row.estimate_ms = Some(ms),
+                Err(GenerateError::Cancelled) if interrupt::asked() => {
+                    return Err(RenderError::Cancelled.into());
+                }
+                Err(GenerateError::Cancelled) => row.estimate_ms = Some(ms / done.max(1e-6)),
+                Err(e) => return Err(e.into()),
             }
             rows.push(row);
         }
@@ -256,27 +241,17 @@ impl Measured<'_> {
         Ok((rows, maps))
     }
 
-    fn one_map(&self, maker: &mut Option<Maker<'_>>, generator: Generator) -> Result<Made> {
-        let start = Instant::now();
-        let mut done = 0.0;
-        let mut watch = |share: f64| {
-            done = share;
-            !interrupt::asked() && (share >= 1.0 || start.elapsed() < BUDGET)
-        };
+    fn one_map(
+        &self,
+        maker: &mut Option<Maker<'_>>,
+        generator: Generator,
+        watch: Watch<'_>,
+    ) -> Result<ConeMap, GenerateError> {
         let (heights, patches) = (self.surface.heights(), self.surface.patches());
         let options = Options::default();
-        let made = match maker {
-            Some(maker) => maker.generate(generator, heights, patches, &options, &mut watch),
-            None => cpu::generate(generator, heights, patches, &options, &mut watch),
-        };
-        let ms = start.elapsed().as_secs_f64() * 1e3;
-        match made {
-            Ok(map) => Ok(Made::Map(map, ms)),
-            Err(GenerateError::Cancelled) if interrupt::asked() => {
-                Err(RenderError::Cancelled.into())
-            }
-            Err(GenerateError::Cancelled) => Ok(Made::TooSlow(ms / done.max(1e-6))),
-            Err(e) => Err(e.into()),
+        match maker {
+            Some(maker) => maker.generate(generator, heights, patches, &options, watch),
+            None => cpu::generate(generator, heights, patches, &options, watch),
         }
     }
 

@@ -1,7 +1,7 @@
 //! `conemarch bench error`: run time against error, setting by setting, on one device.
 //!
-//! Every setting of a preset is compared with the preset's truth, and timed in turn with
-//! the others, so that a machine whose speed drifts slows all of them alike.
+//! Every setting of a preset is compared with the preset's truth. The settings are timed in
+//! turn, so that a machine whose speed drifts slows all of them alike.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -10,14 +10,16 @@ use anyhow::Result;
 use clap::Args;
 use glam::DVec3;
 
-use crate::command::bench::common::{Common, median};
-use crate::command::bench::row::{DepthError, Row, TruthNote, flat};
+use crate::command::bench::common::{Common, median_of};
+use crate::command::bench::row::{DepthError, Row, TruthNote};
+use crate::command::bench::runner::{COUNTED, RUNS, Runner, TIMED, of_how_many};
 use crate::command::bench::setting::{Setting, baselines, sweeps};
 use crate::command::bench::{plot, table};
 use crate::command::executor::Executor;
 use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
+use crate::command::progress::Progress;
 use crate::command::sink::is_stdout;
 use crate::gpu::RenderError;
 use crate::measure::compare::compare;
@@ -33,16 +35,13 @@ use crate::scene::Assets;
 pub struct ErrorBench {
     #[command(flatten)]
     common: Common,
-    /// Move single settings too: coarsest level, shell, relaxation, steps, fudge, detail
+    /// Also change single settings: coarsest level, shell, relaxation, steps, fudge, detail
     #[arg(long)]
     sweep: bool,
-    /// Draw time against error; - is standard output, and the tables go to stderr then
+    /// Draw time against error; - is standard output, and the tables then go to stderr
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
 }
-
-/// Warm runs that a median is taken of.
-const RUNS: usize = 5;
 
 /// Runs the measurement.
 ///
@@ -56,7 +55,7 @@ pub fn run(args: &ErrorBench) -> Result<()> {
         && !is_svg(path)
     {
         return Err(usage(format!(
-            "--plot draws an SVG, and `{}` does not end in .svg; - would be standard output",
+            "--plot draws an SVG, and `{}` does not end in .svg; - is standard output",
             path.display()
         )));
     }
@@ -68,15 +67,12 @@ pub fn run(args: &ErrorBench) -> Result<()> {
         settings.extend(sweeps());
     }
     let mut rows = Vec::new();
-    for (name, plan) in &plans {
-        let measured = measure(
-            &mut executor,
-            cache.as_ref(),
-            name,
-            plan,
-            &assets,
-            &settings,
-        )?;
+    for (i, (name, plan)) in plans.iter().enumerate() {
+        let what = of_how_many(name, i, plans.len());
+        let fitting = settings.iter().filter_map(|s| Some((s, s.apply(plan)?)));
+        let fitting: Vec<(&Setting, Plan)> = fitting.collect();
+        let truths = truths(cache.as_ref(), &assets, name, &what, &fitting)?;
+        let measured = measure(&mut executor, &assets, name, &what, &fitting, &truths)?;
         files.show(&table::preset(&measured))?;
         rows.extend(measured);
     }
@@ -84,86 +80,113 @@ pub fn run(args: &ErrorBench) -> Result<()> {
     files.show(&table::better_than_safe(&rows))?;
     files.show(&table::slides(&rows))?;
     files.draw(|| plot::draw(&rows))?;
-    let flat: Vec<_> = rows.iter().map(flat).collect();
-    files.write(&rows, &flat)
+    files.write(&rows)
 }
 
-/// Whether a name is one for an SVG, or standard output's.
+/// Whether a name is that of an SVG or of standard output.
 fn is_svg(path: &Path) -> bool {
     let ending = path.extension().and_then(|e| e.to_str());
     is_stdout(path) || ending.is_some_and(|e| e.eq_ignore_ascii_case("svg"))
 }
 
-/// Truths by what they are asked for: settings that change the hit rule have their own.
-struct Truths<'a> {
-    cache: Option<&'a Cache>,
-    assets: &'a Assets,
-    name: &'a str,
-    found: HashMap<u64, Truth>,
+/// Truths by `march.detail`: settings that change the hit rule have a truth of their own.
+type Truths = HashMap<u64, Truth>;
+
+fn truth_key(plan: &Plan) -> u64 {
+    plan.march.detail.to_bits()
 }
 
-impl Truths<'_> {
-    fn of(&mut self, plan: &Plan) -> Result<&Truth, RenderError> {
-        let key = plan.march.detail.to_bits();
-        if !self.found.contains_key(&key) {
-            let watch = &mut |_: &_| !interrupt::asked();
-            let (truth, kept) = cached(self.cache, plan, self.assets, watch)?;
-            say(&format!(
-                "{}: truth{} at {} of the estimate, {:.4} % of pixels still move",
-                self.name,
-                if kept { ", kept from before," } else { "" },
-                truth.stride,
-                100.0 * truth.moved
-            ));
-            self.found.insert(key, truth);
+/// The truths of all settings of one preset.
+fn truths(
+    cache: Option<&Cache>,
+    assets: &Assets,
+    name: &str,
+    what: &str,
+    settings: &[(&Setting, Plan)],
+) -> Result<Truths, RenderError> {
+    let mut found = Truths::new();
+    for (_, plan) in settings {
+        if found.contains_key(&truth_key(plan)) {
+            continue;
         }
-        Ok(&self.found[&key])
+        let mut progress = Progress::start(&format!("rendering the truth of {what}"));
+        let (truth, kept) = cached(cache, plan, assets, &mut progress.watch())?;
+        drop(progress);
+        say(&format!(
+            "{name}: truth{} at {} of the estimate, {:.4} % of pixels still move",
+            if kept { ", kept from before," } else { "" },
+            truth.stride,
+            100.0 * truth.moved
+        ));
+        found.insert(truth_key(plan), truth);
     }
+    Ok(found)
 }
 
 /// All settings of one preset.
 fn measure(
     executor: &mut Executor,
-    cache: Option<&Cache>,
-    name: &str,
-    plan: &Plan,
     assets: &Assets,
-    settings: &[Setting],
+    name: &str,
+    what: &str,
+    settings: &[(&Setting, Plan)],
+    truths: &Truths,
 ) -> Result<Vec<Row>, RenderError> {
-    let watch = &mut |_: &_| !interrupt::asked();
-    let mut truths = Truths {
-        cache,
-        assets,
-        name,
-        found: HashMap::new(),
-    };
-    let fitting: Vec<(&Setting, Plan)> = settings
-        .iter()
-        .filter_map(|s| Some((s, s.apply(plan)?)))
-        .collect();
+    let device = executor.name();
+    let precision = settings
+        .first()
+        .and_then(|(_, plan)| executor.precision_warning(plan));
+    let mut runner = Runner::new(executor, assets, what, settings.len() * (RUNS + 2));
+    let detail = |i: usize, setting: &Setting| of_how_many(setting.mode.name(), i, settings.len());
     let mut rows = Vec::new();
-    for (setting, plan) in &fitting {
-        let truth = truths.of(plan)?;
-        let extras = Extras {
-            count: true,
-            levels: true,
-            ..Extras::default()
+    for (i, (setting, plan)) in settings.iter().enumerate() {
+        let truth = &truths[&truth_key(plan)];
+        let counted = Extras {
+            depth_only: false,
+            ..COUNTED
         };
-        let frame = executor.render(plan, assets, extras, watch)?;
-        let mut row = blank(name, plan, setting, &frame, truth, executor);
-        row.fill(&compare(&frame, &truth.frame, plan, &plan.solid(assets)?));
-        row.flip = look_apart(&truth.frame, &frame, plan);
-        rows.push(row);
+        let frame = runner.render(plan, counted, &detail(i, setting))?;
+        let report = compare(&frame, &truth.frame, plan, &plan.solid(assets)?);
+        let work = frame.work_per_pixel().unwrap_or((0.0, 0.0));
+        let [median, p95, p99, max] = report.depth_error;
+        rows.push(Row {
+            preset: name.into(),
+            mode: setting.mode.name().into(),
+            parameters: setting.parameters(),
+            baseline: setting.changes.is_empty(),
+            size: plan.size,
+            device: device.clone(),
+            // Times follow below.
+            wall_ms: 0.0,
+            gpu_ms: None,
+            evaluations_per_pixel: work.0,
+            iterations_per_pixel: work.1,
+            depth_error: DepthError {
+                median,
+                p95,
+                p99,
+                max,
+            },
+            behind: report.behind,
+            front: report.front,
+            behind8: report.behind8,
+            front8: report.front8,
+            holes: report.holes,
+            false_hits: report.false_hits,
+            start_violations: report.start_violations.iter().map(|v| v.1).collect(),
+            unconverged: report.unconverged,
+            flip: look_apart(&truth.frame, &frame, plan),
+            truth: TruthNote {
+                stride: truth.stride,
+                moved: truth.moved,
+            },
+            precision: precision.clone(),
+        });
     }
-    let extras = Extras {
-        depth_only: true,
-        time: true,
-        ..Extras::default()
-    };
     let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); rows.len()];
     for run in 0..=RUNS {
-        for ((_, plan), [wall, gpu]) in fitting.iter().zip(&mut times) {
-            let frame = executor.render(plan, assets, extras, watch)?;
+        for (i, ((setting, plan), [wall, gpu])) in settings.iter().zip(&mut times).enumerate() {
+            let frame = runner.render(plan, TIMED, &detail(i, setting))?;
             // The first round warms up: programs without counters are new.
             if run > 0 {
                 wall.push(frame.march_ms);
@@ -173,8 +196,8 @@ fn measure(
         }
     }
     for (row, [mut wall, mut gpu]) in rows.iter_mut().zip(times) {
-        row.wall_ms = median(&mut wall).unwrap_or(0.0);
-        row.gpu_ms = median(&mut gpu);
+        row.wall_ms = median_of(&mut wall).unwrap_or(0.0);
+        row.gpu_ms = median_of(&mut gpu);
     }
     Ok(rows)
 }
@@ -192,43 +215,4 @@ fn look_apart(reference: &Frame, frame: &Frame, plan: &Plan) -> f64 {
         pixels,
     };
     flip(picture(&one), picture(&two))
-}
-
-/// A row without times and errors yet.
-fn blank(
-    name: &str,
-    plan: &Plan,
-    setting: &Setting,
-    frame: &Frame,
-    truth: &Truth,
-    executor: &Executor,
-) -> Row {
-    let work = frame.work_per_pixel().unwrap_or((0.0, 0.0));
-    Row {
-        preset: name.into(),
-        mode: setting.mode.name().into(),
-        parameters: setting.parameters(),
-        baseline: setting.changes.is_empty(),
-        size: plan.size,
-        device: executor.name(),
-        wall_ms: 0.0,
-        gpu_ms: None,
-        evaluations_per_pixel: work.0,
-        iterations_per_pixel: work.1,
-        depth_error: DepthError::default(),
-        behind: 0.0,
-        front: 0.0,
-        behind8: 0.0,
-        front8: 0.0,
-        holes: 0.0,
-        false_hits: 0.0,
-        start_violations: Vec::new(),
-        unconverged: 0.0,
-        flip: 0.0,
-        truth: TruthNote {
-            stride: truth.stride,
-            moved: truth.moved,
-        },
-        precision: executor.precision_warning(plan),
-    }
 }

@@ -1,4 +1,4 @@
-//! `conemarch bench`: what a picture costs and how wrong it is.
+//! `conemarch bench`: the time that pictures take, and their errors.
 
 pub mod calibrate;
 pub mod common;
@@ -7,6 +7,7 @@ pub mod cones;
 pub mod error;
 pub mod plot;
 pub mod row;
+pub mod runner;
 pub mod setting;
 pub mod steps;
 pub mod steps_row;

@@ -1,9 +1,10 @@
-//! Time against error as a picture: a panel for each preset, both axes logarithmic.
+//! Time against error as an SVG: a panel for each preset, both axes logarithmic.
 //!
-//! Each mode has a colour; settings that move one key of a mode are small dots of its
+//! Each mode has a colour; settings that change one key of a mode are small dots of its
 //! colour. The line joins the settings that no other beats in both: the Pareto front.
-
-use std::fmt::Write as _;
+//!
+//! Drawn by hand: the logarithmic axes of `plotters` have no ticks within a decade, where most
+//! measurements lie, and its dots cannot tell their names to a pointer.
 
 use crate::command::bench::row::Row;
 
@@ -34,13 +35,11 @@ pub fn draw(rows: &[Row]) -> String {
     let columns = presets.len().clamp(1, COLUMNS);
     let lines = presets.len().div_ceil(columns).max(1);
     let (w, h) = (columns as f64 * PANEL[0], lines as f64 * PANEL[1] + LEGEND);
-    let mut svg = String::new();
-    // Writing to a string cannot fail, here and below.
-    let _ = writeln!(
-        svg,
-        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="11" fill="#333">"##
+    let mut svg = format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="11" fill="#333">
+<rect width="{w}" height="{h}" fill="#fff"/>
+"##
     );
-    let _ = writeln!(svg, r##"<rect width="{w}" height="{h}" fill="#fff"/>"##);
     for (i, preset) in presets.iter().enumerate() {
         let own: Vec<&Row> = rows.iter().filter(|r| r.preset == *preset).collect();
         let at = [
@@ -54,7 +53,7 @@ pub fn draw(rows: &[Row]) -> String {
     svg
 }
 
-/// Rows that no other beats: none is both faster and less wrong, by time.
+/// Rows that no other row beats in both time and wrong pixels, sorted by time.
 pub fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     let mut sorted: Vec<&Row> = rows.iter().copied().filter(|r| comparable(r)).collect();
     sorted.sort_by(|a, b| {
@@ -70,7 +69,7 @@ pub fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     best
 }
 
-/// A setting of the hit rule asks for another picture: its error is against another truth.
+/// Whether a row is compared with the usual truth: another `detail` has another one.
 fn comparable(row: &Row) -> bool {
     !row.parameters.contains_key("detail")
 }
@@ -85,16 +84,13 @@ struct Axis {
 
 impl Axis {
     fn new(values: impl Iterator<Item = f64>, at: f64, length: f64) -> Self {
-        let start = (f64::INFINITY, 0.0_f64);
-        let (low, high) = values.fold(start, |(low, high), v| (low.min(v), high.max(v)));
-        let (low, high) = if low.is_finite() {
-            (low, high)
-        } else {
-            (1.0, 1.0)
-        };
+        // Without values any range will do.
+        let values: Vec<f64> = values.collect();
+        let low = values.iter().copied().reduce(f64::min).unwrap_or(1.0);
+        let high = values.iter().copied().reduce(f64::max).unwrap_or(1.0);
         Self {
             low: low / 1.25,
-            high: high.max(low) * 1.25,
+            high: high * 1.25,
             at,
             length,
         }
@@ -126,12 +122,12 @@ impl Axis {
     }
 }
 
-/// A tick's number without what its power of ten was rounded by.
+/// A tick's number without the rounding error of its power of ten.
 fn rounded(t: f64) -> f64 {
     (t * 1e6).round() / 1e6
 }
 
-/// No wrong pixel at all is shown as half of one.
+/// Wrong pixels in percent. None at all is drawn as half a pixel: the axis is logarithmic.
 fn shown(row: &Row) -> f64 {
     let pixels = f64::from(row.size[0]) * f64::from(row.size[1]);
     100.0 * row.wrong().max(0.5 / pixels)
@@ -140,82 +136,68 @@ fn shown(row: &Row) -> f64 {
 fn panel(svg: &mut String, preset: &str, rows: &[&Row], [left, top]: [f64; 2]) {
     let rows: Vec<&Row> = rows.iter().copied().filter(|r| comparable(r)).collect();
     let [x0, y0] = [left + MARGIN[0], top + MARGIN[1]];
-    let [w, h] = [
-        PANEL[0] - MARGIN[0] - MARGIN[2],
-        PANEL[1] - MARGIN[1] - MARGIN[3],
-    ];
+    let [x1, y1] = [left + PANEL[0] - MARGIN[2], top + PANEL[1] - MARGIN[3]];
+    let [w, h] = [x1 - x0, y1 - y0];
     let x = Axis::new(rows.iter().map(|r| r.wall_ms), x0, w);
     // Downwards is better, so the least error is at the bottom.
-    let y = Axis::new(rows.iter().map(|r| shown(r)), y0 + h, -h);
-    let _ = writeln!(
-        svg,
-        r##"<text x="{x0}" y="{:.1}" font-size="13" font-weight="bold">{preset}</text>"##,
-        y0 - 12.0
+    let y = Axis::new(rows.iter().map(|r| shown(r)), y1, -h);
+    let place = |row: &Row| [x.place(row.wall_ms), y.place(shown(row))];
+    let above = y0 - 12.0;
+    *svg += &format!(
+        r##"<text x="{x0}" y="{above:.1}" font-size="13" font-weight="bold">{preset}</text>
+"##
     );
     for t in x.ticks() {
-        let (at, label) = (x.place(t), rounded(t));
-        let _ = writeln!(
-            svg,
-            r##"<path d="M{at:.1} {y0:.1}v{h:.1}" stroke="#eee"/><text x="{at:.1}" y="{:.1}" text-anchor="middle">{label}</text>"##,
-            y0 + h + 14.0
+        let (at, below, label) = (x.place(t), y1 + 14.0, rounded(t));
+        *svg += &format!(
+            r##"<path d="M{at:.1} {y0:.1}v{h:.1}" stroke="#eee"/><text x="{at:.1}" y="{below:.1}" text-anchor="middle">{label}</text>
+"##
         );
     }
     for t in y.ticks() {
-        let at = y.place(t);
-        let label = rounded(t);
-        let _ = writeln!(
-            svg,
-            r##"<path d="M{x0:.1} {at:.1}h{w:.1}" stroke="#eee"/><text x="{:.1}" y="{:.1}" text-anchor="end">{label}</text>"##,
-            x0 - 5.0,
-            at + 4.0
+        let (at, beside, base, label) = (y.place(t), x0 - 5.0, y.place(t) + 4.0, rounded(t));
+        *svg += &format!(
+            r##"<path d="M{x0:.1} {at:.1}h{w:.1}" stroke="#eee"/><text x="{beside:.1}" y="{base:.1}" text-anchor="end">{label}</text>
+"##
         );
     }
-    let _ = writeln!(
-        svg,
-        r##"<rect x="{x0}" y="{y0}" width="{w}" height="{h}" fill="none" stroke="#999"/>"##
-    );
-    let _ = writeln!(
-        svg,
-        r##"<text x="{:.1}" y="{:.1}" text-anchor="middle">march and trace, ms</text><text transform="translate({:.1} {:.1}) rotate(-90)" text-anchor="middle">wrong pixels, %</text>"##,
-        x0 + 0.5 * w,
-        y0 + h + 32.0,
-        x0 - 44.0,
-        y0 + 0.5 * h
-    );
+    let (middle, below) = (x0 + 0.5 * w, y1 + 32.0);
+    let (beside, height) = (x0 - 44.0, y0 + 0.5 * h);
     let best = front(&rows);
-    let line: Vec<String> = best
+    let line = best
         .iter()
-        .map(|r| format!("{:.1},{:.1}", x.place(r.wall_ms), y.place(shown(r))))
-        .collect();
-    let _ = writeln!(
-        svg,
-        r##"<polyline points="{}" fill="none" stroke="#009e73" stroke-width="1.5"/>"##,
-        line.join(" ")
+        .map(|r| place(r))
+        .map(|[x, y]| format!("{x:.1},{y:.1}"));
+    let line = line.collect::<Vec<_>>().join(" ");
+    *svg += &format!(
+        r##"<rect x="{x0}" y="{y0}" width="{w}" height="{h}" fill="none" stroke="#999"/>
+<text x="{middle:.1}" y="{below:.1}" text-anchor="middle">march and trace, ms</text><text transform="translate({beside:.1} {height:.1}) rotate(-90)" text-anchor="middle">wrong pixels, %</text>
+<polyline points="{line}" fill="none" stroke="#009e73" stroke-width="1.5"/>
+"##
     );
     for row in &rows {
-        let (cx, cy) = (x.place(row.wall_ms), y.place(shown(row)));
+        let [x, y] = place(row);
         let (radius, stroke) = if row.baseline {
             (5.0, "#fff")
         } else {
             (2.6, "none")
         };
-        let _ = writeln!(
-            svg,
-            r##"<circle cx="{cx:.1}" cy="{cy:.1}" r="{radius}" fill="{}" stroke="{stroke}"><title>{}: {:.1} ms, {:.4} %</title></circle>"##,
+        let (color, label, ms, wrong) = (
             color(&row.mode),
             row.label(),
             row.wall_ms,
-            100.0 * row.wrong()
+            100.0 * row.wrong(),
+        );
+        *svg += &format!(
+            r##"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" fill="{color}" stroke="{stroke}"><title>{label}: {ms:.1} ms, {wrong:.4} %</title></circle>
+"##
         );
     }
-    let dots: Vec<[f64; 2]> = rows
-        .iter()
-        .map(|r| [x.place(r.wall_ms), y.place(shown(r))])
-        .collect();
+    let dots: Vec<[f64; 2]> = rows.iter().map(|row| place(row)).collect();
     names(svg, &best, &dots, &x, &y);
 }
 
-/// Where a name may stand beside its dot: to the right or left, level, above or below.
+/// Places for a name beside its dot: right or left; level, above or below.
 const BESIDE: [[f64; 2]; 6] = [
     [6.0, 3.0],
     [-6.0, 3.0],
@@ -225,8 +207,8 @@ const BESIDE: [[f64; 2]; 6] = [
     [-5.0, 12.0],
 ];
 
-/// The names of the sweeps on the front, the least wrong first, where there is room for
-/// them: not over each other, nor over a dot. A dot says its name to a pointer, too.
+/// Writes the names of the sweeps on the front, the least wrong first, unless they would
+/// cover each other or a dot. A dot also tells its name to a pointer.
 fn names(svg: &mut String, best: &[&Row], dots: &[[f64; 2]], x: &Axis, y: &Axis) {
     let mut taken: Vec<[f64; 4]> = dots
         .iter()
@@ -248,9 +230,9 @@ fn names(svg: &mut String, best: &[&Row], dots: &[[f64; 2]], x: &Axis, y: &Axis)
         });
         if let Some((shape, start, base)) = room {
             taken.push(shape);
-            let _ = writeln!(
-                svg,
-                r##"<text x="{start:.1}" y="{base:.1}" font-size="9" fill="#666">{label}</text>"##
+            *svg += &format!(
+                r##"<text x="{start:.1}" y="{base:.1}" font-size="9" fill="#666">{label}</text>
+"##
             );
         }
     }
@@ -262,20 +244,18 @@ fn color(mode: &str) -> &'static str {
 }
 
 fn legend(svg: &mut String, y: f64) {
-    let mut x = 20.0;
+    let (mut x, middle, below) = (20.0, y - 4.0, y + 20.0);
     for (name, color) in COLORS {
-        let _ = writeln!(
-            svg,
-            r##"<circle cx="{x}" cy="{:.1}" r="5" fill="{color}"/><text x="{:.1}" y="{y}">{name}</text>"##,
-            y - 4.0,
-            x + 9.0
+        let beside = x + 9.0;
+        *svg += &format!(
+            r##"<circle cx="{x}" cy="{middle:.1}" r="5" fill="{color}"/><text x="{beside:.1}" y="{y}">{name}</text>
+"##
         );
         x += 30.0 + 6.5 * name.len() as f64;
     }
-    let _ = writeln!(
-        svg,
-        r##"<text x="20" y="{:.1}">Small dots: one key of the mode moved. Green line: no other setting is both faster and less wrong. Wrong: behind, lost or unconverged.</text>"##,
-        y + 20.0
+    *svg += &format!(
+        r##"<text x="20" y="{below:.1}">Small dots: one key of the mode changed. Green line: no other setting is both faster and less wrong. Wrong: behind, lost or unconverged.</text>
+"##
     );
 }
 
@@ -284,10 +264,13 @@ mod tests {
     use super::*;
 
     fn row(wall_ms: f64, behind: f64) -> Row {
-        let text = format!(
-            r#"{{"preset":"p","mode":"safe","parameters":{{"shell":{behind}}},"baseline":false,"size":[100,100],"device":"d","wall_ms":{wall_ms},"gpu_ms":null,"evaluations_per_pixel":1,"iterations_per_pixel":1,"depth_error":{{"median":0,"p95":0,"p99":0,"max":0}},"behind":{behind},"front":0,"behind8":0,"front8":0,"holes":0,"false_hits":0,"start_violations":[],"unconverged":0,"flip":0,"truth":{{"stride":0.1,"moved":0}},"precision":null}}"#
-        );
-        serde_json::from_str(&text).expect("a row")
+        Row {
+            preset: "p".into(),
+            size: [100, 100],
+            wall_ms,
+            behind,
+            ..Row::default()
+        }
     }
 
     #[test]

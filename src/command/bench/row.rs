@@ -1,14 +1,14 @@
-//! One row of `bench error`: a preset, a setting, its work, time and error.
+//! One row of `bench error`: a preset and a setting with their work, time and error.
+//!
+//! A footprint is half a pixel's width at the distance of the hit.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::measure::compare::Report;
-
 /// Quantiles of |e| in footprints, over pixels that hit in both.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct DepthError {
-    /// Half of the pixels are closer.
+    /// 50 % of the pixels are closer.
     pub median: f64,
     /// 95 % are.
     pub p95: f64,
@@ -18,17 +18,17 @@ pub struct DepthError {
     pub max: f64,
 }
 
-/// How sure the reference is.
+/// How converged the truth is.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct TruthNote {
-    /// Factor on the estimate's steps.
+    /// Length of its steps over the estimate.
     pub stride: f64,
-    /// Share of sampled pixels that still move when it is halved.
+    /// Share of sampled pixels that still change when the steps are halved.
     pub moved: f64,
 }
 
 /// A measured setting. Shares are of all pixels, 0..1; errors in footprints.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Row {
     /// Name of the preset.
     pub preset: String,
@@ -64,44 +64,26 @@ pub struct Row {
     pub holes: f64,
     /// Share of sky shown as hits.
     pub false_hits: f64,
-    /// Pixels whose cell's proof ends beyond their true hit, per level, coarse to fine.
+    /// Pixels whose true hit lies before the distance up to which their cell was proven free,
+    /// per level, coarse to fine.
     pub start_violations: Vec<u64>,
     /// Share that reached a limit.
     pub unconverged: f64,
     /// Mean FLIP difference of the pictures.
     pub flip: f64,
-    /// How sure the truth is.
+    /// How converged the truth is.
     pub truth: TruthNote,
-    /// A warning where f32 cannot hold what the preset asks for.
+    /// A warning if f32 is not precise enough for the preset.
     pub precision: Option<String>,
 }
 
 impl Row {
-    /// Takes over the figures of a comparison.
-    pub fn fill(&mut self, report: &Report) {
-        let [median, p95, p99, max] = report.depth_error;
-        self.depth_error = DepthError {
-            median,
-            p95,
-            p99,
-            max,
-        };
-        self.behind = report.behind;
-        self.front = report.front;
-        self.behind8 = report.behind8;
-        self.front8 = report.front8;
-        self.holes = report.holes;
-        self.false_hits = report.false_hits;
-        self.start_violations = report.start_violations.iter().map(|v| v.1).collect();
-        self.unconverged = report.unconverged;
-    }
-
     /// Share of pixels that are wrong: too deep, lost, or not finished.
     pub fn wrong(&self) -> f64 {
         self.behind + self.holes + self.unconverged
     }
 
-    /// The mode and what differs, in a few words.
+    /// The mode and the keys that differ, like `safe, shell 0.1`.
     pub fn label(&self) -> String {
         let word = |(key, value): (&String, &Value)| match value {
             Value::String(text) => format!(", {key} {text}"),
@@ -112,7 +94,8 @@ impl Row {
     }
 }
 
-/// A row as names and values, for CSV; objects other than `parameters` are taken apart.
+/// A row as names and values, for CSV. Objects other than `parameters` become a column for
+/// each field.
 pub fn flat<R: Serialize>(row: &R) -> Vec<(String, String)> {
     let mut flat = Vec::new();
     let whole = serde_json::to_value(row).unwrap_or_default();
@@ -129,7 +112,7 @@ pub fn flat<R: Serialize>(row: &R) -> Vec<(String, String)> {
     flat
 }
 
-/// A value as a cell of a table: text without quotes, nothing for null, lists spaced.
+/// A value as a cell: text without quotes, nothing for null, lists with blanks.
 fn plain(value: &Value) -> String {
     match value {
         Value::Null => String::new(),

@@ -1,5 +1,5 @@
-//! The settings that `bench error` measures: every mode as it is, and sweeps of one key
-//! of `[march]` each.
+//! The settings that `bench error` measures: every mode without changes, and sweeps that
+//! change one key of `[march]` at a time.
 
 use serde_json::{Map, json};
 use toml::Value;
@@ -17,7 +17,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// A mode as it is.
+    /// A mode without changes.
     pub fn of(mode: Mode) -> Self {
         Self {
             mode,
@@ -51,8 +51,8 @@ impl Setting {
     }
 }
 
-/// Every mode as it is; `ray` first, as what the others are compared with. The truth is
-/// not among them: it is what all are measured against.
+/// Every mode without changes; `ray` first, which the others are compared with. The truth is
+/// left out: all are measured against it.
 pub fn baselines() -> Vec<Setting> {
     let first = [Mode::Ray, Mode::RayRelaxed, Mode::Safe];
     let rest = MODES.iter().map(|(_, mode)| *mode);
@@ -60,7 +60,7 @@ pub fn baselines() -> Vec<Setting> {
     first.into_iter().chain(rest).map(Setting::of).collect()
 }
 
-/// One key moved at a time.
+/// One key changed at a time.
 pub fn sweeps() -> Vec<Setting> {
     let safe = |key, value: Value| Setting::new(Mode::Safe, key, value);
     let mut all = Vec::new();

@@ -1,4 +1,4 @@
-//! `conemarch bench steps`: what every pass does, counted cell by cell.
+//! `conemarch bench steps`: the work of every pass, counted cell by cell.
 
 use std::path::PathBuf;
 
@@ -6,8 +6,8 @@ use anyhow::Result;
 use clap::Args;
 
 use crate::base::work::{State, Work};
-use crate::command::bench::common::{Common, median};
-use crate::command::bench::row::flat;
+use crate::command::bench::common::{Common, median_of};
+use crate::command::bench::runner::{COUNTED, RUNS, Runner, TIMED, of_how_many};
 use crate::command::bench::setting::{Setting, baselines};
 use crate::command::bench::steps_row::StepsRow;
 use crate::command::bench::table;
@@ -17,8 +17,8 @@ use crate::command::interrupt;
 use crate::gpu::RenderError;
 use crate::picture::frame::Frame;
 use crate::picture::{BitDepth, Folder, Layer, Place, Shades, write_png};
+use crate::plan::Plan;
 use crate::plan::march::MODES;
-use crate::plan::{Extras, Plan};
 use crate::preset;
 use crate::scene::Assets;
 
@@ -35,9 +35,6 @@ pub struct StepsBench {
     heat: Option<PathBuf>,
 }
 
-/// Warm runs that a median is taken of.
-const RUNS: usize = 5;
-
 /// Runs the measurement.
 ///
 /// # Errors
@@ -47,72 +44,60 @@ pub fn run(args: &StepsBench) -> Result<()> {
     let assets = Assets::default();
     let plans = args.common.plans(&assets)?;
     let settings = modes(args.mode.as_deref())?;
-    // Kept until the end: a folder that was made goes again if no map comes into it.
+    // Kept until the end: a folder that was made is removed again if it stays empty.
     let _folder = args.heat.as_deref().map(Folder::prepare).transpose()?;
     let mut files = args.common.files(None, &plans)?;
     let mut executor = args.common.executor()?;
     let mut rows = Vec::new();
-    for (name, plan) in &plans {
-        for setting in &settings {
-            let Some(plan) = setting.apply(plan) else {
-                continue;
-            };
-            let (measured, frame) = measure(&mut executor, name, &plan, &assets)?;
+    for (i, (name, plan)) in plans.iter().enumerate() {
+        let fitting: Vec<Plan> = settings.iter().filter_map(|s| s.apply(plan)).collect();
+        for (j, plan) in fitting.iter().enumerate() {
+            let mode = of_how_many(plan.march.mode.name(), j, fitting.len());
+            let what = format!("{}, {mode}", of_how_many(name, i, plans.len()));
+            let (measured, frame) = measure(&mut executor, &assets, name, &what, plan)?;
             files.show(&table::levels(&measured))?;
             rows.extend(measured);
             if let Some(folder) = &args.heat {
                 let file = format!("{name}-{}.png", plan.march.mode.name());
                 let mut place = Place::prepare(&folder.join(file))?;
-                let shades = Shades::new(Layer::Steps, &frame, &plan);
-                let text = preset::write(&plan);
-                place.write(|to| write_png(to, &shades, BitDepth::Eight, &text))?;
+                let shades = Shades::new(Layer::Steps, &frame, plan);
+                let text = preset::write(plan);
+                place.write(|to| write_png(to, &shades, BitDepth::Eight, &plan.title, &text))?;
                 files.parcel.add(place);
             }
         }
     }
-    let flat: Vec<_> = rows.iter().map(flat).collect();
-    files.write(&rows, &flat)
+    files.write(&rows)
 }
 
-/// The mode of a name, or all but the truth, which takes long.
+/// The mode of a name; without a name all modes but the truth, which takes long.
 fn modes(name: Option<&str>) -> Result<Vec<Setting>> {
     let Some(name) = name else {
         return Ok(baselines());
     };
-    let found = MODES.iter().find(|(known, _)| *known == name);
-    let Some((_, mode)) = found else {
-        let names: Vec<&str> = MODES.iter().map(|(known, _)| *known).collect();
-        let names = names.join(", ");
-        return Err(usage(format!(
-            "there is no mode `{name}`; there is: {names}"
-        )));
-    };
-    Ok(vec![Setting::of(*mode)])
+    if let Some((_, mode)) = MODES.iter().find(|(known, _)| *known == name) {
+        return Ok(vec![Setting::of(*mode)]);
+    }
+    let names: Vec<&str> = MODES.iter().map(|(known, _)| *known).collect();
+    let names = names.join(", ");
+    Err(usage(format!(
+        "there is no mode `{name}`; the modes are {names}"
+    )))
 }
 
 /// The passes of one plan, and the frame that was counted.
 fn measure(
     executor: &mut Executor,
-    name: &str,
-    plan: &Plan,
     assets: &Assets,
+    name: &str,
+    what: &str,
+    plan: &Plan,
 ) -> Result<(Vec<StepsRow>, Frame), RenderError> {
-    let watch = &mut |_: &_| !interrupt::asked();
-    let counted = Extras {
-        count: true,
-        levels: true,
-        depth_only: true,
-        ..Extras::default()
-    };
-    let timed = Extras {
-        depth_only: true,
-        time: true,
-        ..Extras::default()
-    };
-    let frame = executor.render(plan, assets, counted, watch)?;
+    let mut runner = Runner::new(executor, assets, what, RUNS + 2);
+    let frame = runner.render(plan, COUNTED, "counting")?;
     let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); frame.passes.len()];
     for run in 0..=RUNS {
-        let warm = executor.render(plan, assets, timed, watch)?;
+        let warm = runner.render(plan, TIMED, "timing")?;
         let passes = warm.marched();
         for (pass, [wall, gpu]) in passes.zip(&mut times) {
             if run > 0 {
@@ -121,6 +106,7 @@ fn measure(
             }
         }
     }
+    drop(runner);
     let mut rows = Vec::new();
     let passes = frame.marched();
     for (at, (pass, [mut wall, mut gpu])) in passes.zip(times).enumerate() {
@@ -128,16 +114,18 @@ fn measure(
             Some(level) => (&level.work, &level.state, level.cells[0]),
             None => (&frame.work, &frame.state, frame.size[0]),
         };
-        let mut row = count(work, states, width as usize);
-        row.preset = name.into();
-        row.mode = plan.march.mode.name().into();
-        row.pass = pass.pass.name();
-        row.size = plan.size;
-        row.device = executor.name();
-        row.wall_ms = median(&mut wall).unwrap_or(0.0);
-        row.gpu_ms = median(&mut gpu);
-        row.precision = executor.precision_warning(plan);
-        rows.push(row);
+        let row = count(work, states, width as usize);
+        rows.push(StepsRow {
+            preset: name.into(),
+            mode: plan.march.mode.name().into(),
+            pass: pass.pass.name(),
+            size: plan.size,
+            device: executor.name(),
+            wall_ms: median_of(&mut wall).unwrap_or(0.0),
+            gpu_ms: median_of(&mut gpu),
+            precision: executor.precision_warning(plan),
+            ..row
+        });
     }
     Ok((rows, frame))
 }
@@ -169,11 +157,6 @@ fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
         histogram[bin] += 1;
     }
     StepsRow {
-        preset: String::new(),
-        mode: String::new(),
-        pass: String::new(),
-        size: [0, 0],
-        device: String::new(),
         cells: cells as u64,
         visited: spent.len() as u64,
         evaluations: work.iter().map(|w| u64::from(w.evaluations)).sum(),
@@ -187,14 +170,12 @@ fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
         waste_8x4: waste(work, width, [8, 4]),
         waste_8x8: waste(work, width, [8, 8]),
         histogram,
-        gpu_ms: None,
-        wall_ms: 0.0,
-        precision: None,
+        ..StepsRow::default()
     }
 }
 
-/// What tiles cost whose lanes run until the last is done, over what their lanes need;
-/// lanes past the edge of the level idle too.
+/// Evaluations of tiles whose lanes all run until the last one is done, over those that the
+/// lanes need. Lanes past the edge of the level idle too.
 fn waste(work: &[Work], width: usize, tile: [usize; 2]) -> f64 {
     let height = work.len().checked_div(width).unwrap_or(0);
     let (mut needed, mut spent) = (0_u64, 0_u64);

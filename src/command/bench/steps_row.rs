@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// One pass of one preset in one mode. Quantiles are of evaluations per visited cell.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct StepsRow {
     /// Name of the preset.
     pub preset: String,
@@ -17,7 +17,7 @@ pub struct StepsRow {
     pub device: String,
     /// Cells of the level.
     pub cells: u64,
-    /// Cells that did anything: the others lie under sky.
+    /// Cells that were evaluated: the others lie under sky.
     pub visited: u64,
     /// Estimate evaluations.
     pub evaluations: u64,
@@ -25,17 +25,18 @@ pub struct StepsRow {
     pub iterations: u64,
     /// Half of the visited cells need at most so many evaluations.
     pub p50: u32,
-    /// 90 % do.
+    /// As `p50`, of 90 %.
     pub p90: u32,
-    /// 99 % do.
+    /// As `p50`, of 99 %.
     pub p99: u32,
-    /// All do.
+    /// The most evaluations of a cell.
     pub max: u32,
-    /// Share of all cells that are proven sky, or lie under one that is.
+    /// Share of all cells that are proven sky, or lie under such a cell.
     pub sky: f64,
     /// Share of all cells that reached the step limit.
     pub unconverged: f64,
-    /// Evaluations of tiles of 8 x 4 cells that run in step, over those needed.
+    /// Evaluations of tiles of 8 x 4 cells whose lanes all run until the last one is done, over
+    /// those that the lanes need.
     pub waste_8x4: f64,
     /// The same for 8 x 8.
     pub waste_8x8: f64,
@@ -45,6 +46,6 @@ pub struct StepsRow {
     pub gpu_ms: Option<f64>,
     /// Time on the clock; median of warm runs.
     pub wall_ms: f64,
-    /// A warning where f32 cannot hold what the preset asks for.
+    /// A warning if f32 is not precise enough for the preset.
     pub precision: Option<String>,
 }

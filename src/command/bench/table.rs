@@ -1,13 +1,24 @@
-//! Rows as tables that are Markdown and read well on a terminal.
+//! The tables of measurements.
 
 use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
 use crate::command::bench::row::Row;
 use crate::command::bench::steps_row::StepsRow;
+use crate::command::table::table;
 
-/// Said above times of a device that does not tell its own.
+/// Stands above the times of a device without timestamps.
 const UNTIMED: &str = "The device has no timestamps: times are wall time.\n\n";
 
-/// A line of warning where there is one.
+/// A number with so many digits after the point.
+fn fixed(x: f64, digits: usize) -> String {
+    format!("{x:.digits$}")
+}
+
+/// A share in percent with so many digits after the point.
+fn percent(share: f64, digits: usize) -> String {
+    fixed(100.0 * share, digits)
+}
+
+/// A line of warning, if there is a warning.
 pub fn precision(warning: Option<&str>) -> String {
     warning.map_or(String::new(), |w| format!("Precision: {w}.\n\n"))
 }
@@ -23,27 +34,28 @@ pub fn preset(rows: &[Row]) -> String {
     if rows.iter().all(|r| r.gpu_ms.is_none()) {
         text += UNTIMED;
     }
-    text += "| setting                              | evaluations per pixel | fewer | wall ms | faster | behind % | holes % | behind 8 % | p99 footprints | unconverged % |   FLIP | start violations, coarse to fine |\n";
-    text += "|:-------------------------------------|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|:----|\n";
-    for row in rows {
-        let starts: Vec<String> = row.start_violations.iter().map(u64::to_string).collect();
-        text += &format!(
-            "| {:<36} | {:6.2} | {:5.2} | {:7.1} | {:5.2} | {:.4} | {:.4} | {:.4} | {:8.3} | {:.4} | {:.4} | {} |\n",
-            row.label(),
-            row.evaluations_per_pixel,
-            first.evaluations_per_pixel / row.evaluations_per_pixel,
-            row.wall_ms,
-            first.wall_ms / row.wall_ms,
-            100.0 * row.behind,
-            100.0 * row.holes,
-            100.0 * row.behind8,
-            row.depth_error.p99,
-            100.0 * row.unconverged,
-            row.flip,
-            starts.join(" "),
-        );
-    }
-    text
+    let starts = |row: &Row| {
+        let starts = row.start_violations.iter().map(u64::to_string);
+        starts.collect::<Vec<_>>().join(" ")
+    };
+    let work = |row: &Row| row.evaluations_per_pixel;
+    text + &table(
+        rows,
+        &[
+            ("setting", &Row::label),
+            ("evaluations per pixel", &|r| fixed(work(r), 2)),
+            ("fewer", &|r| fixed(work(first) / work(r), 2)),
+            ("wall ms", &|r| fixed(r.wall_ms, 1)),
+            ("faster", &|r| fixed(first.wall_ms / r.wall_ms, 2)),
+            ("behind %", &|r| percent(r.behind, 4)),
+            ("holes %", &|r| percent(r.holes, 4)),
+            ("behind 8 %", &|r| percent(r.behind8, 4)),
+            ("p99 footprints", &|r| fixed(r.depth_error.p99, 3)),
+            ("unconverged %", &|r| percent(r.unconverged, 4)),
+            ("FLIP", &|r| fixed(r.flip, 4)),
+            ("start violations, coarse to fine", &starts),
+        ],
+    )
 }
 
 /// The rows of a setting, preset by preset.
@@ -66,39 +78,41 @@ fn mean(rows: &[&Row], figure: fn(&Row) -> f64) -> f64 {
 /// Means over the presets, of each setting against `ray` and `ray-relaxed`.
 pub fn means(rows: &[Row]) -> String {
     let (ray, relaxed) = (of(rows, "ray"), of(rows, "ray-relaxed"));
-    let mut text = String::from(
-        "\n### Means over the presets\n\nRatios are geometric means, shares arithmetic ones. Wrong pixels are those behind, holes and\nunconverged ones.\n\n",
+    let text = String::from(
+        "\n### Means over the presets\n\nRatios are geometric means, shares are arithmetic means. Wrong pixels are those behind, lost or\nunconverged.\n\n",
     );
-    text += "| setting                              | fewer evaluations than ray | than ray-relaxed | faster than ray | than ray-relaxed | wrong pixels % |   FLIP |\n";
-    text += "|:-------------------------------------|----:|----:|----:|----:|----:|----:|\n";
     let mut labels: Vec<String> = Vec::new();
     for row in rows {
         if !labels.contains(&row.label()) {
             labels.push(row.label());
         }
     }
-    for label in labels {
-        let own = of(rows, &label);
-        // A setting that does not fit every preset has no mean over them.
-        if own.len() != ray.len() {
-            continue;
-        }
-        let work = |r: &Row| r.evaluations_per_pixel;
-        let time = |r: &Row| r.wall_ms;
-        text += &format!(
-            "| {label:<36} | {:5.2} | {:5.2} | {:5.2} | {:5.2} | {:.4} | {:.4} |\n",
-            ratio(&ray, &own, work),
-            ratio(&relaxed, &own, work),
-            ratio(&ray, &own, time),
-            ratio(&relaxed, &own, time),
-            100.0 * mean(&own, Row::wrong),
-            mean(&own, |r| r.flip),
-        );
-    }
-    text
+    // A setting that does not fit every preset has no mean over them.
+    labels.retain(|label| of(rows, label).len() == ray.len());
+    let work = |r: &Row| r.evaluations_per_pixel;
+    let time = |r: &Row| r.wall_ms;
+    let own = |label: &String| of(rows, label);
+    text + &table(
+        &labels,
+        &[
+            ("setting", &String::clone),
+            ("fewer evaluations than ray", &|l| {
+                fixed(ratio(&ray, &own(l), work), 2)
+            }),
+            ("than ray-relaxed", &|l| {
+                fixed(ratio(&relaxed, &own(l), work), 2)
+            }),
+            ("faster than ray", &|l| fixed(ratio(&ray, &own(l), time), 2)),
+            ("than ray-relaxed", &|l| {
+                fixed(ratio(&relaxed, &own(l), time), 2)
+            }),
+            ("wrong pixels %", &|l| percent(mean(&own(l), Row::wrong), 4)),
+            ("FLIP", &|l| fixed(mean(&own(l), |r| r.flip), 4)),
+        ],
+    )
 }
 
-/// What is listed as better than `safe`, and what is not.
+/// The rules of the list of what beats `safe`.
 const BEATS: &str = "
 ### What beats `safe`
 
@@ -110,7 +124,7 @@ it.
 ";
 
 /// Settings that are both at least 5 % faster than `safe` and wrong on fewer pixels, preset
-/// by preset, by the rules that its head states.
+/// by preset.
 pub fn better_than_safe(rows: &[Row]) -> String {
     let mut text = String::from(BEATS);
     let mut found = 0;
@@ -137,35 +151,57 @@ pub fn better_than_safe(rows: &[Row]) -> String {
     text
 }
 
-/// What the slides say that each of their budgets gains.
+/// The gain in percent that the slides claim for each of their budgets.
 const CLAIMS: [(&str, u32); 3] = [
     ("slides-even", 30),
     ("slides-deep", 50),
     ("slides-fast", 100),
 ];
 
-/// The slides' claims beside what was measured.
+/// The claims of the slides beside what was measured.
 pub fn slides(rows: &[Row]) -> String {
     let (ray, safe) = (of(rows, "ray"), of(rows, "safe"));
-    let mut text = String::from(
-        "\n### The claims of the 2012 slides\n\nSpeed gained over plain rays, and what it costs: pixels behind or lost, against those of the\nexact step.\n\n",
-    );
-    text += "| budget      | claimed gain % | measured gain % | fewer evaluations | behind % | holes % | unconverged % | cells' pixels started behind | behind, holes and unconverged of `safe` % |\n";
-    text += "|:------------|----:|----:|----:|----:|----:|----:|----:|----:|\n";
-    for (name, claim) in CLAIMS {
-        let own = of(rows, name);
-        let starts: u64 = own.iter().flat_map(|r| r.start_violations.last()).sum();
-        text += &format!(
-            "| {name:<11} | {claim} | {:.0} | {:.2} | {:.3} | {:.3} | {:.3} | {starts} | {:.3} |\n",
-            100.0 * (ratio(&ray, &own, |r| r.wall_ms) - 1.0),
-            ratio(&ray, &own, |r| r.evaluations_per_pixel),
-            100.0 * mean(&own, |r| r.behind),
-            100.0 * mean(&own, |r| r.holes),
-            100.0 * mean(&own, |r| r.unconverged),
-            100.0 * mean(&safe, Row::wrong),
-        );
-    }
-    text
+    let text = "
+### The claims of the 2012 slides
+
+Speed gained over plain rays, and what it costs: pixels behind or lost, against those of the
+exact step.
+
+";
+    let own = |name: &str| of(rows, name);
+    let starts = |name: &str| -> u64 {
+        own(name)
+            .iter()
+            .flat_map(|r| r.start_violations.last())
+            .sum()
+    };
+    text.to_string()
+        + &table(
+            &CLAIMS,
+            &[
+                ("budget", &|(name, _)| (*name).to_string()),
+                ("claimed gain %", &|(_, claim)| claim.to_string()),
+                ("measured gain %", &|(n, _)| {
+                    percent(ratio(&ray, &own(n), |r| r.wall_ms) - 1.0, 0)
+                }),
+                ("fewer evaluations", &|(n, _)| {
+                    fixed(ratio(&ray, &own(n), |r| r.evaluations_per_pixel), 2)
+                }),
+                ("behind %", &|(n, _)| {
+                    percent(mean(&own(n), |r| r.behind), 3)
+                }),
+                ("holes %", &|(n, _)| percent(mean(&own(n), |r| r.holes), 3)),
+                ("unconverged %", &|(n, _)| {
+                    percent(mean(&own(n), |r| r.unconverged), 3)
+                }),
+                ("cells' pixels started behind", &|(n, _)| {
+                    starts(n).to_string()
+                }),
+                ("behind, holes and unconverged of `safe` %", &|_| {
+                    percent(mean(&safe, Row::wrong), 3)
+                }),
+            ],
+        )
 }
 
 /// The levels of one preset and mode.
@@ -176,36 +212,31 @@ pub fn levels(rows: &[StepsRow]) -> String {
     let [w, h] = first.size;
     let mut text = format!("\n### {}, {}, {w} x {h}\n\n", first.preset, first.mode);
     text += &precision(first.precision.as_deref());
-    // One clock for the whole column.
+    // The whole column has one clock.
     let timed = rows.iter().all(|r| r.gpu_ms.is_some());
     if !timed {
         text += UNTIMED;
     }
-    let clock = if timed { " gpu ms" } else { "wall ms" };
-    text += &format!(
-        "| pass       |   cells | evaluations | iterations | p50 | p90 | p99 |  max |  sky % | unconverged % | waste 8 x 4 | waste 8 x 8 | {clock} |\n"
-    );
-    text +=
-        "|:-----------|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|----:|\n";
-    for row in rows {
-        text += &format!(
-            "| {:<10} | {:7} | {:11} | {:10} | {:3} | {:3} | {:3} | {:4} | {:6.2} | {:8.4} | {:5.2} | {:5.2} | {:7.2} |\n",
-            row.pass,
-            row.cells,
-            row.evaluations,
-            row.iterations,
-            row.p50,
-            row.p90,
-            row.p99,
-            row.max,
-            100.0 * row.sky,
-            100.0 * row.unconverged,
-            row.waste_8x4,
-            row.waste_8x8,
-            row.gpu_ms.filter(|_| timed).unwrap_or(row.wall_ms),
-        );
-    }
-    text
+    let clock = if timed { "gpu ms" } else { "wall ms" };
+    let ms = |r: &StepsRow| fixed(r.gpu_ms.filter(|_| timed).unwrap_or(r.wall_ms), 2);
+    text + &table(
+        rows,
+        &[
+            ("pass", &|r| r.pass.clone()),
+            ("cells", &|r| r.cells.to_string()),
+            ("evaluations", &|r| r.evaluations.to_string()),
+            ("iterations", &|r| r.iterations.to_string()),
+            ("p50", &|r| r.p50.to_string()),
+            ("p90", &|r| r.p90.to_string()),
+            ("p99", &|r| r.p99.to_string()),
+            ("max", &|r| r.max.to_string()),
+            ("sky %", &|r| percent(r.sky, 2)),
+            ("unconverged %", &|r| percent(r.unconverged, 4)),
+            ("waste 8 x 4", &|r| fixed(r.waste_8x4, 2)),
+            ("waste 8 x 8", &|r| fixed(r.waste_8x8, 2)),
+            (clock, &ms),
+        ],
+    )
 }
 
 /// The cone maps of one field.
@@ -214,28 +245,27 @@ pub fn generators(rows: &[GeneratorRow]) -> String {
         return String::new();
     };
     let [w, h] = first.size;
-    let mut text = format!(
+    let number = |value: Option<f64>| value.map_or("n/a".into(), |v| fixed(v, 4));
+    let ms = |row: &GeneratorRow| match (row.ms, row.estimate_ms) {
+        (Some(ms), _) => fixed(ms, 2),
+        (None, Some(ms)) => format!("n/a, about {ms:.0}"),
+        (None, None) => "n/a".into(),
+    };
+    format!(
         "\n### Maps of {}, {w} x {h}, {}\n\n",
         first.field, first.surface
-    );
-    text += "| generator      |       ms | mean ratio | of exact | wider than exact % |\n";
-    text += "|:---------------|----:|----:|----:|----:|\n";
-    for row in rows {
-        let number = |value: Option<f64>| value.map_or("n/a".into(), |v| format!("{v:.4}"));
-        let ms = match (row.ms, row.estimate_ms) {
-            (Some(ms), _) => format!("{ms:.2}"),
-            (None, Some(ms)) => format!("n/a, about {ms:.0}"),
-            (None, None) => "n/a".into(),
-        };
-        text += &format!(
-            "| {:<14} | {ms:>8} | {:>10} | {:>8} | {:>8} |\n",
-            row.generator,
-            number(row.mean_ratio),
-            number(row.of_exact),
-            number(row.wider_than_exact.map(|share| 100.0 * share)),
-        );
-    }
-    text
+    ) + &table(
+        rows,
+        &[
+            ("generator", &|r| r.generator.clone()),
+            ("ms", &ms),
+            ("mean ratio", &|r| number(r.mean_ratio)),
+            ("of exact", &|r| number(r.of_exact)),
+            ("wider than exact %", &|r| {
+                number(r.wider_than_exact.map(|share| 100.0 * share))
+            }),
+        ],
+    )
 }
 
 /// The tracers of one field.
@@ -244,38 +274,40 @@ pub fn tracers(rows: &[TracerRow]) -> String {
         return String::new();
     };
     let [w, h] = first.size;
-    let mut text = format!(
+    format!(
         "\n### Tracers over {}, {w} x {h}, {}\n\n",
         first.field, first.surface
-    );
-    text += "| view | tracer        | map            | steps, mean | p99 | skipped % | unconverged % | error, texels |\n";
-    text += "|----:|:--------------|:---------------|----:|----:|----:|----:|----:|\n";
-    for row in rows {
-        text += &format!(
-            "| {:4} | {:<13} | {:<14} | {:7.2} | {:4} | {:7.3} | {:7.3} | {:.2e} |\n",
-            row.view_deg,
-            row.tracer,
-            row.map,
-            row.steps_mean,
-            row.steps_p99,
-            100.0 * row.skipped,
-            100.0 * row.unconverged,
-            row.error_texels,
-        );
-    }
-    text
+    ) + &table(
+        rows,
+        &[
+            ("view", &|r| r.view_deg.to_string()),
+            ("tracer", &|r| r.tracer.clone()),
+            ("map", &|r| r.map.clone()),
+            ("steps, mean", &|r| fixed(r.steps_mean, 2)),
+            ("p99", &|r| r.steps_p99.to_string()),
+            ("skipped %", &|r| percent(r.skipped, 3)),
+            ("unconverged %", &|r| percent(r.unconverged, 3)),
+            ("error, texels", &|r| format!("{:.2e}", r.error_texels)),
+        ],
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A row of `safe` but for its mode, a setting, its time and its wrong pixels.
+    /// A row of some mode, setting, time and wrong pixels.
     fn row(mode: &str, set: &str, wall_ms: f64, behind: f64, unconverged: f64) -> Row {
-        let text = format!(
-            r#"{{"preset":"p","mode":"{mode}","parameters":{{{set}}},"baseline":false,"size":[100,100],"device":"d","wall_ms":{wall_ms},"gpu_ms":null,"evaluations_per_pixel":1,"iterations_per_pixel":1,"depth_error":{{"median":0,"p95":0,"p99":0,"max":0}},"behind":{behind},"front":0,"behind8":0,"front8":0,"holes":0,"false_hits":0,"start_violations":[],"unconverged":{unconverged},"flip":0,"truth":{{"stride":0.1,"moved":0}},"precision":null}}"#
-        );
-        serde_json::from_str(&text).expect("a row")
+        Row {
+            preset: "p".into(),
+            mode: mode.into(),
+            parameters: serde_json::from_str(&format!("{{{set}}}")).expect("a setting"),
+            size: [100, 100],
+            wall_ms,
+            behind,
+            unconverged,
+            ..Row::default()
+        }
     }
 
     #[test]
@@ -297,30 +329,13 @@ mod tests {
     #[test]
     fn a_column_of_times_has_one_clock_and_says_which() {
         let step = |gpu_ms: Option<f64>, precision: Option<String>| StepsRow {
-            preset: "p".into(),
-            mode: "safe".into(),
-            pass: "trace".into(),
-            size: [9, 9],
-            device: "d".into(),
-            cells: 81,
-            visited: 81,
-            evaluations: 81,
-            iterations: 81,
-            p50: 1,
-            p90: 1,
-            p99: 1,
-            max: 1,
-            sky: 0.0,
-            unconverged: 0.0,
-            waste_8x4: 1.0,
-            waste_8x8: 1.0,
-            histogram: Vec::new(),
             gpu_ms,
             wall_ms: 77.0,
             precision,
+            ..StepsRow::default()
         };
         let timed = levels(&[step(Some(5.0), None), step(Some(6.0), None)]);
-        assert!(timed.contains("|  gpu ms |") && timed.contains("|    5.00 |"));
+        assert!(timed.contains("| gpu ms |") && timed.contains("|   5.00 |"));
         assert!(!timed.contains("wall") && !timed.contains("Precision"));
         let partly = levels(&[step(Some(5.0), None), step(None, None)]);
         assert!(partly.contains("| wall ms |") && partly.contains(UNTIMED));

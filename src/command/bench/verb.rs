@@ -12,9 +12,9 @@ pub enum Bench {
     Error(error::ErrorBench),
     /// Evaluations, iterations and lane waste of every pass
     Steps(steps::StepsBench),
-    /// Cone maps and tracers of heightfields: time, width, steps, what is missed
+    /// Cone maps and tracers of heightfields: time, width, steps, missed hits
     Cones(cones::ConesBench),
-    /// Propose lipschitz, shell and fudge for a hole budget
+    /// Propose lipschitz, shell and fudge for a budget of lost pixels
     Calibrate(calibrate::CalibrateBench),
 }
 

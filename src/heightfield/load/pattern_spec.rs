@@ -17,7 +17,7 @@ pub struct PatternSpec {
     pub size: [u32; 2],
     /// Seed of its random numbers.
     pub seed: u32,
-    /// Exponent by which the power of `fbm` and `ridges` falls with the wave number.
+    /// Exponent by which the power of the waves falls with the wave number.
     pub power: f64,
 }
 
@@ -80,8 +80,8 @@ impl fmt::Display for PatternSpec {
         let [w, h] = self.size;
         write!(f, "{}:{w}x{h},seed={}", self.field.name(), self.seed)?;
         match self.field {
-            Pattern::Fbm | Pattern::Ridges => write!(f, ",power={}", self.power),
-            _ => Ok(()),
+            Pattern::Spikes | Pattern::Checker | Pattern::Sine | Pattern::Noise => Ok(()),
+            _ => write!(f, ",power={}", self.power),
         }
     }
 }
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn words_are_read_as_they_are_written() {
-        let read = |text| {
+        let read = |text: &str| {
             PatternSpec::read(text)
                 .expect("a field")
                 .expect("a good one")
@@ -121,8 +121,14 @@ mod tests {
         assert_eq!(read("fbm"), PatternSpec::new(Pattern::Fbm));
         let all = read("ridges:12x7,seed=3,power=1.5");
         assert_eq!((all.size, all.seed, all.power), ([12, 7], 3, 1.5));
-        let written = all.to_string();
-        assert_eq!(read(&written), all);
+        for text in [
+            "stones:9x9,power=3",
+            "ridges:12x7,seed=3,power=1.5",
+            "noise:4x4",
+        ] {
+            let spec = read(text);
+            assert_eq!(read(&spec.to_string()), spec);
+        }
         assert_eq!(read("sine:seed=4").size, [256, 256]);
         assert!(PatternSpec::read("fmb:1x1").is_none());
         for bad in [

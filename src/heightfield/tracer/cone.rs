@@ -3,8 +3,9 @@
 
 use crate::heightfield::conemap::{ConeMap, MapKind};
 use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::contract::{LocalRay, Trace, TraceError};
-use crate::heightfield::tracer::grid::FAR;
+use crate::heightfield::tracer::contract::{LocalRay, TraceError};
+use crate::heightfield::tracer::grid::{FAR, GridRay};
+use crate::heightfield::tracer::kind::TracerKind;
 
 /// The share of a ratio, and of the way that it gives, which is used. Ways are rounded by
 /// about 1e-15 of their length here and by 1e-7 in f32; the shader has shares of its own.
@@ -28,40 +29,43 @@ pub fn cone_way(ray: &LocalRay, ratio: f64, over: f64, offset: f64) -> f64 {
 }
 
 /// The parameter that a cone of the cone walk lets the ray go on to.
-pub fn cone_end(ray: &LocalRay, trace: &Trace, ratio: f64, over: f64, offset: f64) -> f64 {
-    trace.s + cone_way(ray, ratio * WALK_TRUST, over, offset) * WALK_TRUST
+pub fn cone_end(grid: &GridRay<'_>, ratio: f64, over: f64, offset: f64) -> f64 {
+    grid.trace.s + cone_way(grid.ray, ratio * WALK_TRUST, over, offset) * WALK_TRUST
 }
 
-/// Checks that a map is of one of the kinds that a tracer uses, and was made for the surface.
+/// Checks that a map is of a kind that a tracer can use, and was made for the surface.
 pub fn check_map(
-    tracer: &'static str,
-    kinds: &[MapKind],
+    tracer: TracerKind,
     surface: &HeightSurface,
     map: &ConeMap,
 ) -> Result<(), TraceError> {
     let kind = map.kind;
-    if !kinds.contains(&kind) {
+    if !tracer.facts().kinds.contains(&kind) {
+        let tracer = tracer.name();
         return Err(TraceError::Kind { tracer, kind });
     }
+    let heights = surface.heights();
     let over_cells = matches!(kind, MapKind::Walk | MapKind::WalkRelaxed);
-    let wanted = if over_cells {
+    let [w, h] = if over_cells {
         surface.cells()
     } else {
-        surface.heights().size()
+        heights.size()
     };
-    let found = map.size;
-    if found != wanted {
-        return Err(TraceError::Size { wanted, found });
-    }
-    let cones = if kind == MapKind::Quad { 4 } else { 1 };
-    let wanted = wanted[0] as usize * wanted[1] as usize * cones;
-    let found = map.ratios.len();
-    if found != wanted {
-        return Err(TraceError::Count { wanted, found });
-    }
-    let (wanted, found) = (surface.heights().wrap(), map.wrap);
-    if found != wanted {
-        return Err(TraceError::Wrap { wanted, found });
+    let channels = if kind == MapKind::Quad { 4 } else { 1 };
+    let cones = w as usize * h as usize * channels;
+    let debug = |value: &dyn std::fmt::Debug| format!("{value:?}");
+    for (what, wanted, found) in [
+        ("places", debug(&[w, h]), debug(&map.size)),
+        ("cones", debug(&cones), debug(&map.ratios.len())),
+        ("wrapping axes", debug(&heights.wrap()), debug(&map.wrap)),
+    ] {
+        if found != wanted {
+            return Err(TraceError::Misfit {
+                what,
+                wanted,
+                found,
+            });
+        }
     }
     let mut numbers = map.ratios.iter().chain([&map.offset]);
     match numbers.find(|n| !(n.is_finite() && **n >= 0.0)) {

@@ -27,9 +27,7 @@ use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
 use crate::heightfield::heights::{Patches, bilinear};
 use crate::heightfield::tracer::cone::cone_way;
 use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
-use crate::heightfield::tracer::grid::{
-    grid_begin, grid_hit, grid_leave, grid_over, grid_solve, grid_uv,
-};
+use crate::heightfield::tracer::grid::{GridRay, grid_begin};
 use crate::heightfield::tracer::kind::Parts;
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::wgsl;
@@ -143,11 +141,11 @@ pub fn make(parts: &Parts<'_>, mut method: ConeMethod) -> Result<Arc<dyn Tracer>
 }
 
 impl Cones {
-    /// Height and ratio of the cone over the ray at s.
-    fn cone(&self, ray: &LocalRay, trace: &Trace) -> (f64, f64) {
-        let surface = &*self.surface;
-        let [u, v] = grid_uv(ray, trace.cell, trace.s);
-        let [x, y] = surface.tile_cell(trace.cell).map(i64::from);
+    /// Height and ratio of the cone under the ray.
+    fn cone(&self, grid: &GridRay<'_>) -> (f64, f64) {
+        let (surface, axis, cell) = (grid.surface, grid.ray.axis, grid.trace.cell);
+        let [u, v] = grid.uv(cell, grid.trace.s);
+        let [x, y] = surface.tile_cell(cell).map(i64::from);
         // The sample of a box lies in its middle, those of a patch in its corners.
         let boxes = surface.patches() == Patches::Boxes;
         if self.lookup == Lookup::Nearest {
@@ -156,9 +154,9 @@ impl Cones {
             } else {
                 [x + i64::from(u >= 0.5), y + i64::from(v >= 0.5)]
             };
-            return (surface.heights().at(i, j), self.ratio(ray.axis, i, j));
+            return (surface.heights().at(i, j), self.ratio(axis, i, j));
         }
-        let height = surface.height(trace.cell, u, v);
+        let height = surface.height(cell, u, v);
         let [[i, u], [j, v]] = [[u, x as f64], [v, y as f64]].map(|[f, i]| {
             let at = if boxes { i + f - 0.5 } else { i + f };
             // The far edge belongs to the cell.
@@ -167,7 +165,7 @@ impl Cones {
         });
         let (i, j) = (i as i64, j as i64);
         let corners = [[0, 0], [1, 0], [0, 1], [1, 1]];
-        let ratios = corners.map(|[x, y]| self.ratio(ray.axis, i + x, j + y));
+        let ratios = corners.map(|[x, y]| self.ratio(axis, i + x, j + y));
         (height, bilinear(ratios, u, v))
     }
 
@@ -219,35 +217,37 @@ impl Tracer for Cones {
         trace
     }
 
-    fn advance(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        let surface = &*self.surface;
-        let node = surface.node(trace.cell, 0);
-        let over = grid_over(ray, trace, &node);
+    fn advance(&self, grid: &mut GridRay<'_>, work: &mut Work) -> Step {
+        let Trace { s, end, .. } = *grid.trace;
+        let ConeMethod {
+            solves,
+            scale,
+            refine: how,
+            ..
+        } = self.method;
+        let node = grid.surface.node(grid.trace.cell, 0);
+        let over = grid.over(&node);
         // Only the first step can begin under the surface.
-        if refine_over(surface, ray, trace.s) <= 0.0 {
-            grid_hit(surface, ray, trace, trace.s);
+        if refine_over(grid, s) <= 0.0 {
+            return grid.hit(s);
+        }
+        if solves && over.gap <= 0.0 && grid.solve(over.to) {
             return Step::Hit;
         }
-        let solves = self.method.solves;
-        if solves && over.gap <= 0.0 && grid_solve(surface, ray, trace, over.to) {
-            return Step::Hit;
+        let (height, ratio) = self.cone(grid);
+        let way = cone_way(grid.ray, ratio, grid.ray.height(s) - height, 0.0) * scale;
+        let next = (s + way).max(over.exit).min(end);
+        let grounded = next >= end && grid.trace.falls;
+        if grounded || refine_over(grid, next) <= 0.0 {
+            let low = if solves { over.to } else { s };
+            return refine(grid, [low, next], how, work);
         }
-        let (height, ratio) = self.cone(ray, trace);
-        let way = cone_way(ray, ratio, over.z - height, 0.0) * self.method.scale;
-        let next = (trace.s + way).max(over.exit).min(trace.end);
-        let grounded = next >= trace.end && trace.falls;
-        if grounded || refine_over(surface, ray, next) <= 0.0 {
-            let low = if solves { over.to } else { trace.s };
-            let how = self.method.refine;
-            refine(surface, ray, trace, [low, next], how, work);
-            return Step::Hit;
+        grid.trace.state = grid.leave(&node, &over, next);
+        if grid.trace.state == Step::Moving && grid.trace.left == 1 {
+            grid.trace.state = Step::Spent;
         }
-        trace.state = grid_leave(surface, ray, trace, &node, &over, next);
-        if trace.state == Step::Moving && trace.left == 1 {
-            trace.state = Step::Spent;
-        }
-        trace.left = trace.left.saturating_sub(1);
-        trace.state
+        grid.trace.left = grid.trace.left.saturating_sub(1);
+        grid.trace.state
     }
 
     fn map(&self) -> Option<&ConeMap> {

@@ -15,7 +15,7 @@ pub use crate::base::work::Step;
 use crate::base::work::Work;
 use crate::heightfield::conemap::{ConeMap, MapKind};
 use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
-use crate::heightfield::tracer::grid::grid_begin;
+use crate::heightfield::tracer::grid::{GridRay, grid_begin};
 
 /// A ray in the surface's own units: x and y in texels, z in heights. `axis` is not of unit
 /// length; s is the parameter of the caller's ray.
@@ -127,7 +127,7 @@ pub trait Tracer: Debug + Send + Sync {
     }
 
     /// What a step does with a ray that is moving.
-    fn advance(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step;
+    fn advance(&self, grid: &mut GridRay<'_>, work: &mut Work) -> Step;
 
     /// One step of bounded work; a ray that has ended stays as it is. `work` gains one
     /// evaluation, and an iteration for each round of refinement.
@@ -136,7 +136,13 @@ pub trait Tracer: Debug + Send + Sync {
             return trace.state;
         }
         work.evaluations += 1;
-        self.advance(ray, trace, work)
+        let surface = self.surface();
+        let mut grid = GridRay {
+            surface,
+            ray,
+            trace,
+        };
+        self.advance(&mut grid, work)
     }
 
     /// The cone map, for a tracer that uses one.
@@ -179,29 +185,15 @@ pub enum TraceError {
         /// The kind of the map.
         kind: MapKind,
     },
-    /// The map was made for another grid.
-    #[error("the cone map has {found:?} places, but the surface has {wanted:?}")]
-    Size {
-        /// Places of the surface.
-        wanted: [u32; 2],
-        /// Places of the map.
-        found: [u32; 2],
-    },
-    /// The number of cones does not fit the map's size.
-    #[error("the cone map has {found} cones, but its size needs {wanted}")]
-    Count {
-        /// Cones of its size.
-        wanted: usize,
-        /// Cones given.
-        found: usize,
-    },
-    /// The map's axes do not wrap as those of the surface do.
-    #[error("the cone map wraps {found:?}, but the surface wraps {wanted:?}")]
-    Wrap {
-        /// Axes of the surface.
-        wanted: [bool; 2],
-        /// Axes of the map.
-        found: [bool; 2],
+    /// The map was made for another surface.
+    #[error("the cone map has {what} {found}, but the surface needs {wanted}")]
+    Misfit {
+        /// What differs: places, cones, or wrapping axes.
+        what: &'static str,
+        /// What the surface needs.
+        wanted: String,
+        /// What the map has.
+        found: String,
     },
     /// A ratio or an offset that is out of range.
     #[error("the cone map contains {0}; ratios and offsets must be finite and not negative")]

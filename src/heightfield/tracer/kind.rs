@@ -53,14 +53,12 @@ pub struct TracerFacts {
 /// Makes a tracer.
 type Make = fn(&Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError>;
 
-impl TracerFacts {
-    fn new(accuracy: Accuracy, kinds: &'static [MapKind], steps: Steps, make: Make) -> Self {
-        Self {
-            accuracy,
-            kinds,
-            steps,
-            make,
-        }
+fn facts(accuracy: Accuracy, kinds: &'static [MapKind], steps: Steps, make: Make) -> TracerFacts {
+    TracerFacts {
+        accuracy,
+        kinds,
+        steps,
+        make,
     }
 }
 
@@ -85,12 +83,10 @@ impl Parts<'_> {
     /// # Errors
     /// There is none, it is of another kind, or it was made for another surface.
     pub fn map(&self) -> Result<Arc<ConeMap>, TraceError> {
-        let name = self.kind.name();
-        let Some(cones) = self.cones else {
-            return Err(TraceError::Missing(name));
-        };
-        check_map(name, self.kind.facts().kinds, self.surface, &cones.map)?;
-        Ok(cones.map.clone())
+        let missing = TraceError::Missing(self.kind.name());
+        let map = &self.cones.ok_or(missing)?.map;
+        check_map(self.kind, self.surface, map)?;
+        Ok(map.clone())
     }
 }
 
@@ -98,41 +94,38 @@ named_enum! {
     /// A way to find where a ray first meets a height surface.
     pub enum TracerKind: TracerFacts {
         /// The cone walk.
-        Walk = "walk" => TracerFacts::new(Exact, &[MapKind::Walk], Cells, walk::make),
+        Walk = "walk" => facts(Exact, &[MapKind::Walk], Cells, walk::make),
         /// The cone walk with relaxed cones.
-        WalkRelaxed = "walk-relaxed" =>
-            TracerFacts::new(Exact, &[MapKind::WalkRelaxed], Cells, relaxed::make),
+        WalkRelaxed = "walk-relaxed" => facts(Exact, &[MapKind::WalkRelaxed], Cells, relaxed::make),
         /// The cone walk over nodes as wide as a pixel, with the cones of cells.
-        WalkMip = "walk-mip" => TracerFacts::new(Pixel, &[MapKind::Walk], Cells, walk_mip::make),
+        WalkMip = "walk-mip" => facts(Pixel, &[MapKind::Walk], Cells, walk_mip::make),
         /// The cone walk over nodes as wide as a pixel, with the cones of nodes.
-        ConeMip = "cone-mip" =>
-            TracerFacts::new(Pixel, &[MapKind::Walk], Cells, walk_mip::make_with_nodes),
+        ConeMip = "cone-mip" => facts(Pixel, &[MapKind::Walk], Cells, walk_mip::make_with_nodes),
         /// Descent of the pyramid of maxima.
-        MaxMip = "max-mip" => TracerFacts::new(Exact, &[], Pyramid, max_mip::make),
+        MaxMip = "max-mip" => facts(Exact, &[], Pyramid, max_mip::make),
         /// Equal steps, then bisection (Policarpo, Oliveira, Comba 2005).
-        LinearBinary = "linear-binary" =>
-            TracerFacts::new(Approximate, &[], Divided(32), linear::make),
+        LinearBinary = "linear-binary" => facts(Approximate, &[], Divided(32), linear::make),
         /// Cone steps until the surface, with the exact solve of every patch on the way.
         CsmExact = "csm-exact" =>
-            TracerFacts::new(Approximate, &[Samples], Cells, |p| cones::make(p, cones::CSM_EXACT)),
+            facts(Approximate, &[Samples], Cells, |p| cones::make(p, cones::CSM_EXACT)),
         /// As many cone steps as the view needs. The paper shows its adaptive version with 20.
         CsmLoop = "csm-loop" =>
-            TracerFacts::new(Approximate, &[Samples], Limited(20), |p| cones::make(p, cones::CSM_LOOP)),
+            facts(Approximate, &[Samples], Limited(20), |p| cones::make(p, cones::CSM_LOOP)),
         /// The same number of cone steps for every ray: the paper's fixed version has 10.
         CsmFixed = "csm-fixed" =>
-            TracerFacts::new(Approximate, &[Samples], Limited(10), |p| cones::make(p, cones::SECANT)),
+            facts(Approximate, &[Samples], Limited(10), |p| cones::make(p, cones::SECANT)),
         /// Cone steps that are stretched, then bisection.
         CsmScaled = "csm-scaled" =>
-            TracerFacts::new(Approximate, &[Samples], Cells, |p| cones::make(p, cones::CSM_SCALED)),
+            facts(Approximate, &[Samples], Cells, |p| cones::make(p, cones::CSM_SCALED)),
         /// Cone steps with one cone for each of four sides.
         Quad = "quad" =>
-            TracerFacts::new(Approximate, &[MapKind::Quad], Cells, |p| cones::make(p, cones::SECANT)),
+            facts(Approximate, &[MapKind::Quad], Cells, |p| cones::make(p, cones::SECANT)),
         /// Relaxed cones, then bisection. Listing 18-3 has 15 cone steps.
         RcsBinary = "rcs-binary" =>
-            TracerFacts::new(Approximate, &[Relaxed], Limited(15), |p| cones::make(p, cones::RCS_BINARY)),
+            facts(Approximate, &[Relaxed], Limited(15), |p| cones::make(p, cones::RCS_BINARY)),
         /// Any cones over samples, then the secant method.
         Secant = "secant" =>
-            TracerFacts::new(Approximate, &[Samples, MapKind::Quad, Relaxed], Cells, |p| cones::make(p, cones::SECANT)),
+            facts(Approximate, &[Samples, MapKind::Quad, Relaxed], Cells, |p| cones::make(p, cones::SECANT)),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::base::shader::Module;
 use crate::base::work::Work;
 use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
 use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
-use crate::heightfield::tracer::grid::{grid_begin, grid_end, grid_hit, grid_land};
+use crate::heightfield::tracer::grid::{GridRay, grid_begin};
 use crate::heightfield::tracer::kind::Parts;
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::wgsl;
@@ -46,29 +46,26 @@ impl Tracer for LinearBinary {
         trace
     }
 
-    fn advance(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        let surface = &*self.surface;
+    fn advance(&self, grid: &mut GridRay<'_>, work: &mut Work) -> Step {
+        let Trace { s, end, left, .. } = *grid.trace;
         // Only the first step can begin under the surface.
-        if trace.left == self.steps && refine_over(surface, ray, trace.s) <= 0.0 {
-            grid_hit(surface, ray, trace, trace.s);
-            return Step::Hit;
+        if left == self.steps && refine_over(grid, s) <= 0.0 {
+            return grid.hit(s);
         }
-        let last = trace.left <= 1;
+        let last = left <= 1;
         let next = if last {
-            trace.end
+            end
         } else {
-            trace.s + (trace.end - trace.s) / f64::from(trace.left)
+            s + (end - s) / f64::from(left)
         };
-        if (last && trace.falls) || refine_over(surface, ray, next) <= 0.0 {
-            let (bracket, how) = ([trace.s, next], Refine::Binary(self.rounds));
-            refine(surface, ray, trace, bracket, how, work);
-            return Step::Hit;
+        if (last && grid.trace.falls) || refine_over(grid, next) <= 0.0 {
+            return refine(grid, [s, next], Refine::Binary(self.rounds), work);
         }
         if last {
-            return grid_end(surface, ray, trace);
+            return grid.end();
         }
-        trace.left -= 1;
-        grid_land(surface, ray, trace, next);
+        grid.trace.left -= 1;
+        grid.land(next);
         Step::Moving
     }
 

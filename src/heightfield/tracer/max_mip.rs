@@ -11,12 +11,10 @@ use std::sync::Arc;
 
 use crate::base::shader::Module;
 use crate::base::work::Work;
-use crate::heightfield::height_surface::HeightSurface;
+use crate::heightfield::height_surface::{HeightSurface, Node};
 use crate::heightfield::tracer::cone::WALK_TRUST;
 use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
-use crate::heightfield::tracer::grid::{
-    far_line, grid_begin, grid_end, grid_land, grid_over, grid_pass, grid_solve,
-};
+use crate::heightfield::tracer::grid::{GridRay, grid_begin};
 use crate::heightfield::tracer::kind::Parts;
 use crate::wgsl;
 
@@ -40,10 +38,11 @@ impl MaxMipTracer {
     }
 }
 
-/// Whether a line that ends a node of a level also ends one of the next level, or a tile.
-fn ends_parent(surface: &HeightSurface, axis: usize, line: i32, level: u32) -> bool {
-    let local = line.rem_euclid(surface.cells()[axis] as i32);
-    local & ((2 << level) - 1) == 0
+/// Whether the line by which the ray leaves a node also ends a node of the next level, or a tile.
+fn ends_parent(grid: &GridRay<'_>, axis: usize, node: &Node) -> bool {
+    let cells = grid.surface.cells()[axis] as i32;
+    let local = grid.far_line(axis, node).rem_euclid(cells);
+    local & ((2 << node.level) - 1) == 0
 }
 
 impl Tracer for MaxMipTracer {
@@ -57,34 +56,32 @@ impl Tracer for MaxMipTracer {
         trace
     }
 
-    fn advance(&self, ray: &LocalRay, trace: &mut Trace, _work: &mut Work) -> Step {
-        let surface = &*self.surface;
-        let node = surface.node(trace.cell, trace.level);
-        let over = grid_over(ray, trace, &node);
+    fn advance(&self, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+        let node = grid.surface.node(grid.trace.cell, grid.trace.level);
+        let over = grid.over(&node);
         if over.gap <= 0.0 {
             if node.level > 0 {
-                trace.level -= 1;
+                grid.trace.level -= 1;
                 // The ray meets nothing before it comes down to the maximum.
-                let height = over.z - node.maximum;
-                if height > 0.0 && ray.axis.z < 0.0 {
-                    let next = trace.s + height / -ray.axis.z * WALK_TRUST;
+                let fall = -grid.ray.axis.z;
+                if over.height > 0.0 && fall > 0.0 {
+                    let next = grid.trace.s + over.height / fall * WALK_TRUST;
                     if next < over.to {
-                        grid_land(surface, ray, trace, next);
+                        grid.land(next);
                     }
                 }
                 return Step::Moving;
             }
-            if grid_solve(surface, ray, trace, over.to) {
+            if grid.solve(over.to) {
                 return Step::Hit;
             }
         }
-        if over.exit >= trace.end {
-            return grid_end(surface, ray, trace);
+        if over.exit >= grid.trace.end {
+            return grid.end();
         }
-        let line = far_line(ray, over.axis, node.low, node.high);
-        grid_pass(surface, ray, trace, over.exit, over.axis, line);
-        if node.level < self.top() && ends_parent(surface, over.axis, line, node.level) {
-            trace.level += 1;
+        grid.pass(&node, over.exit, over.axis);
+        if node.level < self.top() && ends_parent(grid, over.axis, &node) {
+            grid.trace.level += 1;
         }
         Step::Moving
     }

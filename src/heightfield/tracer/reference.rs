@@ -9,8 +9,8 @@ use std::sync::Arc;
 use crate::base::shader::Module;
 use crate::base::work::Work;
 use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, Tracer};
-use crate::heightfield::tracer::grid::{grid_leave, grid_over, grid_solve};
+use crate::heightfield::tracer::contract::{Step, Tracer};
+use crate::heightfield::tracer::grid::GridRay;
 
 /// Solves cell by cell.
 #[derive(Clone, Debug)]
@@ -30,14 +30,13 @@ impl Tracer for ReferenceTracer {
         &self.surface
     }
 
-    fn advance(&self, ray: &LocalRay, trace: &mut Trace, _work: &mut Work) -> Step {
-        let surface = &*self.surface;
-        let node = surface.node(trace.cell, 0);
-        let over = grid_over(ray, trace, &node);
-        if grid_solve(surface, ray, trace, over.to) {
+    fn advance(&self, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+        let node = grid.surface.node(grid.trace.cell, 0);
+        let over = grid.over(&node);
+        if grid.solve(over.to) {
             return Step::Hit;
         }
-        grid_leave(surface, ray, trace, &node, &over, over.exit)
+        grid.leave(&node, &over, over.exit)
     }
 
     fn own_modules(&self) -> Vec<Module> {

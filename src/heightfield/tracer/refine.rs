@@ -8,13 +8,9 @@
 //! left, and solves these exactly. Over boxes every bracket is settled after its rounds: a
 //! point near a box does not tell whether the ray meets its top or its side.
 
-use crate::base::work::Work;
-use crate::heightfield::height_surface::HeightSurface;
+use crate::base::work::{Step, Work};
 use crate::heightfield::heights::Patches;
-use crate::heightfield::tracer::contract::{LocalRay, Trace};
-use crate::heightfield::tracer::grid::{
-    grid_cell, grid_cross, grid_exit, grid_hit, grid_land, grid_solve, grid_uv,
-};
+use crate::heightfield::tracer::grid::GridRay;
 
 /// How a bracket becomes a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,77 +30,55 @@ pub const SETTLE_ROUNDS: u32 = 24;
 pub const SETTLE_CELLS: u32 = 4;
 
 /// The ray's height above the surface at s.
-pub fn refine_over(surface: &HeightSurface, ray: &LocalRay, s: f64) -> f64 {
-    let cell = grid_cell(surface, ray, s);
-    let [u, v] = grid_uv(ray, cell, s);
-    ray.height(s) - surface.height(cell, u, v)
+pub fn refine_over(grid: &GridRay<'_>, s: f64) -> f64 {
+    let cell = grid.cell(s);
+    let [u, v] = grid.uv(cell, s);
+    grid.ray.height(s) - grid.surface.height(cell, u, v)
 }
 
 /// Marks the hit in a bracket `[low, high]`: the ray is above the surface at `low`, and not at
 /// `high`.
-pub fn refine(
-    surface: &HeightSurface,
-    ray: &LocalRay,
-    trace: &mut Trace,
-    bracket: [f64; 2],
-    how: Refine,
-    work: &mut Work,
-) {
+pub fn refine(grid: &mut GridRay<'_>, bracket: [f64; 2], how: Refine, work: &mut Work) -> Step {
     let (left, at) = match how {
         Refine::Settle => (bracket, bracket[1]),
-        Refine::Binary(rounds) => binary(surface, ray, bracket, rounds, work),
-        Refine::Secant(rounds) => secant(surface, ray, bracket, rounds, work),
+        Refine::Binary(rounds) => refine_binary(grid, bracket, rounds, work),
+        Refine::Secant(rounds) => refine_secant(grid, bracket, rounds, work),
     };
-    if how == Refine::Settle || surface.patches() == Patches::Boxes {
-        return settle(surface, ray, trace, left, work);
+    if how == Refine::Settle || grid.surface.patches() == Patches::Boxes {
+        return refine_settle(grid, left, work);
     }
-    trace.cell = grid_cell(surface, ray, at);
-    grid_hit(surface, ray, trace, at);
+    refine_mark(grid, at)
 }
 
 /// The bracket that is left, and the parameter to take for the hit.
 type Refined = ([f64; 2], f64);
 
-fn binary(
-    surface: &HeightSurface,
-    ray: &LocalRay,
-    bracket: [f64; 2],
-    rounds: u32,
-    work: &mut Work,
-) -> Refined {
-    let mut left = bracket;
-    for _ in 0..rounds {
-        left = halved(surface, ray, left, work);
-    }
-    (left, 0.5 * (left[0] + left[1]))
+/// Marks a hit at s, in the cell there.
+fn refine_mark(grid: &mut GridRay<'_>, s: f64) -> Step {
+    grid.trace.cell = grid.cell(s);
+    grid.hit(s)
 }
 
-/// The half of a bracket whose ends still lie on both sides.
-fn halved(
-    surface: &HeightSurface,
-    ray: &LocalRay,
-    [low, high]: [f64; 2],
-    work: &mut Work,
-) -> [f64; 2] {
+/// The half of a bracket that is a bracket.
+fn halved(grid: &GridRay<'_>, [low, high]: [f64; 2], work: &mut Work) -> [f64; 2] {
     work.iterations += 1;
     let middle = 0.5 * (low + high);
-    if refine_over(surface, ray, middle) <= 0.0 {
+    if refine_over(grid, middle) <= 0.0 {
         [low, middle]
     } else {
         [middle, high]
     }
 }
 
-fn secant(
-    surface: &HeightSurface,
-    ray: &LocalRay,
-    bracket: [f64; 2],
-    rounds: u32,
-    work: &mut Work,
-) -> Refined {
-    let [mut low, mut high] = bracket;
-    let mut above = refine_over(surface, ray, low).max(0.0);
-    let mut under = refine_over(surface, ray, high).min(0.0);
+fn refine_binary(grid: &GridRay<'_>, from: [f64; 2], rounds: u32, work: &mut Work) -> Refined {
+    let left = (0..rounds).fold(from, |left, _| halved(grid, left, work));
+    (left, 0.5 * (left[0] + left[1]))
+}
+
+fn refine_secant(grid: &GridRay<'_>, from: [f64; 2], rounds: u32, work: &mut Work) -> Refined {
+    let [mut low, mut high] = from;
+    let mut above = refine_over(grid, low).max(0.0);
+    let mut under = refine_over(grid, high).min(0.0);
     let mut at = high;
     for _ in 0..rounds {
         work.iterations += 1;
@@ -115,7 +89,7 @@ fn secant(
         } else {
             low
         };
-        let over = refine_over(surface, ray, at);
+        let over = refine_over(grid, at);
         if over <= 0.0 {
             (high, under) = (at, over);
         } else {
@@ -125,32 +99,25 @@ fn secant(
     ([low, high], at)
 }
 
-fn settle(
-    surface: &HeightSurface,
-    ray: &LocalRay,
-    trace: &mut Trace,
-    bracket: [f64; 2],
-    work: &mut Work,
-) {
+fn refine_settle(grid: &mut GridRay<'_>, bracket: [f64; 2], work: &mut Work) -> Step {
     let [mut low, mut high] = bracket;
     for _ in 0..SETTLE_ROUNDS {
-        if grid_cell(surface, ray, low) == grid_cell(surface, ray, high) {
+        if grid.cell(low) == grid.cell(high) {
             break;
         }
-        [low, high] = halved(surface, ray, [low, high], work);
+        [low, high] = halved(grid, [low, high], work);
     }
-    grid_land(surface, ray, trace, low);
+    grid.land(low);
     for _ in 0..SETTLE_CELLS {
-        let (exit, axis) = grid_exit(ray, trace.cell, trace.cell.map(|i| i + 1));
-        if grid_solve(surface, ray, trace, exit.min(high)) {
-            return;
+        let over = grid.over(&grid.surface.node(grid.trace.cell, 0));
+        if grid.solve(over.exit.min(high)) {
+            return Step::Hit;
         }
-        if exit >= high {
+        if over.exit >= high {
             break;
         }
-        grid_cross(ray, trace, exit, axis);
+        grid.cross(over.exit, over.axis);
     }
     // The ray is under the surface by less than a rounding, or at the edge of a box.
-    trace.cell = grid_cell(surface, ray, high);
-    grid_hit(surface, ray, trace, high);
+    refine_mark(grid, high)
 }

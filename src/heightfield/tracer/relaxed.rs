@@ -16,8 +16,8 @@ use crate::base::work::Work;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::tracer::cone::cone_end;
-use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
-use crate::heightfield::tracer::grid::{grid_end, grid_leave, grid_over, grid_solve};
+use crate::heightfield::tracer::contract::{Step, TraceError, Tracer};
+use crate::heightfield::tracer::grid::GridRay;
 use crate::heightfield::tracer::kind::Parts;
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::wgsl;
@@ -37,22 +37,19 @@ pub fn make(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
     }))
 }
 
-/// A step of a rising ray at height z that meets nothing in its cell: to the exit of the
-/// largest node that lies under it, or to its end if the whole surface lies under it.
-fn relaxed_rise(surface: &HeightSurface, ray: &LocalRay, trace: &mut Trace, z: f64) -> Step {
-    if z > f64::from(surface.maxima().top()) {
-        return grid_end(surface, ray, trace);
+/// A step of a rising ray that meets nothing in its cell: to the exit of the largest node that
+/// lies under it, or to its end if the whole surface lies under it.
+fn relaxed_rise(grid: &mut GridRay<'_>) -> Step {
+    let z = grid.ray.height(grid.trace.s);
+    let maxima = grid.surface.maxima();
+    if z > f64::from(maxima.top()) {
+        return grid.end();
     }
-    let mut node = surface.node(trace.cell, 0);
-    for level in 1..surface.maxima().levels.len() as u32 {
-        let wider = surface.node(trace.cell, level);
-        if wider.maximum >= z {
-            break;
-        }
-        node = wider;
-    }
-    let over = grid_over(ray, trace, &node);
-    grid_leave(surface, ray, trace, &node, &over, over.exit)
+    let nodes = (1..maxima.levels.len() as u32).map(|n| grid.surface.node(grid.trace.cell, n));
+    let under = nodes.take_while(|node| node.maximum < z).last();
+    let node = under.unwrap_or(grid.surface.node(grid.trace.cell, 0));
+    let over = grid.over(&node);
+    grid.leave(&node, &over, over.exit)
 }
 
 impl Tracer for WalkRelaxed {
@@ -60,29 +57,26 @@ impl Tracer for WalkRelaxed {
         &self.surface
     }
 
-    fn advance(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
-        let surface = &*self.surface;
-        let node = surface.node(trace.cell, 0);
-        let over = grid_over(ray, trace, &node);
-        if over.gap <= 0.0 && grid_solve(surface, ray, trace, over.to) {
+    fn advance(&self, grid: &mut GridRay<'_>, work: &mut Work) -> Step {
+        let node = grid.surface.node(grid.trace.cell, 0);
+        let over = grid.over(&node);
+        if over.gap <= 0.0 && grid.solve(over.to) {
             return Step::Hit;
         }
-        if ray.axis.z > 0.0 {
-            return relaxed_rise(surface, ray, trace, over.z);
+        if grid.ray.axis.z > 0.0 {
+            return relaxed_rise(grid);
         }
-        let ratio = self.map.ratios[surface.number(trace.cell) as usize];
-        let next = cone_end(ray, trace, ratio, over.z - node.maximum, self.map.offset);
-        if next > over.exit && over.exit < trace.end {
-            let end = next.min(trace.end);
-            let grounded = next >= trace.end && trace.falls;
+        let ratio = self.map.ratios[grid.surface.number(grid.trace.cell) as usize];
+        let next = cone_end(grid, ratio, over.height, self.map.offset);
+        let (exit, end) = (over.exit, grid.trace.end);
+        if next > exit && exit < end {
+            let grounded = next >= end && grid.trace.falls;
             // The ray meets nothing in its cell, so that the bracket may begin at the exit.
-            if grounded || refine_over(surface, ray, end) <= 0.0 {
-                let bracket = [over.exit, end];
-                refine(surface, ray, trace, bracket, Refine::Settle, work);
-                return Step::Hit;
+            if grounded || refine_over(grid, next.min(end)) <= 0.0 {
+                return refine(grid, [exit, next.min(end)], Refine::Settle, work);
             }
         }
-        grid_leave(surface, ray, trace, &node, &over, next)
+        grid.leave(&node, &over, next)
     }
 
     fn map(&self) -> Option<&ConeMap> {

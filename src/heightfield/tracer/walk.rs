@@ -22,8 +22,8 @@ use crate::base::work::Work;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::tracer::cone::cone_end;
-use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
-use crate::heightfield::tracer::grid::{grid_leave, grid_over, grid_solve};
+use crate::heightfield::tracer::contract::{Step, TraceError, Tracer};
+use crate::heightfield::tracer::grid::GridRay;
 use crate::heightfield::tracer::kind::Parts;
 use crate::wgsl;
 
@@ -47,16 +47,15 @@ impl Tracer for Walk {
         &self.surface
     }
 
-    fn advance(&self, ray: &LocalRay, trace: &mut Trace, _work: &mut Work) -> Step {
-        let surface = &*self.surface;
-        let node = surface.node(trace.cell, 0);
-        let over = grid_over(ray, trace, &node);
-        if over.gap <= 0.0 && grid_solve(surface, ray, trace, over.to) {
+    fn advance(&self, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+        let node = grid.surface.node(grid.trace.cell, 0);
+        let over = grid.over(&node);
+        if over.gap <= 0.0 && grid.solve(over.to) {
             return Step::Hit;
         }
-        let ratio = self.map.ratios[surface.number(trace.cell) as usize];
-        let next = cone_end(ray, trace, ratio, over.z - node.maximum, self.map.offset);
-        grid_leave(surface, ray, trace, &node, &over, next)
+        let ratio = self.map.ratios[grid.surface.number(grid.trace.cell) as usize];
+        let next = cone_end(grid, ratio, over.height, self.map.offset);
+        grid.leave(&node, &over, next)
     }
 
     fn map(&self) -> Option<&ConeMap> {

@@ -27,8 +27,8 @@ use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, rounded_down};
 use crate::heightfield::height_surface::{HeightSurface, Node, TracerParameters};
 use crate::heightfield::tracer::cone::{WALK_TRUST, check_map, cone_end};
-use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
-use crate::heightfield::tracer::grid::{grid_hit, grid_land, grid_leave, grid_over, grid_solve};
+use crate::heightfield::tracer::contract::{Step, TraceError, Tracer};
+use crate::heightfield::tracer::grid::{GridRay, Over};
 use crate::heightfield::tracer::kind::{Parts, TracerKind};
 use crate::wgsl;
 
@@ -40,8 +40,7 @@ pub type NodeCones = Arc<Vec<ConeLevel>>;
 /// # Errors
 /// The map is of another kind, or was made for another surface.
 pub fn node_cones(surface: &HeightSurface, map: &ConeMap) -> Result<NodeCones, TraceError> {
-    let kind = TracerKind::ConeMip;
-    check_map(kind.name(), kind.facts().kinds, surface, map)?;
+    check_map(TracerKind::ConeMip, surface, map)?;
     let levels = mips(&surface.maxima().levels[0].max, map);
     // A map that fits has a ratio for each cell.
     Ok(Arc::new(levels.unwrap_or_default()))
@@ -76,7 +75,7 @@ pub fn make(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
 pub fn make_with_nodes(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
     let nodes = match parts.cones.and_then(|cones| cones.nodes.clone()) {
         Some(nodes) => nodes,
-        None => node_cones(&parts.surface, &*parts.map()?)?,
+        None => node_cones(parts.surface, &*parts.map()?)?,
     };
     with(parts, Some(nodes))
 }
@@ -93,24 +92,18 @@ pub fn walk_mip_level(surface: &HeightSurface, lod: f64, s: f64) -> u32 {
     texels.max(1).ilog2().min(top)
 }
 
-/// Marks the hit of a node by a ray that is `over` above its maximum: where the ray comes down
-/// to the maximum, at most at `to`, or at once.
-fn walk_mip_meet(
-    surface: &HeightSurface,
-    ray: &LocalRay,
-    trace: &mut Trace,
-    node: &Node,
-    over: f64,
-    to: f64,
-) {
-    let mut s = trace.s;
-    if over > 0.0 && ray.axis.z < 0.0 {
-        s = (s + over / -ray.axis.z * WALK_TRUST).min(to);
-        grid_land(surface, ray, trace, s);
+/// Marks the hit of a node: where the ray comes down to its maximum, or at once.
+fn walk_mip_meet(grid: &mut GridRay<'_>, node: &Node, over: &Over) -> Step {
+    let mut s = grid.trace.s;
+    let fall = -grid.ray.axis.z;
+    if over.height > 0.0 && fall > 0.0 {
+        s = (s + over.height / fall * WALK_TRUST).min(over.to);
+        grid.land(s);
         // The line by which the ray leaves the node belongs to the node.
-        trace.cell = [0, 1].map(|a| trace.cell[a].clamp(node.low[a], node.high[a] - 1));
+        let cell = grid.trace.cell;
+        grid.trace.cell = [0, 1].map(|a| cell[a].clamp(node.low[a], node.high[a] - 1));
     }
-    grid_hit(surface, ray, trace, s);
+    grid.hit(s)
 }
 
 impl WalkMip {
@@ -131,24 +124,22 @@ impl Tracer for WalkMip {
         &self.surface
     }
 
-    fn advance(&self, ray: &LocalRay, trace: &mut Trace, _work: &mut Work) -> Step {
-        let surface = &*self.surface;
-        trace.level = walk_mip_level(surface, self.lod, trace.s);
-        let node = surface.node(trace.cell, trace.level);
-        let over = grid_over(ray, trace, &node);
+    fn advance(&self, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+        grid.trace.level = walk_mip_level(grid.surface, self.lod, grid.trace.s);
+        let node = grid.surface.node(grid.trace.cell, grid.trace.level);
+        let over = grid.over(&node);
         if over.gap <= 0.0 {
             if node.level > 0 {
-                let height = over.z - node.maximum;
-                walk_mip_meet(surface, ray, trace, &node, height, over.to);
-                return Step::Hit;
+                return walk_mip_meet(grid, &node, &over);
             }
-            if grid_solve(surface, ray, trace, over.to) {
+            if grid.solve(over.to) {
                 return Step::Hit;
             }
         }
-        let (ratio, apex) = self.cone(trace.cell, &node);
-        let next = cone_end(ray, trace, ratio, over.z - apex, self.map.offset);
-        grid_leave(surface, ray, trace, &node, &over, next)
+        let (ratio, apex) = self.cone(grid.trace.cell, &node);
+        let height = grid.ray.height(grid.trace.s) - apex;
+        let next = cone_end(grid, ratio, height, self.map.offset);
+        grid.leave(&node, &over, next)
     }
 
     fn map(&self) -> Option<&ConeMap> {

@@ -28,7 +28,7 @@ const LEAST_RISE: f64 = 1.0 / (1_u64 << 40) as f64;
 pub enum Cost {
     /// `d^2 / rise^2`: no sample inside a cone over a sample.
     Cone,
-    /// `(d + offset) / rise`: cells keep clear of a cone over a cell (METHOD 4's walk).
+    /// `(d + offset) / rise`: cells keep clear of a cone over a cell (docs/method.md, 4).
     Walk {
         /// Room in texels.
         offset: f64,

@@ -1,9 +1,9 @@
-//! Pyramids of cone maps for coarse look-ups: of each node the highest apex and the
-//! narrowest cone under it. Twin: `wgsl/heightfield/conemap/generate/mips.wgsl`.
+//! Pyramids of cone maps for coarse look-ups: each node holds the highest apex and the
+//! narrowest cone under it.
 //!
-//! A cone whose apex is raised and whose ratio is lowered lies within the one that it
-//! was: so a node's cone, put over any of its places, is inside the cone of that place.
-//! Averages, which graphics hardware makes of its own accord, promise nothing. Levels
+//! If the apex of a cone is raised and its ratio lowered, the new cone lies within the old
+//! one. So a node's cone, put over any of its places, is inside the cone of that place.
+//! Averages, which graphics hardware makes by default, promise nothing. Sizes
 //! halve rounding up, so that no row or column is lost.
 
 use rayon::prelude::*;

@@ -18,7 +18,7 @@ pub fn slopes(heights: &Heights) -> Vec<[f32; 2]> {
     (0..w * h).into_par_iter().map(slope).collect()
 }
 
-/// The heights of the two neighbours of a sample along an axis, of which at a border that
+/// The heights of the two neighbours of a sample along an axis. At a border that
 /// does not wrap one is the sample itself.
 fn beside(heights: &Heights, axis: usize, place: [i64; 2]) -> (f32, f32) {
     let at = |step: i64| {

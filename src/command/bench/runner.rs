@@ -1,0 +1,77 @@
+//! The renders of a measurement, with progress.
+
+use crate::command::executor::Executor;
+use crate::command::interrupt;
+use crate::command::progress::Progress;
+use crate::gpu::RenderError;
+use crate::picture::frame::Frame;
+use crate::plan::{Extras, Plan};
+use crate::scene::Assets;
+
+/// Warm runs that a median is taken of.
+pub const RUNS: usize = 5;
+
+/// Counts work and keeps the fronts of the levels; no colours.
+pub const COUNTED: Extras = Extras {
+    count: true,
+    levels: true,
+    depth_only: true,
+    normals: false,
+    time: false,
+};
+/// Asks the device for its times; no colours.
+pub const TIMED: Extras = Extras {
+    time: true,
+    count: false,
+    levels: false,
+    ..COUNTED
+};
+
+/// Does a known number of renders.
+pub struct Runner<'a> {
+    executor: &'a mut Executor,
+    assets: &'a Assets,
+    progress: Progress,
+    done: usize,
+    all: usize,
+}
+
+impl<'a> Runner<'a> {
+    /// Begins so many renders; `what` is what they measure.
+    pub fn new(executor: &'a mut Executor, assets: &'a Assets, what: &str, all: usize) -> Self {
+        let progress = Progress::start(&format!("measuring {what}"));
+        Self {
+            executor,
+            assets,
+            progress,
+            done: 0,
+            all,
+        }
+    }
+
+    /// Does one of them; `detail` tells it from the others.
+    ///
+    /// # Errors
+    /// The device failed, or an interrupt.
+    pub fn render(
+        &mut self,
+        plan: &Plan,
+        extras: Extras,
+        detail: &str,
+    ) -> Result<Frame, RenderError> {
+        let (progress, done, all) = (&mut self.progress, self.done as f64, self.all as f64);
+        let frame = self
+            .executor
+            .render(plan, self.assets, extras, &mut |now| {
+                progress.report((done + now.done) / all, detail);
+                !interrupt::asked()
+            })?;
+        self.done += 1;
+        Ok(frame)
+    }
+}
+
+/// `mandelbox (3 of 14)`.
+pub fn of_how_many(name: &str, index: usize, all: usize) -> String {
+    format!("{name} ({} of {all})", index + 1)
+}

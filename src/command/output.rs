@@ -1,0 +1,139 @@
+//! Where a render writes its picture, and in which format.
+
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+
+use crate::command::failure::usage;
+use crate::command::render::Render;
+use crate::command::sink::is_stdout;
+use crate::picture::frame::Frame;
+use crate::picture::{Layer, OutputError, Shades, write_exr, write_jpeg, write_png, write_webp};
+use crate::plan::Plan;
+use crate::preset;
+
+/// The format of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 or 16 bits, with the preset.
+    Png,
+    /// 8 bits, with losses.
+    Jpeg,
+    /// 8 bits.
+    WebP,
+    /// All layers in 32 bits, with the preset.
+    Exr,
+}
+
+/// Formats by the extensions of file names.
+const FORMATS: [(&str, Format); 5] = [
+    ("png", Format::Png),
+    ("jpg", Format::Jpeg),
+    ("jpeg", Format::Jpeg),
+    ("webp", Format::WebP),
+    ("exr", Format::Exr),
+];
+
+/// Quality of a JPEG: nobody sees its losses, and higher ones double the file.
+const QUALITY: u8 = 92;
+
+impl Format {
+    /// The format that the name of the output asks for, if the other options fit it.
+    ///
+    /// # Errors
+    /// The extension is unknown, or an option or the size does not fit the format.
+    pub fn of(output: &Path, args: &Render, size: [u32; 2]) -> Result<Self> {
+        let extension = output.extension().and_then(|e| e.to_str());
+        let extension = extension.unwrap_or_default().to_lowercase();
+        let known = FORMATS.iter().find(|(known, _)| *known == extension);
+        let format = match known {
+            _ if is_stdout(output) => Self::Png,
+            Some((_, format)) => *format,
+            None => {
+                return Err(usage(format!(
+                    "`{}` does not say what to write: name a .png, .jpg, .jpeg, .webp or .exr file, or - for PNG on standard output",
+                    output.display()
+                )));
+            }
+        };
+        let is = |f| format == f;
+        let wrong = if is(Self::Exr) && args.layer != Layer::Color {
+            "an EXR has all layers; leave --layer out, or write a .png"
+        } else if is(Self::Exr) && args.depth.is_some() {
+            "an EXR has 32 bits per channel; leave --depth out, or write a .png"
+        } else if !is(Self::Png) && args.depth.is_some() {
+            "JPEG and WebP have 8 bits per channel; leave --depth out, or write a .png"
+        } else if !is(Self::Jpeg) && args.quality.is_some() {
+            "only JPEG has a quality; leave --quality out, or write a .jpg"
+        } else if is(Self::WebP) && size.iter().any(|n| *n > 16_383) {
+            "a WebP has at most 16383 pixels along each side; write a .png"
+        } else if is(Self::Jpeg) && size.iter().any(|n| *n > 65_535) {
+            "a JPEG has at most 65535 pixels along each side; write a .png"
+        } else {
+            return Ok(format);
+        };
+        Err(usage(wrong))
+    }
+
+    /// Most memory that a render takes at once, per pixel.
+    pub fn bytes_per_pixel(self, cpu: bool) -> u64 {
+        // Measured on 8 million pixels, and rounded up. The CPU executor holds every
+        // pixel's hit in f64 on its way; an EXR its channels beside the frame.
+        let rendering = if cpu { 140 } else { 60 };
+        let writing = if self == Self::Exr { 125 } else { 60 };
+        rendering.max(writing)
+    }
+
+    /// The picture as the bytes of a file. `errors` are those of the layer that shows them.
+    ///
+    /// # Errors
+    /// The encoder failed.
+    pub fn encode(
+        self,
+        args: &Render,
+        plan: &Plan,
+        frame: &Frame,
+        errors: Vec<f64>,
+    ) -> Result<Vec<u8>, OutputError> {
+        let preset = preset::write(plan);
+        let mut content = Vec::new();
+        let to = &mut Cursor::new(&mut content);
+        let shades = || Shades::new(args.layer, frame, plan).with_errors(errors);
+        match self {
+            Self::Exr => write_exr(to, frame, plan, &preset)?,
+            Self::Jpeg => write_jpeg(to, &shades(), args.quality.unwrap_or(QUALITY))?,
+            Self::WebP => write_webp(to, &shades())?,
+            Self::Png => {
+                let depth = args.depth.unwrap_or_default();
+                write_png(to, &shades(), depth, &plan.title, &preset)?;
+            }
+        }
+        Ok(content)
+    }
+}
+
+/// The file that a picture goes to without -o: `NAME.png`, with another size
+/// `NAME-640x360.png`, and of another layer `NAME.depth.png`. A picture with other settings
+/// replaces only its own like.
+///
+/// # Errors
+/// The file exists and holds another preset than the one with `--set`.
+pub fn default_name(name: &str, args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<PathBuf> {
+    let mut file = name.to_string();
+    if plan.size != own_size {
+        file += &format!("-{}x{}", plan.size[0], plan.size[1]);
+    }
+    if args.layer != Layer::Color {
+        file += &format!(".{}", args.layer.word());
+    }
+    let file = PathBuf::from(file + ".png");
+    let same = || preset::find(&file).is_ok_and(|found| found.text == preset::write(plan));
+    if !args.set.is_empty() && file.exists() && !same() {
+        return Err(usage(format!(
+            "`{}` exists and has other settings; name the new picture with -o",
+            file.display()
+        )));
+    }
+    Ok(file)
+}

@@ -1,0 +1,273 @@
+//! What is in the files: layers, bits, channels and text.
+
+use std::fs;
+use std::path::Path;
+
+use exr::prelude::{AnyChannels, FlatSamples, Layer};
+
+use crate::folder::Folder;
+use crate::tools::{Picture, decode, done, fails, rendered, tiny};
+
+fn picture(folder: &Folder, more: &str) -> Picture {
+    rendered(folder, "mandelbox", &format!("{more} -o l.png"));
+    decode(&folder.bytes("l.png"))
+}
+
+#[test]
+fn layers_and_depths_are_what_they_say() {
+    let folder = Folder::new();
+    let color = picture(&folder, "").pixels;
+    for layer in ["depth", "normal", "position", "steps", "state"] {
+        for (bits, bytes) in [("8", 1), ("16", 2)] {
+            let found = picture(&folder, &format!("--layer {layer} --depth {bits}"));
+            // Colours are sRGB, data are not.
+            assert!(found.info.srgb.is_none(), "{layer}");
+            let pixels = found.pixels;
+            let channels = if layer == "depth" { 1 } else { 3 };
+            assert_eq!(pixels.len(), 24 * 16 * channels * bytes, "{layer} {bits}");
+            assert_ne!(pixels, color, "{layer} shows colour");
+            if layer == "depth" {
+                // The box does not reach the corner: sky, which is white.
+                assert!(pixels[..bytes].iter().all(|b| *b == 255));
+                assert!(pixels.chunks(bytes).any(|p| p.iter().all(|b| *b == 0)));
+            }
+            if layer == "state" && bytes == 1 {
+                assert_eq!(pixels[..3], [23, 38, 77], "sky is dark blue");
+            }
+        }
+    }
+    // 16 bits are more than 8 bits twice.
+    let deep = picture(&folder, "--depth 16");
+    assert!(deep.info.srgb.is_some());
+    let deep = deep.pixels;
+    assert!(deep.chunks(2).any(|p| p[0] != p[1]));
+    let off = deep
+        .chunks(2)
+        .zip(&color)
+        .filter(|(d, c)| d[0].abs_diff(**c) > 1);
+    assert_eq!(off.count(), 0, "8 and 16 bits show different pictures");
+}
+
+#[test]
+fn a_png_tells_its_title_program_and_preset_in_chunks_that_all_programs_read() {
+    let folder = Folder::new();
+    let info = picture(&folder, "--set title=Box").info;
+    let text = |keyword: &str| {
+        let found = info
+            .uncompressed_latin1_text
+            .iter()
+            .find(|c| c.keyword == keyword);
+        found.map(|c| c.text.as_str()).unwrap_or_default()
+    };
+    assert_eq!(text("Title"), "Box");
+    assert_eq!(
+        text("Software"),
+        concat!("conemarch ", env!("CARGO_PKG_VERSION"))
+    );
+    assert!(text("conemarch preset").contains("title = \"Box\""));
+    assert!(info.utf8_text.is_empty());
+    // Other letters need the other chunk.
+    let info = picture(&folder, "--set title=Würfel").info;
+    let unicode: Vec<&str> = info.utf8_text.iter().map(|c| c.keyword.as_str()).collect();
+    assert_eq!(unicode, ["Title", "conemarch preset"]);
+    done(&folder, "render l.png --explain");
+}
+
+/// A picture of another program, with one text chunk.
+fn foreign(fill: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>)) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+    encoder.set_color(png::ColorType::Grayscale);
+    fill(&mut encoder);
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(&[7]).expect("a pixel");
+    writer.finish().expect("an end");
+    bytes
+}
+
+#[test]
+fn a_preset_is_read_from_any_kind_of_text_chunk() {
+    let folder = Folder::new();
+    let (keyword, text) = (
+        "conemarch preset".to_string(),
+        "[scene]\nkind = \"slab\"\n".to_string(),
+    );
+    let [k, t] = [&keyword, &text];
+    folder.write(
+        "a.png",
+        foreign(|e| e.add_text_chunk(k.clone(), t.clone()).unwrap()),
+    );
+    folder.write(
+        "b.png",
+        foreign(|e| e.add_ztxt_chunk(k.clone(), t.clone()).unwrap()),
+    );
+    folder.write(
+        "c.png",
+        foreign(|e| e.add_itxt_chunk(k.clone(), t.clone()).unwrap()),
+    );
+    for name in ["a.png", "b.png", "c.png"] {
+        done(&folder, &format!("render {name} --explain"));
+    }
+    folder.write("none.png", foreign(|_| {}));
+    folder.write("not.png", b"\x89PNG\r\n\x1a\nnonsense");
+    fails(
+        &folder,
+        &[
+            (&tiny("none.png", ""), 1, "none.png: carries no preset"),
+            (&tiny("not.png", ""), 1, "not.png: is a broken PNG"),
+        ],
+    );
+}
+
+#[test]
+fn jpeg_and_webp_show_the_picture() {
+    let folder = Folder::new();
+    let png = picture(&folder, "").pixels;
+    rendered(&folder, "mandelbox", "-o a.webp");
+    let webp = image::load_from_memory(&folder.bytes("a.webp")).expect("a WebP");
+    assert_eq!(webp.into_rgb8().into_raw(), png, "WebP is without loss");
+    let jpeg = |more: &str| {
+        rendered(&folder, "mandelbox", more);
+        let bytes = folder.bytes("a.jpg");
+        let pixels = image::load_from_memory(&bytes)
+            .expect("a JPEG")
+            .into_rgb8()
+            .into_raw();
+        let off = pixels
+            .iter()
+            .zip(&png)
+            .map(|(a, b)| f64::from(a.abs_diff(*b)));
+        (bytes.len(), off.sum::<f64>() / png.len() as f64)
+    };
+    let (usual, off) = jpeg("-o a.jpg");
+    assert!(off > 0.0 && off < 6.0, "{off}");
+    assert_eq!(jpeg("-o a.jpg --quality 92").0, usual);
+    let (small, worse) = jpeg("-o a.jpg --quality 20");
+    assert!(
+        small < usual && worse > off,
+        "{small} {usual} {worse} {off}"
+    );
+    // A layer of one channel.
+    rendered(&folder, "mandelbox", "-o d.jpeg --layer depth");
+    let depth = image::load_from_memory(&folder.bytes("d.jpeg")).expect("a JPEG");
+    assert_eq!(depth.color(), image::ColorType::L8);
+}
+
+fn exr_layer(path: &Path) -> Layer<AnyChannels<FlatSamples>> {
+    exr::prelude::read_first_flat_layer_from_file(path)
+        .expect("an EXR")
+        .layer_data
+}
+
+fn values(layer: &Layer<AnyChannels<FlatSamples>>, name: &str) -> Vec<f32> {
+    let mut list = layer.channel_data.list.iter();
+    let channel = list.find(|c| c.name.to_string() == name).expect(name);
+    channel.sample_data.values_as_f32().collect()
+}
+
+#[test]
+fn an_exr_has_exactly_the_promised_channels() {
+    let folder = Folder::new();
+    let promised =
+        "A B G R Z depth.Z normal.X normal.Y normal.Z position.X position.Y position.Z state.Y";
+    for (more, last) in [("-o a.exr", ""), ("-o b.exr --stats s.json", " steps.Y")] {
+        rendered(&folder, "mandelbox", more);
+        let layer = exr_layer(&folder.0.join(&more[3..8]));
+        let list = &layer.channel_data.list;
+        assert!(
+            list.iter()
+                .all(|c| matches!(c.sample_data, FlatSamples::F32(_)))
+        );
+        let names: Vec<String> = list.iter().map(|c| c.name.to_string()).collect();
+        assert_eq!(names.join(" "), format!("{promised}{last}"));
+    }
+    let layer = exr_layer(&folder.0.join("a.exr"));
+    let of = |name: &str| values(&layer, name);
+    let (depth, planar, state) = (of("depth.Z"), of("Z"), of("state.Y"));
+    assert_eq!(depth.len(), 24 * 16);
+    assert!(of("A").iter().all(|a| *a == 1.0));
+    for ((t, z), s) in depth.iter().zip(&planar).zip(&state) {
+        assert_eq!(
+            (*t == 1e10, *z == 1e10),
+            (*s == 0.0, *s == 0.0),
+            "depth {t} {z}, state {s}"
+        );
+    }
+    assert!(state.contains(&1.0) && state.contains(&0.0));
+    // Both are the same on the axis, and the planar one is shorter beside it: by the ray's
+    // angle to the view, which positions tell too.
+    let forward = [-10.0_f32, 17.0, -12.0].map(|x| x / 533.0_f32.sqrt());
+    let position = ["X", "Y", "Z"].map(|x| of(&format!("position.{x}")));
+    let eye = [10.0, -17.0, 12.0];
+    let mut shorter = 0;
+    for i in (0..state.len()).filter(|i| state[*i] == 1.0) {
+        let along: f32 = (0..3).map(|a| (position[a][i] - eye[a]) * forward[a]).sum();
+        assert!(
+            (along - planar[i]).abs() < 1e-4 * along,
+            "{along} {}",
+            planar[i]
+        );
+        assert!(planar[i] <= depth[i]);
+        shorter += usize::from(planar[i] < 0.999 * depth[i]);
+    }
+    assert!(shorter > 0);
+}
+
+#[test]
+fn an_exr_tells_where_it_comes_from_and_is_the_same_every_time() {
+    let folder = Folder::new();
+    for name in ["a.exr", "b.exr"] {
+        rendered(&folder, "mandelbox", &format!("-o {name}"));
+    }
+    let bytes = folder.bytes("a.exr");
+    assert!(bytes == folder.bytes("b.exr"), "two runs differ");
+    let image = exr::prelude::read_first_flat_layer_from_file(folder.0.join("a.exr"));
+    let image = image.expect("an EXR");
+    let software = image.layer_data.attributes.software_name.expect("a name");
+    assert!(software.to_string().starts_with("conemarch "));
+    let colors = image.attributes.chromaticities.expect("chromaticities");
+    assert_eq!(
+        (colors.red.0, colors.green.1, colors.white.0),
+        (0.64, 0.60, 0.3127)
+    );
+    assert_eq!(image.attributes.pixel_aspect, 1.0);
+    let texts = image
+        .layer_data
+        .attributes
+        .other
+        .into_iter()
+        .chain(image.attributes.other);
+    let texts: Vec<(String, String)> = texts
+        .map(|(name, value)| (name.to_string(), value.into_text().unwrap().to_string()))
+        .collect();
+    let text = |name: &str| &texts.iter().find(|(n, _)| n == name).expect(name).1;
+    assert!(text("conemarch camera").starts_with("eye = [10.0, -17.0, 12.0]\ntarget = "));
+    folder.write("again.toml", text("conemarch preset"));
+    rendered(&folder, "again.toml", "-o c.exr");
+    assert!(
+        bytes == folder.bytes("c.exr"),
+        "its preset makes another picture"
+    );
+    assert!(fs::exists(folder.0.join("c.exr")).unwrap());
+}
+
+#[test]
+fn errors_are_a_layer() {
+    let folder = Folder::new();
+    // Nothing of the truth is too deep; red says that much of the slides' picture is.
+    let red = |mode: &str| {
+        let more = format!("--layer error --set march.mode={mode} -o e.png");
+        let said = rendered(&folder, "bench-thin", &more);
+        let at = |word: &str| said.find(word).unwrap_or(usize::MAX);
+        assert!(at("the truth to compare with") < at("e.png"), "{said}");
+        let pixels = decode(&folder.bytes("e.png")).pixels;
+        let red = pixels
+            .chunks(3)
+            .filter(|c| c[0] > c[2].saturating_add(150))
+            .count();
+        fs::remove_file(folder.0.join("e.png")).unwrap();
+        red
+    };
+    assert_eq!(red("truth"), 0);
+    assert!(red("slides-fast") > 10);
+}

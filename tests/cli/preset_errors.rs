@@ -1,0 +1,165 @@
+//! Errors of presets and overrides: the place, the key, the value, and what to write instead.
+
+use conemarch::preset::{Override, PresetError, read, read_with, write};
+use toml::Value;
+
+use super::presets::{all_keys, get, least, toml, with};
+
+#[test]
+fn no_key_takes_what_is_no_value_for_anything_and_says_where() {
+    let bad = r#"nan;inf;-inf;{};[];1979-05-27;"?";[nan, 0, 0];1e400"#;
+    for (plan, section, name) in all_keys() {
+        for text in bad.split(';') {
+            let file = with(&plan, section, &format!("{name} = {text}"));
+            let line = file.lines().count();
+            let e = read(&file, "bad.toml").expect_err(&file).to_string();
+            assert!(e.starts_with(&format!("bad.toml:{line}: ")), "{e}");
+            // The parser itself rejects numbers that are too large, and files of heights,
+            // cones and colours are looked for.
+            let named = ["field", "map", "texture"].contains(&name) && text == "\"?\"";
+            if text != "1e400" && !named {
+                let what = format!("bad.toml:{line}: {section}.{name} = {text}: must be ");
+                assert!(e.starts_with(&what), "{e}");
+            }
+            let set = Override::read(&format!("{section}.{name}={text}"));
+            let e = set.and_then(|set| read_with(&least(&plan), "good.toml", &[set]));
+            let e = e.expect_err(&file);
+            assert!(e.is_usage(), "{e}");
+            let what = format!("--set {section}.{name}={text}: ");
+            assert!(e.to_string().starts_with(&what), "{e}");
+        }
+    }
+}
+
+/// What a preset's error says.
+fn error(text: &str) -> String {
+    let e = read(text, "p.toml").expect_err(text);
+    assert!(
+        !e.is_usage(),
+        "a file's fault is not the command line's: {e}"
+    );
+    e.to_string()
+}
+
+/// A preset, with `|` for the ends of lines, and how its error begins.
+const ERRORS: &str = r#"
+ => p.toml: scene.kind is missing
+[scene]|kind = "distance" => p.toml: scene.formula is missing; it is one of "mandelbox"
+[scene]|kind = "distanc" => p.toml:2: scene.kind = "distanc": must be one of "distance", "heightfield", "slab", perhaps "distance"
+[scene]|kind = "distance"|formula = "mandelbx" => p.toml:3: scene.formula = "mandelbx": must be one of
+[scene]|kind = "slab"|kind = "slab" => p.toml:3: this is not TOML: duplicate key
+[scene => p.toml:1: this is not TOML:
+[scene]|kind = "slab"||[camera]|fov = 400 => p.toml:5: camera.fov = 400: must be a number from 1 to 170
+[scene]|kind = "slab"|[camera]|fow = 40 => p.toml:4: camera.fow = 40: unknown key, perhaps `fov`; [camera] has eye, target, up, fov
+[scene]|kind = "slab"|[camer]|fov = 40 => p.toml:3: unknown section `camer`, perhaps `camera`
+[scene]|kind = "slab"|half = [|0.5|] => p.toml:3: scene.half = [ 0.5 ]: must be a number from
+camera = 3|[scene]|kind = "slab" => p.toml:1: camera = 3: must be a section, like [camera]
+title = 3|[scene]|kind = "slab" => p.toml:1: title = 3: must be a line of text
+[scene]|kind = "slab"|[image]|size = [0, 5] => p.toml:4: image.size = [0, 5]: must be [width, height] in pixels
+[scene]|kind = "slab"|[image]|size = [5, 99999999999999999999] => p.toml:4: image.size =
+[scene]|kind = "slab"|[camera]|eye = [1, 2, 3]|target = [1, 2, 3] => p.toml:5: camera.target = [1, 2, 3]: the eye and the target are the same point
+[scene]|kind = "slab"|[camera]|eye = [0, 0, 0] => p.toml: camera.target = [0.0, 0.0, 0.0] (the default): the eye and the target
+[scene]|kind = "slab"|[camera]|eye = [0, 0, 5] => p.toml: camera.up = [0.0, 0.0, 1.0] (the default): up must not be
+[scene]|kind = "slab"|[march]|coarsest = 3 => p.toml:4: march.coarsest = 3: must be a power of two
+[scene]|kind = "slab"|formula = "mandelbox" => p.toml:3: scene.formula = "mandelbox": a slab has no formula
+[scene]|kind = "distance"|formula = "mandelbox"|scale = 0.5 => p.toml:4: scene.scale = 0.5:
+"#;
+
+#[test]
+fn errors_name_line_key_value_and_what_would_do() {
+    for line in ERRORS.trim_matches('\n').lines() {
+        let (text, says) = line.split_once(" => ").expect(line);
+        let e = error(&text.replace('|', "\n"));
+        assert!(e.starts_with(says), "{e}\n  should begin with\n{says}");
+        assert!(!e.contains('\n'), "one sentence: {e}");
+    }
+}
+
+/// As above, of the rest of a scene of heights.
+const HEIGHTFIELD_ERRORS: &str = r#"
+tiles = [1, 2] => p.toml:3: scene.tiles = [1, 2]: the map is repeated along y, where it does not wrap
+field = "fbm:9000x1" => p.toml:3: scene.field = "fbm:9000x1": `9000x1` is no size
+field = "hills" => p.toml:3: scene.field = "hills": hills: there is no such file or field; fields are fbm
+field = "none/there.png" => p.toml:3: scene.field = "none/there.png": none/there.png:
+map = "exact" => p.toml:3: scene.map = "exact": the tracer walk cannot use such cones; it can those of walk
+tracer = "max-mip"|map = "exact" => p.toml:4: scene.map = "exact": the tracer max-mip needs no cones
+tracer = "linear-binary"|map = "none/there.exr" => p.toml:4: scene.map = "none/there.exr": the tracer linear-binary needs no cones
+map = "none/there.exr" => p.toml:3: scene.map = "none/there.exr": none/there.exr:
+field = "fbm:8192x8192"|wrap = "xy"|tiles = [256, 256] => p.toml:5: scene.tiles = [256, 256]: 256 tiles of 8192 cells along axis 0: one tile or more, and 65536 cells at most
+field = "fbm:4x1024"|wrap = "y"|tiles = [1, 65] => p.toml:5: scene.tiles = [1, 65]: 65 tiles of 1024 cells along axis 1:
+"#;
+
+#[test]
+fn heightfields_say_what_does_not_fit() {
+    let of = |rest: &str| format!("[scene]\nkind = \"heightfield\"\n{rest}\n");
+    let path = "docs/stones.png";
+    let textured = of(&format!("texture = \"{path}\""));
+    let plan = read(&textured, "p.toml").expect("a picture");
+    assert_eq!(get(&plan, "scene", "texture"), Value::String(path.into()));
+    assert_eq!(read(&write(&plan), "again").expect("a picture"), plan);
+    let tiled = of("field = \"sine:8x8\"\nwrap = \"xy\"\ntiles = [5, 7]");
+    let plan = read(&tiled, "p.toml").expect("tiles of what wraps");
+    assert_eq!(get(&plan, "scene", "tiles"), toml("[5, 7]"));
+    assert_eq!(read(&write(&plan), "again").expect("its own text"), plan);
+    for line in HEIGHTFIELD_ERRORS.trim().lines() {
+        let (rest, says) = line.split_once(" => ").expect(line);
+        let e = error(&of(&rest.replace('|', "\n")));
+        assert!(e.starts_with(says), "{e}\n  should begin with\n{says}");
+    }
+    let most = of("field = \"fbm:8192x1024\"\nwrap = \"xy\"\ntiles = [8, 64]");
+    read(&most, "p.toml").expect("as many cells as there may be");
+    let tiled = of("field = \"fbm:1024x1024\"\nwrap = \"xy\"");
+    let set = Override::read("scene.tiles=[65, 64]").expect("a value");
+    let e = read_with(&tiled, "p.toml", &[set]).expect_err("too many");
+    let says = "--set scene.tiles=[65, 64]: 65 tiles of 1024 cells along axis 0: ";
+    assert!(e.is_usage() && e.to_string().starts_with(says), "{e}");
+}
+
+/// What an override's error says.
+pub fn set_error(sets: &[&str]) -> String {
+    let text =
+        "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n[camera]\ntarget = [0, 0, 0]\n";
+    let sets: Result<Vec<_>, _> = sets.iter().map(|s| Override::read(s)).collect();
+    let e = sets.and_then(|s| read_with(text, "p.toml", &s).map(|_| ()));
+    let e = e.expect_err("should be refused");
+    assert!(e.is_usage(), "{e}");
+    e.to_string()
+}
+
+/// Overrides, all of which are checked though the last one counts, and how the error
+/// begins.
+const SET_ERRORS: &str = r#"
+camera.fov => --set camera.fov: there is no `=`
+fov=3 => --set fov=3: `fov` names no section
+=3 => --set =3: `` names no section
+.scale=3 => --set .scale=3: `.scale` names no section
+.=3 => --set .=3: `.` names no section
+cam.fov=3 => --set cam.fov=3: unknown section `cam`
+camera.fow=3 => --set camera.fow=3: unknown key, perhaps `fov`
+camera.fov=[1 => --set camera.fov=[1: the value is not TOML
+camera.eye=[0, 0, 0] => --set camera.eye=[0, 0, 0]: p.toml:5: camera.target = [0, 0, 0]: the eye
+camera.fov=0 & camera.fov=50 => --set camera.fov=0: must be
+scene.scale=0.5 => --set scene.scale=0.5:
+scene.kind=cube & scene.kind=distance => --set scene.kind=cube: must be one of
+scene.formula=cube & scene.formula=balls => --set scene.formula=cube: must be one of
+"#;
+
+#[test]
+fn errors_of_overrides_name_the_override() {
+    for line in SET_ERRORS.trim().lines() {
+        let (sets, says) = line.split_once(" => ").expect(line);
+        let e = set_error(&sets.split(" & ").collect::<Vec<_>>());
+        assert!(e.starts_with(says), "{e}\n  should begin with\n{says}");
+    }
+}
+
+#[test]
+fn a_preset_must_be_right_without_its_overrides() {
+    let text = "[scene]\nkind = \"slab\"\n[camera]\nfov = 400\n";
+    let set = Override::read("camera.fov=40").expect("a value");
+    let e = read_with(text, "p.toml", &[set]).expect_err("400 is wrong all the same");
+    assert!(
+        matches!(e, PresetError::Content { line: Some(4), .. }),
+        "{e}"
+    );
+}

@@ -1,0 +1,277 @@
+//! Presets are the text of a plan: what is written reads back to the last bit.
+
+use conemarch::base::key::Key;
+use conemarch::plan::Plan;
+use conemarch::preset::{BUILTIN, Override, builtin, load, read, read_with, write};
+use conemarch::scene::Scene;
+use conemarch::scene::distance::DistanceSettings;
+use conemarch::scene::slab::SlabSettings;
+use proptest::prelude::*;
+use toml::Value;
+
+use super::preset_errors::set_error;
+
+/// A plan of every subject there is.
+pub fn subjects() -> Vec<Plan> {
+    Scene::all().into_iter().map(Plan::new).collect()
+}
+
+/// `[scene]` with nothing but what is required.
+pub fn least(plan: &Plan) -> String {
+    let (kind, formula) = (plan.scene.kind(), plan.scene.formula());
+    let formula = formula.map_or(String::new(), |f| format!("formula = \"{f}\"\n"));
+    format!("[scene]\nkind = \"{kind}\"\n{formula}")
+}
+
+/// Asks a key of a plan.
+fn ask<T>(plan: &Plan, section: &str, name: &str, question: impl FnOnce(Key<'_>) -> T) -> T {
+    let mut plan = plan.clone();
+    let mut keys = plan.keys(section).expect("a section").into_iter();
+    question(keys.find(|k| k.name == name).expect("a key"))
+}
+
+pub fn get(plan: &Plan, section: &str, name: &str) -> Value {
+    ask(plan, section, name, |key| key.slot.get())
+}
+
+/// Every key of every section, with a plan of each subject.
+pub fn all_keys() -> Vec<(Plan, &'static str, &'static str)> {
+    let mut all = Vec::new();
+    for plan in subjects() {
+        for section in ["scene", "camera", "march", "look", "image"] {
+            let keys = plan
+                .clone()
+                .keys(section)
+                .expect("a section")
+                .into_iter()
+                .map(|k| k.name)
+                .collect::<Vec<_>>();
+            all.extend(keys.into_iter().map(|name| (plan.clone(), section, name)));
+        }
+    }
+    all
+}
+
+/// The text of a preset with nothing but what is required, and one line more.
+pub fn with(plan: &Plan, section: &str, line: &str) -> String {
+    match section {
+        "scene" => format!("{}{line}\n", least(plan)),
+        _ => format!("{}[{section}]\n{line}\n", least(plan)),
+    }
+}
+
+pub fn toml(text: &str) -> Value {
+    let table: toml::Table = format!("x = {text}").parse().expect("TOML");
+    table["x"].clone()
+}
+
+#[test]
+fn the_list_of_presets_is_the_folder() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/presets");
+    let files = std::fs::read_dir(folder).expect("the folder");
+    let name = |file: std::fs::DirEntry| {
+        let name = file.file_name().into_string().expect("a name");
+        name.strip_suffix(".toml").expect("a preset").to_string()
+    };
+    let mut files: Vec<String> = files.map(|f| name(f.expect("a file"))).collect();
+    files.sort();
+    let list: Vec<&str> = BUILTIN.iter().map(|(n, _)| *n).collect();
+    assert_eq!(
+        list, files,
+        "src/preset/builtin.rs and presets/ differ, or are unsorted"
+    );
+}
+
+#[test]
+fn built_in_presets_are_right_and_have_a_title() {
+    for (name, text) in BUILTIN {
+        let plan = read(text, name).unwrap_or_else(|e| panic!("{e}"));
+        assert!(!plan.title.is_empty(), "{name} has no title");
+        assert_eq!(load(name, &[]).expect("the same").plan, plan);
+    }
+}
+
+#[test]
+fn bench_presets_are_the_agreed_ones() {
+    let rows: [(&str, [f64; 3], [f64; 3], f64); 5] = [
+        ("bench-far", [0.0, 0.0, -14.0], [0.0; 3], 2.0),
+        ("bench-outside", [4.0, 2.5, -6.0], [0.0; 3], -1.5),
+        ("bench-inside", [1.0, 0.4, -3.5], [0.2, 0.1, 0.0], -1.5),
+        ("bench-graze", [6.5, 6.4, -7.5], [0.0, 5.5, 0.0], 2.0),
+        ("bench-thin", [3.0, 3.0, -9.0], [0.0; 3], 3.0),
+    ];
+    for (name, eye, target, scale) in rows {
+        let plan = load(name, &[]).expect(name).plan;
+        assert_eq!(plan.camera.eye.to_array(), eye, "{name}");
+        assert_eq!(plan.camera.target.to_array(), target, "{name}");
+        assert_eq!(plan.camera.up.to_array(), [0.0, 1.0, 0.0], "{name}");
+        assert_eq!(plan.camera.fov, 48.5, "{name}");
+        assert_eq!(plan.size, [640, 360], "{name}");
+        assert_eq!(get(&plan, "scene", "scale"), Value::Float(scale), "{name}");
+    }
+}
+
+#[test]
+fn every_plan_reads_back_from_its_text() {
+    let built_in = BUILTIN.iter().map(|(n, t)| read(t, n).expect("right"));
+    for plan in built_in.chain(subjects()) {
+        let text = write(&plan);
+        let again = read(&text, "written").unwrap_or_else(|e| panic!("{e}\n{text}"));
+        assert_eq!(again, plan, "{text}");
+        assert_eq!(write(&again), text);
+    }
+}
+
+#[test]
+fn only_kind_and_formula_are_required_and_the_rest_is_default() {
+    for plan in subjects() {
+        assert_eq!(read(&least(&plan), "least").expect("enough"), plan);
+    }
+}
+
+/// Values of many kinds, with `;` between them; each key takes some of them.
+const CANDIDATES: &str = r#"0;1;2;3;17;100;0.5;0.25;1.5;-1.5;1e-3;0.1;true;false;"auto";"off";"ray";"truth";"classic";"sine:8x8";"xy";"boxes";"csm-loop";"nearest";"walk";[0.25, 0.5, 0.75];[1, 2, 3];[5, 7];[0.5];[0.5, 0.75];[[0.1, 0.2, 0.3]];[[0, 0, 0], [1, 1, 1]]"#;
+
+#[test]
+fn every_key_can_be_set_in_a_file_and_by_override_and_reads_back() {
+    for (plan, section, name) in all_keys() {
+        let before = get(&plan, section, name);
+        let mut changed = 0;
+        for text in CANDIDATES.split(';') {
+            if ask(&plan, section, name, |mut key| {
+                key.slot.set(&toml(text)).is_err()
+            }) {
+                continue;
+            }
+            let set = Override::read(&format!("{section}.{name}={text}"));
+            let set = set.unwrap_or_else(|e| panic!("{e}"));
+            // Some values fit the key, but not the rest of the plan.
+            let Ok(by_set) = read_with(&least(&plan), "least", &[set]) else {
+                continue;
+            };
+            let file = with(&plan, section, &format!("{name} = {text}"));
+            assert_eq!(read(&file, "file").expect(&file), by_set, "{file}");
+            assert_eq!(read(&write(&by_set), "again").expect(&file), by_set);
+            changed += usize::from(get(&by_set, section, name) != before);
+        }
+        // More than one tile needs axes that wrap, a texture a file: see the heightfields.
+        let elsewhere = ["tiles", "texture"].contains(&name);
+        assert!(
+            changed > 0 || elsewhere,
+            "no candidate changes {section}.{name}"
+        );
+    }
+}
+
+#[test]
+fn words_need_no_quotes_and_whole_numbers_are_floats() {
+    let sets = [
+        "march.mode=ray-relaxed",
+        "camera.fov=30",
+        "title=Two words, no quotes",
+    ];
+    let sets = sets.map(|s| Override::read(s).expect(s));
+    let plan = load("mandelbox", &sets).expect("fits").plan;
+    assert_eq!(plan.march.mode.name(), "ray-relaxed");
+    assert_eq!(plan.camera.fov, 30.0);
+    assert_eq!(plan.title, "Two words, no quotes");
+}
+
+#[test]
+fn fields_and_paths_need_no_quotes() {
+    let text = "[scene]\nkind = \"heightfield\"\n";
+    // What becomes of a value, be it a plan or a sentence about a missing file.
+    let set = |value: &str| {
+        let set = Override::read(&format!("scene.field={value}"));
+        let plan = set.and_then(|set| read_with(text, "p.toml", &[set]));
+        plan.map_err(|e| e.to_string().replace('"', ""))
+    };
+    let bare = "fbm fbm:64x64,seed=3 ridges:12x7,power=1.5 d8.png true.png inf/nan.exr ./maps/rock-2_b.png ../a+b.exr /tmp/x.raw";
+    for word in bare.split(' ') {
+        assert_eq!(set(word), set(&format!("\"{word}\"")));
+    }
+    for word in [
+        "1979-05-27.png",
+        "-inf.png",
+        "a b.png",
+        "~/a.png",
+        "fbm:4x4;",
+    ] {
+        let why = set(word).expect_err(word);
+        assert!(why.contains("the value is not TOML"), "{why}");
+    }
+    // What is a value of its own stays one.
+    for value in ["inf", "nan", "true", "false", "-inf", "30"] {
+        let e = set_error(&[&format!("title={value}")]);
+        assert!(e.contains("must be a line of text"), "{e}");
+    }
+    for value in ["inf", "nan"] {
+        let e = set_error(&[&format!("camera.fov={value}")]);
+        assert!(e.contains("must be a number"), "{e}");
+    }
+    let set = Override::read("scene.julia=true").expect("a value");
+    let plan = load("mandelbox", &[set]).expect("a switch").plan;
+    assert_eq!(get(&plan, "scene", "julia"), Value::Boolean(true));
+}
+
+#[test]
+fn another_formula_starts_from_its_own_defaults() {
+    let set = Override::read("scene.formula=balls").expect("a value");
+    let plan = load("mandelbox", &[set]).expect("scale is dropped").plan;
+    assert_eq!(
+        (plan.scene.kind(), plan.scene.formula()),
+        ("distance", Some("balls"))
+    );
+    let same = Override::read("scene.formula=mandelbox").expect("a value");
+    let plan = load("bench-thin", &[same]).expect("no change").plan;
+    assert_eq!(get(&plan, "scene", "scale"), Value::Float(3.0));
+    let set = Override::read("scene.kind=slab").expect("a value");
+    let plan = load("mandelbox", &[set]).expect("all is dropped").plan;
+    assert_eq!(plan.scene, Scene::Slab(SlabSettings::default()));
+}
+
+proptest! {
+    #[test]
+    fn any_text_is_a_plan_or_a_sentence(text in "\\PC{0,200}") {
+        if let Err(e) = read(&text, "p.toml") {
+            prop_assert!(!e.to_string().contains('\n'), "{e}");
+        }
+    }
+
+    #[test]
+    fn any_mangled_preset_is_a_plan_or_a_sentence(at in 0usize..600, junk in "[\\x00-\\x7f]{0,5}") {
+        let text = builtin("mandelbox").expect("built in");
+        let at = at.min(text.len());
+        let mangled = format!("{}{junk}{}", &text[..at], &text[(at + 3).min(text.len())..]);
+        if let Err(e) = read(&mangled, "p.toml") {
+            prop_assert!(!e.to_string().contains('\n'), "{e}");
+        }
+    }
+
+    #[test]
+    fn any_override_is_a_value_or_a_sentence(text in "(scene|camera|title|[a-z.]{0,9})\\PC{0,40}") {
+        if let Ok(set) = Override::read(&text) {
+            let _ = load("mandelbox", &[set]);
+        }
+    }
+
+    #[test]
+    fn numbers_and_titles_read_back_to_the_last_bit(
+        fov in 1.0f64..170.0,
+        eye in prop::array::uniform3(-1e9f64..1e9),
+        exposure in -20.0f64..20.0,
+        title in "\\PC{0,40}",
+        iterations in prop::option::of(1u32..1000),
+    ) {
+        let mut plan = load("mandelbox", &[]).expect("built in").plan;
+        plan.camera.fov = fov;
+        plan.camera.eye = eye.into();
+        plan.look.exposure = exposure;
+        plan.title = title;
+        if let Scene::Distance(DistanceSettings { iterations: slot, .. }) = &mut plan.scene {
+            *slot = iterations;
+        }
+        let again = read(&write(&plan), "written");
+        prop_assert_eq!(again.map_err(|e| e.to_string()), Ok(plan));
+    }
+}

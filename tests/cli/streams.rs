@@ -1,0 +1,220 @@
+//! Standard output and error, full disks, pipes, signals, progress, and what is left behind.
+
+use std::fs;
+use std::process::{Child, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::folder::{Folder, said, signal, text};
+use crate::tools::{done, fails, rendered, tiny, words};
+
+#[test]
+fn standard_output_gets_the_same_bytes_as_a_file() {
+    let folder = Folder::new();
+    rendered(&folder, "mandelbox", "-o a.png");
+    let piped = done(&folder, &tiny("mandelbox", "-o -"));
+    assert_eq!(piped.stdout, folder.bytes("a.png"));
+    assert_eq!(folder.files(), ["a.png"]);
+}
+
+/// Starts a command whose standard output is closed at once.
+fn unread(folder: &Folder, args: &str) -> Output {
+    let mut command = folder.command(&words(args));
+    let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    drop(child.stdout.take());
+    child.wait_with_output().expect("an end")
+}
+
+#[test]
+fn a_reader_that_stops_is_no_error() {
+    let output = unread(&Folder::new(), "completions zsh");
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(output.stderr.is_empty());
+}
+
+/// A picture that was not read to its end is none, and must not pass for one.
+#[test]
+fn a_picture_that_nobody_reads_is_a_failure() {
+    let folder = Folder::new();
+    for more in ["-o -", "-o a.png --stats -"] {
+        let output = unread(&folder, &tiny("mandelbox", more));
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(1), "{more:?}: {said}");
+        let last = said.lines().last().unwrap_or_default();
+        assert!(
+            last.starts_with("error: the reader of standard output"),
+            "{said}"
+        );
+        assert!(folder.files().is_empty(), "{:?}", folder.files());
+    }
+}
+
+#[cfg(target_os = "linux")]
+mod full {
+    use super::*;
+
+    fn full() -> fs::File {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full");
+        full.expect("/dev/full")
+    }
+
+    #[test]
+    fn a_full_disk_is_an_error_that_names_the_file_and_leaves_nothing() {
+        let folder = Folder::new();
+        std::os::unix::fs::symlink("/dev/full", folder.0.join("full.png")).expect("a link");
+        let stats = tiny("mandelbox", "-o a.png --stats /dev/full");
+        fails(
+            &folder,
+            &[
+                (
+                    &tiny("mandelbox", "-o full.png"),
+                    1,
+                    "full.png|No space left|elsewhere",
+                ),
+                (&stats, 1, "/dev/full: cannot be written"),
+            ],
+        );
+        let output = folder.command(&["presets"]).stdout(full()).output();
+        let output = output.expect("the program starts");
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        assert!(said(&output).starts_with("error: standard output cannot be written"));
+    }
+
+    #[test]
+    fn nobody_need_listen_to_standard_error() {
+        let folder = Folder::new();
+        let deaf = |args: &str| {
+            let mut command = folder.command(&words(args));
+            let status = command.stderr(full()).stdout(Stdio::null()).status();
+            status.expect("the program starts").code()
+        };
+        assert_eq!(deaf(&tiny("mandelbox", "-o a.png")), Some(0));
+        assert_eq!(folder.files(), ["a.png"]);
+        assert_eq!(deaf(&tiny("nothing", "")), Some(2));
+        assert_eq!(deaf("render"), Some(2));
+        assert_eq!(deaf(&tiny("mandelbox", "-o no/a.png")), Some(1));
+    }
+}
+
+/// Nobody writes into the pipe: opening it would wait for ever.
+#[cfg(unix)]
+#[test]
+fn a_preset_that_is_no_file_is_refused_at_once() {
+    use std::process::Command;
+    let folder = Folder::new();
+    let made = Command::new("mkfifo")
+        .arg(folder.0.join("pipe.toml"))
+        .status();
+    assert!(made.expect("mkfifo").success());
+    for preset in ["/dev/zero", "/dev/null", "pipe.toml"] {
+        let says = format!("{preset}|no regular file");
+        fails(&folder, &[(&tiny(preset, ""), 1, &says)]);
+    }
+    // The program's own input is open already, and is read to its end.
+    folder.write("in.toml", text(&done(&folder, "presets mandelbox")));
+    let read = fs::File::open(folder.0.join("in.toml")).expect("written above");
+    let mut cat = Command::new("cat");
+    let mut cat = cat.stdin(read).stdout(Stdio::piped()).spawn().expect("cat");
+    let mut command = folder.command(&["render", "/dev/stdin", "--explain"]);
+    let pipe = cat.stdout.take().expect("a pipe");
+    let output = command.stdin(pipe).output().expect("the program starts");
+    assert!(cat.wait().expect("an end").success());
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(
+        text(&output),
+        text(&done(&folder, "render mandelbox --explain"))
+    );
+}
+
+/// A command that runs far longer than a test may, once it has begun.
+fn begun(folder: &Folder, args: &str, is_begun: impl Fn() -> bool) -> Child {
+    let mut command = folder.command(&words(args));
+    let command = command.stdout(Stdio::null()).stderr(Stdio::piped());
+    let child = command.spawn().expect("the program starts");
+    let start = Instant::now();
+    while !is_begun() {
+        assert!(start.elapsed() < Duration::from_secs(20), "it never began");
+        sleep(Duration::from_millis(5));
+    }
+    child
+}
+
+/// Sends signals to a process. Returns its exit code and what it said.
+#[cfg(unix)]
+fn ended(child: Child, signals: &[&str]) -> (Option<i32>, String) {
+    for name in signals {
+        signal(child.id(), name);
+        sleep(Duration::from_millis(50));
+    }
+    let sent = Instant::now();
+    let output = child.wait_with_output().expect("an end");
+    assert!(
+        sent.elapsed() < Duration::from_secs(20),
+        "the signal was ignored"
+    );
+    (output.status.code(), said(&output))
+}
+
+#[cfg(unix)]
+const LONG: &str = "render mandelbox --device cpu --size 3000x3000 --set march.mode=truth";
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_no_file_and_its_own_exit_code() {
+    for (signals, code) in [
+        (&["INT"][..], 130),
+        (&["INT", "INT"], 130),
+        (&["TERM"], 143),
+    ] {
+        let folder = Folder::new();
+        let args = format!("{LONG} -o a.png --stats s.json");
+        let child = begun(&folder, &args, || folder.files().len() == 2);
+        sleep(Duration::from_millis(100));
+        let (found, said) = ended(child, signals);
+        assert_eq!(found, Some(code), "{said}");
+        assert_eq!(
+            said.lines().last(),
+            Some("error: cancelled; nothing was written")
+        );
+        assert!(folder.files().is_empty(), "{:?}", folder.files());
+    }
+}
+
+/// An interrupt takes away the folder that was made for the heat maps, and only that.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_no_empty_folder() {
+    for (given, made) in [("h/i", "h"), ("was/i", "was/i")] {
+        let folder = Folder::new();
+        fs::create_dir(folder.0.join("was")).expect("a folder");
+        let steps = "bench steps bench-far --device cpu --size 3000x3000 --heat";
+        let args = format!("{steps} {given}");
+        let child = begun(&folder, &args, || folder.0.join(made).exists());
+        sleep(Duration::from_millis(200));
+        assert_eq!(ended(child, &["INT"]).0, Some(130));
+        assert_eq!(folder.files(), ["was"]);
+        assert!(!folder.0.join("was/i").exists());
+    }
+}
+
+/// Off a terminal, work over two seconds says how much of it is done and left.
+#[cfg(unix)]
+#[test]
+fn long_work_tells_its_progress_in_lines() {
+    let steps = "bench steps bench-far terrain --mode truth --device cpu --size 3000x3000";
+    for (args, says) in [
+        (&format!("{LONG} -o a.png"), "rendering: "),
+        (
+            &steps.to_string(),
+            "measuring bench-far (1 of 2), truth (1 of 1): ",
+        ),
+    ] {
+        let folder = Folder::new();
+        let child = begun(&folder, args, || true);
+        sleep(Duration::from_millis(4000));
+        let said = ended(child, &["INT"]).1;
+        let line = said.lines().find(|l| l.starts_with(says));
+        assert!(line.is_some_and(|l| l.contains(" % (")), "{said}");
+    }
+}
