@@ -38,7 +38,7 @@ pub struct Surface {
 }
 
 /// A scene in f64. Its WGSL twin has functions of the same names. Points `q` are relative to
-/// the eye. Every function adds its cost to `work`.
+/// the eye. A function that takes `work` adds its cost to it.
 pub trait Solid: Sync {
     /// The state of a ray between two steps.
     type Walk: Copy;
