@@ -1,9 +1,10 @@
 //! What a step came to, what a pixel is, and what it cost.
 
 /// What one step of a ray came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Step {
     /// The ray goes on.
+    #[default]
     Moving,
     /// The surface is met.
     Hit,

@@ -15,6 +15,7 @@ use crate::command::bench::table;
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::print::say;
+use crate::command::progress::Progress;
 use crate::command::{interrupt, size};
 use crate::gpu::conemap::generate::Maker;
 use crate::gpu::device::{Choice, PROMISED_BUFFERS};
@@ -206,11 +207,14 @@ impl Measured<'_> {
         };
         let mut maps: Maps = Vec::new();
         let mut rows = Vec::new();
-        for generator in Generator::ALL {
+        let mut progress = Progress::start(&format!("making maps of {}", self.field.name()));
+        for (i, generator) in Generator::ALL.into_iter().enumerate() {
             let mut row = self.row(generator.name());
             let (start, mut done) = (Instant::now(), 0.0);
             let made = self.one_map(&mut maker, generator, &mut |share| {
                 done = share;
+                let all = (i as f64 + share) / Generator::ALL.len() as f64;
+                progress.report(all, generator.name());
                 !interrupt::asked() && (share >= 1.0 || start.elapsed() < BUDGET)
             });
             let ms = start.elapsed().as_secs_f64() * 1e3;
@@ -259,10 +263,14 @@ impl Measured<'_> {
     fn trace(&self, maps: &Maps) -> Result<Vec<TracerRow>> {
         let reference = ReferenceTracer::new(self.surface.clone());
         let mut rows = Vec::new();
-        for view_deg in VIEWS {
+        let mut progress = Progress::start(&format!("tracing {}", self.field.name()));
+        for (i, view_deg) in VIEWS.into_iter().enumerate() {
             let rays = view_rays(&self.surface, f64::from(view_deg), RAYS);
             let truths = first_hits(&reference, &rays);
-            for (kind, generator) in PAIRS {
+            for (j, (kind, generator)) in PAIRS.into_iter().enumerate() {
+                let done = (i * PAIRS.len() + j) as f64;
+                let share = done / (VIEWS.len() * PAIRS.len()) as f64;
+                progress.report(share, kind.name());
                 if interrupt::asked() {
                     return Err(RenderError::Cancelled.into());
                 }

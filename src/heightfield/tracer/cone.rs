@@ -1,7 +1,7 @@
 //! Cones of a map: how far one lets a ray go on, and whether a map fits a tracer.
 //! Twin: `wgsl/heightfield/tracer/cone.wgsl`.
 
-use crate::heightfield::conemap::{ConeMap, MapKind};
+use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::tracer::contract::{LocalRay, TraceError};
 use crate::heightfield::tracer::grid::{FAR, GridRay};
@@ -45,14 +45,12 @@ pub fn check_map(
         return Err(TraceError::Kind { tracer, kind });
     }
     let heights = surface.heights();
-    let over_cells = matches!(kind, MapKind::Walk | MapKind::WalkRelaxed);
-    let [w, h] = if over_cells {
+    let [w, h] = if kind.over_cells() {
         surface.cells()
     } else {
         heights.size()
     };
-    let channels = if kind == MapKind::Quad { 4 } else { 1 };
-    let cones = w as usize * h as usize * channels;
+    let cones = w as usize * h as usize * kind.channels();
     let debug = |value: &dyn std::fmt::Debug| format!("{value:?}");
     for (what, wanted, found) in [
         ("places", debug(&[w, h]), debug(&map.size)),

@@ -25,11 +25,12 @@ use crate::heightfield::conemap::generate::mips::rounded_down;
 use crate::heightfield::conemap::{ConeMap, MapKind};
 use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
 use crate::heightfield::heights::{Patches, bilinear};
-use crate::heightfield::tracer::cone::cone_way;
-use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
-use crate::heightfield::tracer::grid::{GridRay, grid_begin};
-use crate::heightfield::tracer::kind::Parts;
-use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
+use crate::heightfield::tracer::{
+    GridRay, LocalRay, Parts, Step, Trace, TraceError, Tracer,
+    cone::cone_way,
+    grid::grid_begin,
+    refine::{Refine, refine, refine_over},
+};
 use crate::wgsl;
 
 /// How a ratio is read between the samples.
@@ -40,19 +41,6 @@ pub enum Lookup {
     /// The surface's height, and the ratio interpolated.
     #[default]
     Bilinear,
-}
-
-/// How many steps a ray has of its own.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Budget {
-    /// As many as the caller allows.
-    Endless,
-    /// The same number for every ray.
-    Fixed(u32),
-    /// `steps * (0.5 + iz)`, where iz is the horizontal part of the direction in texture widths
-    /// and heights. At the distance `lod` along the ray it is half of them, at twice that a
-    /// third; 0 turns this off.
-    View { steps: u32, lod: f64 },
 }
 
 /// What tells one of these tracers from another.
@@ -109,7 +97,10 @@ pub struct Cones {
     surface: Arc<HeightSurface>,
     map: Arc<ConeMap>,
     lookup: Lookup,
-    budget: Budget,
+    /// Steps of a ray; 0 for no limit.
+    steps: u32,
+    /// The distance at which a ray has half as many; 0 for never.
+    lod: f64,
     method: ConeMethod,
 }
 
@@ -119,23 +110,14 @@ pub struct Cones {
 /// There is no map that it can use.
 pub fn make(parts: &Parts<'_>, mut method: ConeMethod) -> Result<Arc<dyn Tracer>, TraceError> {
     let settings = parts.settings;
-    if let (Refine::Binary(rounds) | Refine::Secant(rounds), Some(own)) =
-        (&mut method.refine, settings.rounds)
-    {
-        *rounds = own;
-    }
+    method.refine = method.refine.with_rounds(settings.rounds);
     method.scale = settings.stretch.unwrap_or(method.scale);
-    let lod = settings.lod.unwrap_or(0.0);
-    let budget = match settings.own_steps() {
-        steps if method.by_view => Budget::View { steps, lod },
-        0 => Budget::Endless,
-        steps => Budget::Fixed(steps),
-    };
     Ok(Arc::new(Cones {
         surface: parts.surface.clone(),
         map: parts.map()?,
         lookup: settings.lookup,
-        budget,
+        steps: settings.own_steps(),
+        lod: settings.lod.filter(|_| method.by_view).unwrap_or(0.0),
         method,
     }))
 }
@@ -185,24 +167,23 @@ impl Cones {
         self.map.ratios[4 * at + side]
     }
 
-    /// Steps of a ray that begins at s; 0 for no limit.
-    fn steps(&self, ray: &LocalRay, s: f64) -> u32 {
-        match self.budget {
-            Budget::Endless => 0,
-            Budget::Fixed(steps) => steps,
-            Budget::View { steps, lod } => {
-                let [w, h] = self.surface.cells().map(f64::from);
-                let flat = (ray.axis.x / w).hypot(ray.axis.y / h);
-                let whole = flat.hypot(ray.axis.z).max(f64::MIN_POSITIVE);
-                let far = if lod > 0.0 {
-                    1.0 + s.max(0.0) / lod
-                } else {
-                    1.0
-                };
-                let count = f64::from(steps) * (0.5 + flat / whole) / far;
-                count.ceil().max(1.0) as u32
-            }
+    /// Steps of a ray that begins at s; 0 for no limit. If they follow the view, they are
+    /// `steps * (0.5 + iz)`, where iz is the horizontal part of the direction in texture widths
+    /// and heights. At the distance `lod` they are half of that, at twice the distance a third.
+    fn cones_steps(&self, ray: &LocalRay, s: f64) -> u32 {
+        if !self.method.by_view {
+            return self.steps;
         }
+        let [w, h] = self.surface.cells().map(f64::from);
+        let flat = (ray.axis.x / w).hypot(ray.axis.y / h);
+        let whole = flat.hypot(ray.axis.z).max(f64::MIN_POSITIVE);
+        let far = if self.lod > 0.0 {
+            1.0 + s.max(0.0) / self.lod
+        } else {
+            1.0
+        };
+        let count = f64::from(self.steps) * (0.5 + flat / whole) / far;
+        count.ceil().max(1.0) as u32
     }
 }
 
@@ -213,7 +194,7 @@ impl Tracer for Cones {
 
     fn begin(&self, ray: &LocalRay, from: f64, to: f64) -> Trace {
         let mut trace = grid_begin(&self.surface, ray, from, to);
-        trace.left = self.steps(ray, trace.s);
+        trace.left = self.cones_steps(ray, trace.s);
         trace
     }
 
@@ -255,19 +236,11 @@ impl Tracer for Cones {
     }
 
     fn parameters(&self) -> TracerParameters {
-        let (steps, lod) = match self.budget {
-            Budget::Endless => (0, 0.0),
-            Budget::Fixed(steps) => (steps, 0.0),
-            Budget::View { steps, lod } => (steps, lod),
-        };
         TracerParameters {
             scale: self.method.scale,
-            steps,
-            lod,
-            rounds: match self.method.refine {
-                Refine::Binary(rounds) | Refine::Secant(rounds) => rounds,
-                Refine::Settle => 0,
-            },
+            steps: self.steps,
+            lod: self.lod,
+            rounds: self.method.refine.rounds(),
         }
     }
 

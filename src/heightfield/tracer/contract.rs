@@ -81,7 +81,7 @@ impl TraceHit {
 }
 
 /// The state of a ray on its way, the same for every tracer.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trace {
     /// Where the ray stands. The tracer has found nothing before it.
     pub s: f64,

@@ -57,15 +57,7 @@ pub struct Over {
 pub fn grid_begin(surface: &HeightSurface, ray: &LocalRay, from: f64, to: f64) -> Trace {
     let mut trace = Trace {
         s: from,
-        end: from,
-        enter: from,
-        cell: [0, 0],
-        level: 0,
-        left: 0,
-        falls: false,
-        state: Step::Moving,
-        id: 0,
-        uv: [0.0; 2],
+        ..Trace::default()
     };
     let mut grid = GridRay {
         surface,

@@ -9,10 +9,11 @@ use std::sync::Arc;
 use crate::base::shader::Module;
 use crate::base::work::Work;
 use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
-use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
-use crate::heightfield::tracer::grid::{GridRay, grid_begin};
-use crate::heightfield::tracer::kind::Parts;
-use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
+use crate::heightfield::tracer::{
+    GridRay, LocalRay, Parts, Step, Trace, TraceError, Tracer,
+    grid::grid_begin,
+    refine::{Refine, refine, refine_over},
+};
 use crate::wgsl;
 
 /// Bisections by default: those of relief mapping.

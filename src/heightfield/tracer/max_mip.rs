@@ -12,10 +12,9 @@ use std::sync::Arc;
 use crate::base::shader::Module;
 use crate::base::work::Work;
 use crate::heightfield::height_surface::{HeightSurface, Node};
-use crate::heightfield::tracer::cone::WALK_TRUST;
-use crate::heightfield::tracer::contract::{LocalRay, Step, Trace, TraceError, Tracer};
-use crate::heightfield::tracer::grid::{GridRay, grid_begin};
-use crate::heightfield::tracer::kind::Parts;
+use crate::heightfield::tracer::{
+    GridRay, LocalRay, Parts, Step, Trace, TraceError, Tracer, cone::WALK_TRUST, grid::grid_begin,
+};
 use crate::wgsl;
 
 /// Descent of the pyramid of maxima.

@@ -18,4 +18,5 @@ pub use contract::{
     BASE, FACE_BITS, LocalRay, SURFACE, Step, Trace, TraceError, TraceHit, Tracer, WALL_X_HIGH,
     WALL_X_LOW, WALL_Y_HIGH, WALL_Y_LOW,
 };
-pub use kind::{Accuracy, Steps, TracerKind};
+pub use grid::{GridRay, Over};
+pub use kind::{Accuracy, Parts, Steps, TracerKind};

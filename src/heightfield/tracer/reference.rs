@@ -9,8 +9,7 @@ use std::sync::Arc;
 use crate::base::shader::Module;
 use crate::base::work::Work;
 use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::contract::{Step, Tracer};
-use crate::heightfield::tracer::grid::GridRay;
+use crate::heightfield::tracer::{GridRay, Step, Tracer};
 
 /// Solves cell by cell.
 #[derive(Clone, Debug)]

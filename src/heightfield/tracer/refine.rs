@@ -23,6 +23,25 @@ pub enum Refine {
     Settle,
 }
 
+impl Refine {
+    /// Its rounds, if it has a number of them.
+    pub fn rounds(self) -> u32 {
+        match self {
+            Self::Binary(rounds) | Self::Secant(rounds) => rounds,
+            Self::Settle => 0,
+        }
+    }
+
+    /// The same with another number of rounds, if it has one.
+    pub fn with_rounds(self, own: Option<u32>) -> Self {
+        match self {
+            Self::Binary(rounds) => Self::Binary(own.unwrap_or(rounds)),
+            Self::Secant(rounds) => Self::Secant(own.unwrap_or(rounds)),
+            Self::Settle => Self::Settle,
+        }
+    }
+}
+
 /// Bisections of a bracket that settles. It begins with at most 2^16 cells and ends with a
 /// small part of one, which lies in at most three cells, around a corner.
 pub const SETTLE_ROUNDS: u32 = 24;

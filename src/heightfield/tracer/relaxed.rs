@@ -15,11 +15,11 @@ use crate::base::shader::Module;
 use crate::base::work::Work;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::cone::cone_end;
-use crate::heightfield::tracer::contract::{Step, TraceError, Tracer};
-use crate::heightfield::tracer::grid::GridRay;
-use crate::heightfield::tracer::kind::Parts;
-use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
+use crate::heightfield::tracer::{
+    GridRay, Parts, Step, TraceError, Tracer,
+    cone::cone_end,
+    refine::{Refine, refine, refine_over},
+};
 use crate::wgsl;
 
 /// The cone walk with relaxed cones.

@@ -21,10 +21,7 @@ use crate::base::shader::Module;
 use crate::base::work::Work;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::cone::cone_end;
-use crate::heightfield::tracer::contract::{Step, TraceError, Tracer};
-use crate::heightfield::tracer::grid::GridRay;
-use crate::heightfield::tracer::kind::Parts;
+use crate::heightfield::tracer::{GridRay, Parts, Step, TraceError, Tracer, cone::cone_end};
 use crate::wgsl;
 
 /// The cone walk over cells.

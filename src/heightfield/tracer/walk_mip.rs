@@ -26,10 +26,10 @@ use crate::base::work::Work;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, rounded_down};
 use crate::heightfield::height_surface::{HeightSurface, Node, TracerParameters};
-use crate::heightfield::tracer::cone::{WALK_TRUST, check_map, cone_end};
-use crate::heightfield::tracer::contract::{Step, TraceError, Tracer};
-use crate::heightfield::tracer::grid::{GridRay, Over};
-use crate::heightfield::tracer::kind::{Parts, TracerKind};
+use crate::heightfield::tracer::{
+    GridRay, Over, Parts, Step, TraceError, Tracer, TracerKind,
+    cone::{WALK_TRUST, check_map, cone_end},
+};
 use crate::wgsl;
 
 /// The cones of all nodes over a surface, level by level.
