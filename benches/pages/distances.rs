@@ -13,6 +13,7 @@ use conemarch::measure::compare::quantile;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Assets;
 use serde::{Deserialize, Serialize};
 
 use crate::frames::{WIDTH, frame_ms, median, skipped, terrain};

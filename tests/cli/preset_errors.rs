@@ -91,15 +91,15 @@ fn errors_name_line_key_value_and_what_would_do() {
 /// As above, of the rest of a scene of heights.
 const HEIGHTFIELD_ERRORS: &str = r#"
 tiles = [1, 2] => p.toml:3: scene.tiles = [1, 2]: the map is repeated along y, but it does not wrap there
-field = "fbm:9000x1" => p.toml:3: scene.field = "fbm:9000x1": `9000x1` is no size
+field = "fbm:9000x1" => p.toml:3: scene.field = "fbm:9000x1": `9000x1` is not a size
 field = "hills" => p.toml:3: scene.field = "hills": hills: there is no such file or field; fields are fbm
 field = "none/there.png" => p.toml:3: scene.field = "none/there.png": none/there.png:
-map = "exact" => p.toml:3: scene.map = "exact": the tracer walk cannot use such cones; it can those of walk
+map = "exact" => p.toml:3: scene.map = "exact": the tracer walk cannot use such cones; it can use those of walk
 tracer = "max-mip"|map = "exact" => p.toml:4: scene.map = "exact": the tracer max-mip needs no cones
 tracer = "linear-binary"|map = "none/there.exr" => p.toml:4: scene.map = "none/there.exr": the tracer linear-binary needs no cones
 map = "none/there.exr" => p.toml:3: scene.map = "none/there.exr": none/there.exr:
-field = "fbm:8192x8192"|wrap = "xy"|tiles = [256, 256] => p.toml:5: scene.tiles = [256, 256]: 256 tiles of 8192 cells along axis 0: one tile or more, and 65536 cells at most
-field = "fbm:4x1024"|wrap = "y"|tiles = [1, 65] => p.toml:5: scene.tiles = [1, 65]: 65 tiles of 1024 cells along axis 1:
+field = "fbm:8192x8192"|wrap = "xy"|tiles = [256, 256] => p.toml:5: scene.tiles = [256, 256]: 256 tiles of 8192 cells along axis 0 are out of range; there must be at least one tile and at most 65536 cells
+field = "fbm:4x1024"|wrap = "y"|tiles = [1, 65] => p.toml:5: scene.tiles = [1, 65]: 65 tiles of 1024 cells along axis 1 are out of range
 "#;
 
 #[test]
