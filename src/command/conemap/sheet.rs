@@ -70,10 +70,13 @@ impl Panel {
 
     /// Width with all its text.
     fn width(&self) -> u32 {
-        let letter = FONT.character_size.width;
-        let marks = self.bar.iter().flat_map(|b| &b.marks);
-        let marks: usize = marks.map(|mark| mark.len() + 1).sum();
-        let text = self.caption.len().max(marks) as u32 * letter;
+        let marks = self.bar.as_ref().map_or(0, |bar| {
+            // The middle mark is centred, so both sides need the room of the longer end.
+            let [left, middle, right] = bar.marks.each_ref().map(String::len);
+            2 * left.max(right) + middle + 2
+        });
+        let letters = self.caption.len().max(marks) as u32;
+        let text = letters * FONT.character_size.width;
         self.image.width().max(text)
     }
 }
