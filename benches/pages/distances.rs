@@ -69,12 +69,12 @@ pub fn measure() -> Result<Vec<DistanceRow>> {
     for samples in SAMPLES {
         let mut plans = TRACERS
             .into_iter()
-            .map(|tracer| plan(samples, tracer))
-            .collect::<Result<Vec<Plan>>>()?;
+            .map(|tracer| Ok((plan(samples, tracer)?, Assets::default())))
+            .collect::<Result<Vec<(Plan, Assets)>>>()?;
         let mut times = vec![Vec::new(); TRACERS.len()];
         for run in 0..=RUNS {
-            for (plan, times) in plans.iter().zip(&mut times) {
-                let frame = executor.render(plan, &Assets::default(), DEPTHS, &mut |_| true)?;
+            for ((plan, assets), times) in plans.iter().zip(&mut times) {
+                let frame = executor.render(plan, assets, DEPTHS, &mut |_| true)?;
                 // The first run makes maps and compiles.
                 if run > 0 {
                     times.push(frame_ms(&frame));
@@ -82,19 +82,20 @@ pub fn measure() -> Result<Vec<DistanceRow>> {
             }
         }
         let mut counted = |mode| -> Result<Vec<Frame>> {
-            let one = |plan: &mut Plan| {
+            let one = |(plan, assets): &mut (Plan, Assets)| {
                 plan.march.mode = mode;
-                cpu::render(plan, &Assets::default(), COUNTED, &mut |_| true)
+                cpu::render(plan, assets, COUNTED, &mut |_| true)
             };
             Ok(plans.iter_mut().map(one).collect::<Result<_, _>>()?)
         };
         let after_cones = counted(Mode::Safe)?;
         let alone = counted(Mode::Ray)?;
-        let view = plans[0].view();
-        let far = (plans[0].camera.eye - plans[0].camera.target).length();
+        let walk = &plans[0].0;
+        let view = walk.view();
+        let far = (walk.camera.eye - walk.camera.target).length();
         let texel = WIDTH / f64::from(samples - 1);
         for (i, tracer) in TRACERS.into_iter().enumerate() {
-            let (in_one, apart) = differences(&plans[0], &alone[0], &alone[i]);
+            let (in_one, apart) = differences(walk, &alone[0], &alone[i]);
             let ratios = times[i].iter().zip(&times[0]).map(|(own, walk)| own / walk);
             rows.push(DistanceRow {
                 samples,

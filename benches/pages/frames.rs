@@ -105,16 +105,19 @@ pub fn skipped(frame: &Frame, truth: &Frame, texel: f64) -> f64 {
 /// Renders all kinds in turn, so that a busy machine slows all of them alike.
 pub fn measure(field: &str, relaxed: &str) -> Result<Vec<FrameRow>> {
     let (mut executor, _) = Executor::open(&Choice::Auto)?;
-    let mut render =
-        |plan: &Plan| executor.render(plan, &Assets::default(), Extras::default(), &mut |_| true);
-    let truth = render(&plan(field, relaxed, KINDS[KINDS.len() - 1], 1024)?)?;
+    let mut render = |(plan, assets): &(Plan, Assets)| {
+        executor.render(plan, assets, Extras::default(), &mut |_| true)
+    };
+    // The assets of a plan keep its maps from run to run.
+    let ready = |kind, steps| -> Result<(Plan, Assets)> {
+        Ok((plan(field, relaxed, kind, steps)?, Assets::default()))
+    };
+    let truth = render(&ready(KINDS[KINDS.len() - 1], 1024)?)?;
     ensure!(truth.census()[2] == 0, "the walk did not converge");
     let mut rows = Vec::new();
     for steps in STEPS {
-        let plans: Vec<Plan> = KINDS
-            .iter()
-            .map(|kind| plan(field, relaxed, *kind, steps))
-            .collect::<Result<_>>()?;
+        let plans = KINDS.map(|kind| ready(kind, steps));
+        let plans = plans.into_iter().collect::<Result<Vec<_>>>()?;
         let mut times = vec![Vec::new(); KINDS.len()];
         let mut frames = Vec::new();
         for run in 0..=RUNS {
