@@ -124,7 +124,7 @@ fn heightfields_say_what_does_not_fit() {
     let tiled = of("field = \"fbm:1024x1024\"\nwrap = \"xy\"");
     let set = Override::read("scene.tiles=[65, 64]").expect("a value");
     let e = read_with(&tiled, "p.toml", &[set]).expect_err("too many");
-    let says = "--set scene.tiles=[65, 64]: 65 tiles of 1024 cells along axis 0: ";
+    let says = "--set scene.tiles=[65, 64]: 65 tiles of 1024 cells along axis 0 are out of range";
     assert!(e.is_usage() && e.to_string().starts_with(says), "{e}");
 }
 
