@@ -17,7 +17,8 @@
 //! let frame = cpu::render(&plan, &Assets::default(), Extras::default(), &mut |_| true)?;
 //! let picture = Shades::new(Layer::Color, &frame, &plan);
 //! let mut file = std::fs::File::create(std::env::temp_dir().join("mandelbox.png"))?;
-//! write_png(&mut file, &picture, BitDepth::Eight, &preset::write(&plan))?;
+//! let text = preset::write(&plan);
+//! write_png(&mut file, &picture, BitDepth::Eight, &plan.title, &text)?;
 //! # Ok(())
 //! # }
 //! ```

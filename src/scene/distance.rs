@@ -168,7 +168,7 @@ impl Distance {
     }
 
     /// The part of a ray, as (near, far), that is nearer to the bounds than
-    /// [`DISTANCE_WITHIN`] hit thresholds; near > far for none. The threshold grows along the
+    /// `DISTANCE_WITHIN` hit thresholds; near > far for none. The threshold grows along the
     /// ray, so the faces of the box lean outwards.
     pub fn bounds_interval(&self, ray: &Beam) -> (f64, f64) {
         let p = self.eye - self.bounds.centre + ray.origin;
