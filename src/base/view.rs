@@ -31,10 +31,6 @@ pub struct ViewUniform {
     pub pad: f32,
     /// Width and height of the full image in pixels.
     pub size: [u32; 2],
-    /// First pixel of the block.
-    pub block_origin: [u32; 2],
-    /// Width and height of the block in pixels.
-    pub block_size: [u32; 2],
     /// Unused.
     pub pad2: [u32; 2],
 }
@@ -120,8 +116,8 @@ impl View {
         }
     }
 
-    /// The values of the WGSL struct, for one block of the image.
-    pub fn uniform(&self, origin: [u32; 2], block: [u32; 2]) -> ViewUniform {
+    /// The values of the WGSL struct.
+    pub fn uniform(&self) -> ViewUniform {
         ViewUniform {
             right: self.right.as_vec3(),
             #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
@@ -131,8 +127,6 @@ impl View {
             forward: self.forward.as_vec3(),
             pad: 0.0,
             size: self.size,
-            block_origin: origin,
-            block_size: block,
             pad2: [0; 2],
         }
     }

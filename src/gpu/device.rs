@@ -10,7 +10,7 @@ use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Features, Instance, Limit
 /// many, desktop adapters have more. Parameters are storage buffers too, as lavapipe of Mesa 22
 /// inlines uniform buffers that steer branches, at times beyond its stack. A cone level over a
 /// painted heightfield with four cones per sample binds the most.
-pub const STORAGE_BUFFERS: u32 = 16;
+pub const STORAGE_BUFFERS: u32 = 14;
 
 /// The number of storage buffers that WebGPU promises. Generators of cone maps need no more.
 pub const PROMISED_BUFFERS: u32 = 8;
@@ -101,7 +101,8 @@ impl Adapters {
     pub fn find() -> Self {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = Backends::VULKAN | Backends::METAL | Backends::DX12;
-        // This program never dispatches indirectly, and the validation for that costs time.
+        // The validation of indirect dispatches costs time. The sizes of these are bounded in
+        // `wgsl/pass/arrange.wgsl`.
         descriptor.flags = wgpu::InstanceFlags::default()
             .difference(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
         let instance = Instance::new(descriptor);
@@ -225,13 +226,6 @@ pub struct Device {
 }
 
 impl Device {
-    /// Fills a buffer with zeros.
-    pub fn clear(&self, buffer: &wgpu::Buffer) {
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.clear_buffer(buffer, 0, None);
-        self.queue.submit([encoder.finish()]);
-    }
-
     /// Opens an adapter for programs that bind up to so many storage buffers. Timestamps and
     /// f64 are on if the adapter has them.
     ///
@@ -306,11 +300,32 @@ impl Device {
     /// # Errors
     /// The device was lost or reported an error.
     pub fn wait(&self) -> Result<(), DeviceError> {
+        self.wait_for(None)
+    }
+
+    /// Waits until a submission has run, or the last one.
+    ///
+    /// # Errors
+    /// The device was lost or reported an error.
+    pub fn wait_for(
+        &self,
+        submission_index: Option<wgpu::SubmissionIndex>,
+    ) -> Result<(), DeviceError> {
         let polled = self.device.poll(wgpu::PollType::Wait {
-            submission_index: None,
+            submission_index,
             // A dispatch has a bounded number of steps. A device that needs longer hangs.
             timeout: Some(Duration::from_secs(120)),
         });
+        self.trouble()?;
+        polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
+    }
+
+    /// Takes in what the device reports, without waiting.
+    ///
+    /// # Errors
+    /// The device was lost or reported an error.
+    pub fn check(&self) -> Result<(), DeviceError> {
+        let polled = self.device.poll(wgpu::PollType::Poll);
         self.trouble()?;
         polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
     }

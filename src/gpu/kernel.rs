@@ -3,7 +3,7 @@
 //! Layouts are read from the WGSL, so a binding is declared in one place. Resources are bound
 //! by the names of the WGSL variables, so they cannot be swapped.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use thiserror::Error;
 use wgpu::naga::{self, AddressSpace, StorageAccess};
@@ -47,20 +47,25 @@ struct Binding {
 
 /// The compiled programs of a device. Each is compiled once.
 #[derive(Default)]
-pub struct Kernels(Vec<(Program, Rc<Kernel>)>);
+pub struct Kernels(Vec<(Program, Arc<Kernel>)>);
 
 impl Kernels {
     /// The kernel of a program, compiled now if it is new.
     ///
     /// # Errors
     /// The text is wrong, or the driver refuses it.
-    pub fn get(&mut self, device: &Device, program: &Program) -> Result<Rc<Kernel>, KernelError> {
+    pub fn get(&mut self, device: &Device, program: &Program) -> Result<Arc<Kernel>, KernelError> {
         if let Some((_, kernel)) = self.0.iter().find(|(p, _)| p == program) {
             return Ok(kernel.clone());
         }
-        let kernel = Rc::new(Kernel::new(device, program)?);
+        let kernel = Arc::new(Kernel::new(device, program)?);
         self.0.push((program.clone(), kernel.clone()));
         Ok(kernel)
+    }
+
+    /// Number of programs compiled so far.
+    pub fn len(&self) -> usize {
+        self.0.len()
     }
 }
 
@@ -82,8 +87,8 @@ impl Kernel {
         if gpu.features().contains(wgpu::Features::SHADER_F64) {
             capabilities |= naga::valid::Capabilities::FLOAT64;
         }
-        let (module, _) = program.validate(capabilities)?;
-        let bindings = bindings_of(&module);
+        let (module, info) = program.validate(capabilities)?;
+        let bindings = bindings_of(&module, info.get_entry_point(0));
         let strides = strides_of(&module);
         let scope = gpu.push_error_scope(wgpu::ErrorFilter::Validation);
         let label = Some(program.entry);
@@ -195,17 +200,33 @@ impl Kernel {
         groups: &[wgpu::BindGroup],
         count: [u32; 2],
     ) {
+        self.set(pass, groups);
+        pass.dispatch_workgroups(count[0], count[1], 1);
+    }
+
+    /// Encodes one dispatch of as many workgroups as a buffer holds.
+    pub fn dispatch_indirect(
+        &self,
+        pass: &mut wgpu::ComputePass,
+        groups: &[wgpu::BindGroup],
+        count: &wgpu::Buffer,
+    ) {
+        self.set(pass, groups);
+        pass.dispatch_workgroups_indirect(count, 0);
+    }
+
+    fn set(&self, pass: &mut wgpu::ComputePass, groups: &[wgpu::BindGroup]) {
         pass.set_pipeline(&self.pipeline);
         for (i, group) in (0u32..).zip(groups) {
             pass.set_bind_group(i, group, &[]);
         }
-        pass.dispatch_workgroups(count[0], count[1], 1);
     }
 }
 
-fn bindings_of(module: &naga::Module) -> Vec<Binding> {
-    let of = |(_, v): (_, &naga::GlobalVariable)| {
-        let at = v.binding?;
+/// The variables that an entry point reaches.
+fn bindings_of(module: &naga::Module, entry: &naga::valid::FunctionInfo) -> Vec<Binding> {
+    let of = |(handle, v): (naga::Handle<naga::GlobalVariable>, &naga::GlobalVariable)| {
+        let at = v.binding.filter(|_| !entry[handle].is_empty())?;
         let read_only = match v.space {
             AddressSpace::Storage { access } => !access.contains(StorageAccess::STORE),
             _ => true,

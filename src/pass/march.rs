@@ -2,27 +2,11 @@
 //! and 2).
 //! Twin: `wgsl/pass/march.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
 use crate::scene::Solid;
 use crate::wgsl;
-
-/// A level as WGSL reads it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct LevelUniform {
-    /// Pixels per cell along each axis.
-    pub divisor: u32,
-    /// Factor on the chord.
-    pub fudge: f32,
-    /// First cell of the block.
-    pub origin: [u32; 2],
-    /// Cells in the block.
-    pub cells: [u32; 2],
-}
 
 /// The WGSL module of the pass.
 pub fn module() -> Module {

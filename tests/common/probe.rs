@@ -2,7 +2,7 @@
 //! and a measure of how far the answers lie from those in f64.
 
 use std::collections::HashMap;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use conemarch::base::shader::{Module, Program};
 use conemarch::gpu::buffer::{Buffer, uniform};
@@ -29,7 +29,7 @@ macro_rules! probe {
 }
 pub(crate) use probe;
 
-static DEVICE: LazyLock<Device> = LazyLock::new(|| crate::adapter::open().device);
+static DEVICE: LazyLock<Arc<Device>> = LazyLock::new(|| crate::adapter::open().device);
 
 /// Modules to ask, and the parameters that they read.
 #[derive(Clone, Default)]

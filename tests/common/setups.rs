@@ -45,11 +45,11 @@ pub fn probe_of(plan: &Plan, probe: Module) -> Probe {
     modules.extend([
         view::module(),
         wgsl!("pass/shared.wgsl"),
-        wgsl!("base/counters_off.wgsl"),
+        wgsl!("pass/counters_off.wgsl"),
         probe,
     ]);
     let mut parameters = solid.twin().uniforms();
-    let view = plan.view().uniform([0, 0], plan.size);
+    let view = plan.view().uniform();
     parameters.push(("view_parameters", bytes_of(&view).to_vec()));
     Probe {
         modules,

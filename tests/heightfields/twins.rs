@@ -48,7 +48,7 @@ fn every_tracer(surface: &Arc<HeightSurface>) -> Vec<Named> {
 fn probe_of(tracer: &dyn Tracer) -> Probe {
     let mut modules = tracer.modules();
     modules.push(wgsl!("pass/shared.wgsl"));
-    modules.push(wgsl!("base/counters_off.wgsl"));
+    modules.push(wgsl!("pass/counters_off.wgsl"));
     modules.push(probe!("relief"));
     Probe {
         modules,

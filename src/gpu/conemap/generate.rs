@@ -9,7 +9,7 @@
 //! The work is divided into bands of rows, and each dispatch does a bounded number of rounds
 //! per place. The division never changes a map.
 
-use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Instant;
 
 use bytemuck::{Pod, bytes_of};
@@ -75,7 +75,7 @@ impl<'a> Maker<'a> {
         }
     }
 
-    pub(crate) fn kernel(&mut self, program: &Program) -> Result<Rc<Kernel>, KernelError> {
+    pub(crate) fn kernel(&mut self, program: &Program) -> Result<Arc<Kernel>, KernelError> {
         self.kernels.get(self.device, program)
     }
 
