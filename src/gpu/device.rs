@@ -10,7 +10,7 @@ use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Features, Instance, Limit
 /// many, desktop adapters have more. Parameters are storage buffers too, as lavapipe of Mesa 22
 /// inlines uniform buffers that steer branches, at times beyond its stack. A cone level over a
 /// painted heightfield with four cones per sample binds the most.
-pub const STORAGE_BUFFERS: u32 = 14;
+pub const STORAGE_BUFFERS: u32 = 8;
 
 /// The number of storage buffers that WebGPU promises. Generators of cone maps need no more.
 pub const PROMISED_BUFFERS: u32 = 8;

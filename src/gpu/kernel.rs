@@ -6,10 +6,12 @@
 use std::sync::Arc;
 
 use thiserror::Error;
-use wgpu::naga::{self, AddressSpace, StorageAccess};
+use wgpu::naga::{self, AddressSpace, ImageClass, ScalarKind, StorageAccess};
 
 use crate::base::shader::{Program, ShaderError};
+use crate::gpu::array::Array;
 use crate::gpu::device::Device;
+use crate::gpu::error::RenderError;
 
 /// Why a kernel could not be compiled or bound.
 #[derive(Debug, Error)]
@@ -42,7 +44,19 @@ struct Binding {
     group: u32,
     index: u32,
     name: String,
-    read_only: bool,
+    kind: Kind,
+}
+
+/// What a resource variable is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Storage {
+        read_only: bool,
+    },
+    /// A texture of one channel, and whether its numbers are whole.
+    Texture {
+        whole: bool,
+    },
 }
 
 /// The compiled programs of a device. Each is compiled once.
@@ -137,6 +151,26 @@ impl Kernel {
         })
     }
 
+    /// An array of numbers under the name of a variable, as the program reads it: in a buffer or
+    /// in a texture. `None` if the program does not read it.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn array(
+        &self,
+        device: &Device,
+        name: &str,
+        bytes: &[u8],
+    ) -> Result<Option<Array>, RenderError> {
+        let Some(binding) = self.bindings.iter().find(|b| b.name == name) else {
+            return Ok(None);
+        };
+        Ok(Some(match binding.kind {
+            Kind::Storage { .. } => Array::in_buffer(device, name, bytes)?,
+            Kind::Texture { whole } => Array::in_texture(device, name, bytes, whole)?,
+        }))
+    }
+
     /// Bytes per element of a storage array; `None` if the program has no such array.
     pub fn stride(&self, name: &str) -> Option<u32> {
         let found = self.strides.iter().find(|(n, _)| n == name);
@@ -147,16 +181,16 @@ impl Kernel {
     pub fn bind<'a>(
         &self,
         device: &Device,
-        buffer: impl Fn(&str) -> Option<&'a wgpu::Buffer>,
+        resource: impl Fn(&str) -> Option<wgpu::BindingResource<'a>>,
     ) -> Result<Vec<wgpu::BindGroup>, KernelError> {
         let entry = |b: &Binding| {
-            let raw = buffer(&b.name).ok_or_else(|| KernelError::Unbound {
+            let found = resource(&b.name).ok_or_else(|| KernelError::Unbound {
                 entry: self.entry,
                 name: b.name.clone(),
             });
-            raw.map(|raw| wgpu::BindGroupEntry {
+            found.map(|resource| wgpu::BindGroupEntry {
                 binding: b.index,
-                resource: raw.as_entire_binding(),
+                resource,
             })
         };
         let group = |(group, layout)| {
@@ -183,7 +217,10 @@ impl Kernel {
         bound: &[(&str, &wgpu::Buffer)],
         groups: [u32; 2],
     ) -> Result<(), KernelError> {
-        let named = |name: &str| bound.iter().find(|b| b.0 == name).map(|b| b.1);
+        let named = |name: &str| {
+            let found = bound.iter().find(|b| b.0 == name);
+            found.map(|b| b.1.as_entire_binding())
+        };
         let bind = self.bind(device, named)?;
         let mut encoder = device.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -227,15 +264,20 @@ impl Kernel {
 fn bindings_of(module: &naga::Module, entry: &naga::valid::FunctionInfo) -> Vec<Binding> {
     let of = |(handle, v): (naga::Handle<naga::GlobalVariable>, &naga::GlobalVariable)| {
         let at = v.binding.filter(|_| !entry[handle].is_empty())?;
-        let read_only = match v.space {
-            AddressSpace::Storage { access } => !access.contains(StorageAccess::STORE),
-            _ => true,
+        let kind = match (&module.types[v.ty].inner, v.space) {
+            (naga::TypeInner::Image { class, .. }, _) => Kind::Texture {
+                whole: matches!(class, ImageClass::Sampled { kind, .. } if *kind == ScalarKind::Uint),
+            },
+            (_, AddressSpace::Storage { access }) => Kind::Storage {
+                read_only: !access.contains(StorageAccess::STORE),
+            },
+            _ => Kind::Storage { read_only: true },
         };
         Some(Binding {
             group: at.group,
             index: at.binding,
             name: v.name.clone().unwrap_or_default(),
-            read_only,
+            kind,
         })
     };
     module.global_variables.iter().filter_map(of).collect()
@@ -250,18 +292,27 @@ fn strides_of(module: &naga::Module) -> Vec<(String, u32)> {
 }
 
 fn layout_entry(b: &Binding) -> wgpu::BindGroupLayoutEntry {
-    // Parameters are storage too: see [`crate::gpu::device::STORAGE_BUFFERS`].
-    let ty = wgpu::BufferBindingType::Storage {
-        read_only: b.read_only,
+    let ty = match b.kind {
+        // Parameters are storage too: see [`crate::gpu::device::STORAGE_BUFFERS`].
+        Kind::Storage { read_only } => wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        Kind::Texture { whole } => wgpu::BindingType::Texture {
+            sample_type: if whole {
+                wgpu::TextureSampleType::Uint
+            } else {
+                wgpu::TextureSampleType::Float { filterable: false }
+            },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
     };
     wgpu::BindGroupLayoutEntry {
         binding: b.index,
         visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
+        ty,
         count: None,
     }
 }

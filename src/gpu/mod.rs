@@ -4,10 +4,12 @@
 //! - [`device`]: adapters and devices; [`buffer`]: typed buffers; [`kernel`]: compiled programs
 //! - [`work`]: a render under way; `target`: its buffers and bound kernels; `cost`: how long
 //!   its dispatches take; `stamps`: the device's own time
+//! - `array`: arrays of the host on the device
 //! - `staging`: read-back without waiting; `collect`: results into the Frame
 //! - [`conemap`]: generators of cone maps on the device
 //! - `error`: why a render failed
 
+mod array;
 pub mod buffer;
 mod collect;
 pub mod conemap;

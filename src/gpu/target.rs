@@ -9,6 +9,7 @@ use bytemuck::{Zeroable, bytes_of, cast_slice};
 use wgpu::BufferUsages;
 
 use crate::base::shader::Program;
+use crate::gpu::array::Array;
 use crate::gpu::buffer::create;
 use crate::gpu::device::Device;
 use crate::gpu::error::{RenderError, check_room};
@@ -26,11 +27,11 @@ pub struct Needs {
     pub pixel_layers: u32,
 }
 
-/// A buffer of parameters with what it holds.
+/// Parameters or an array of the scene, with what it holds.
 struct Parameter {
     name: String,
     bytes: Vec<u8>,
-    buffer: wgpu::Buffer,
+    array: Array,
 }
 
 /// A stage: its numbers, its kernel, and the resources of both.
@@ -96,17 +97,17 @@ impl Target {
             .map(kernel)
             .collect::<Result<_, _>>()?;
         let arrange = kernels.get(device, &turn::arrange())?;
-        let parameter = |(name, bytes): (String, Vec<u8>)| {
-            let buffer = room(&name, bytes.len() as u64)?;
-            device.queue.write_buffer(&buffer, 0, &bytes);
-            Ok(Parameter {
-                name,
-                bytes,
-                buffer,
-            })
-        };
-        let parameters = parameters.into_iter().map(parameter);
-        let parameters: Vec<Parameter> = parameters.collect::<Result<_, RenderError>>()?;
+        let mut kept = Vec::new();
+        for (name, bytes) in parameters {
+            // Every program that reads it declares it alike.
+            for kernel in &compiled {
+                if let Some(array) = kernel.array(device, &name, &bytes)? {
+                    kept.push(Parameter { name, bytes, array });
+                    break;
+                }
+            }
+        }
+        let parameters = kept;
         let pixels = u64::from(needs.layout.count(1));
         let strides = compiled.iter().filter_map(|k| k.stride("walks"));
         let walk = u64::from(strides.max().unwrap_or(0));
@@ -130,12 +131,13 @@ impl Target {
         let named = |name: &str| {
             let shared = shared.iter().find(|b| b.0 == name).map(|b| b.1);
             let own = || parameters.iter().find(|p| p.name == name);
-            shared.or_else(|| own().map(|p| &p.buffer))
+            let shared = shared.map(wgpu::Buffer::as_entire_binding);
+            shared.or_else(|| own().map(|p| p.array.binding()))
         };
         let arranged = |stage: &wgpu::Buffer| {
             let with_stage = |name: &str| match name {
-                "stage_parameters" => Some(stage),
-                other => shared.iter().find(|b| b.0 == other).map(|b| b.1),
+                "stage_parameters" => Some(stage.as_entire_binding()),
+                other => named(other),
             };
             arrange.bind(device, with_stage)
         };
@@ -170,20 +172,20 @@ impl Target {
 
     /// Whether the target serves a frame: its programs and sizes are the same.
     pub fn serves(&self, needs: &Needs, parameters: &[(String, Vec<u8>)]) -> bool {
-        let same = |(own, (name, bytes)): (&Parameter, &(String, Vec<u8>))| {
-            own.name == *name && own.bytes.len() == bytes.len()
+        let same = |own: &Parameter| {
+            let found = parameters.iter().find(|(name, _)| *name == own.name);
+            found.is_some_and(|(_, bytes)| own.bytes.len() == bytes.len())
         };
-        self.needs == *needs
-            && self.parameters.len() == parameters.len()
-            && self.parameters.iter().zip(parameters).all(same)
+        self.needs == *needs && self.parameters.iter().all(same)
     }
 
     /// Rewrites the parameters that differ. Returns the bytes written.
     pub fn rewrite(&mut self, device: &Device, parameters: Vec<(String, Vec<u8>)>) -> usize {
         let mut written = 0;
-        for (own, (_, bytes)) in self.parameters.iter_mut().zip(parameters) {
-            if own.bytes != bytes {
-                device.queue.write_buffer(&own.buffer, 0, &bytes);
+        for (name, bytes) in parameters {
+            let mut own = self.parameters.iter_mut();
+            if let Some(own) = own.find(|p| p.name == name && p.bytes != bytes) {
+                own.array.write(device, &bytes);
                 written += bytes.len();
                 own.bytes = bytes;
             }

@@ -8,7 +8,7 @@ fn census(
     @builtin(local_invocation_index) lane: u32,
 ) {
     queue_load();
-    let index = queue_take(group.x, lane);
+    let index = queue_tile(group.x, lane);
     if index == QUEUE_NONE {
         return;
     }

@@ -51,7 +51,7 @@ fn color(
     look_load();
     queue_load();
     // Every pixel gets a colour, also the sky.
-    let index = queue_take(group.x, lane);
+    let index = queue_tile(group.x, lane);
     if index == QUEUE_NONE {
         return;
     }

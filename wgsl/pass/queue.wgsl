@@ -20,34 +20,38 @@ fn queue_load() {
     turn = turn_parameters;
 }
 
-/// The index of this invocation's cell in the block, or QUEUE_NONE.
-fn queue_take(group: u32, lane: u32) -> u32 {
+/// The index of a cell in the block, or QUEUE_NONE beyond its edges.
+fn queue_index(cell: vec2<u32>) -> u32 {
     let size = turn.stage.cells;
+    return select(cell.y * size.x + cell.x, QUEUE_NONE, any(cell >= size));
+}
+
+/// The index of this invocation's cell in a stage that visits all cells, or QUEUE_NONE.
+fn queue_tile(group: u32, lane: u32) -> u32 {
     let tile = turn.first + group;
-    var cell: vec2<u32>;
+    let row = (turn.stage.cells.x + 7u) / 8u;
+    return queue_index(tile_cell(vec2<u32>(tile % row, tile / row), lane));
+}
+
+/// The index of this invocation's cell, or QUEUE_NONE.
+fn queue_take(group: u32, lane: u32) -> u32 {
     if turn.visits == VISIT_ALL {
-        let row = (size.x + 7u) / 8u;
-        cell = tile_cell(vec2<u32>(tile % row, tile / row), lane);
-    } else {
-        let at = tile * 64u + lane;
-        if turn.visits == VISIT_CELLS {
-            if at >= turn.count {
-                return QUEUE_NONE;
-            }
-            return lists.cells[turn.read + at];
-        }
-        if at >= 4u * turn.count {
+        return queue_tile(group, lane);
+    }
+    let at = (turn.first + group) * 64u + lane;
+    if turn.visits == VISIT_CELLS {
+        if at >= turn.count {
             return QUEUE_NONE;
         }
-        let parent = lists.cells[turn.read + at / 4u];
-        let width = turn.stage.parent_width;
-        cell = 2u * vec2<u32>(parent % width, parent / width)
-            + vec2<u32>(at & 1u, (at >> 1u) & 1u);
+        return lists.cells[turn.read + at];
     }
-    if any(cell >= size) {
+    if at >= 4u * turn.count {
         return QUEUE_NONE;
     }
-    return cell.y * size.x + cell.x;
+    let parent = lists.cells[turn.read + at / 4u];
+    let width = turn.stage.parent_width;
+    let child = vec2<u32>(at & 1u, (at >> 1u) & 1u);
+    return queue_index(2u * vec2<u32>(parent % width, parent / width) + child);
 }
 
 /// The place of a cell in the block.

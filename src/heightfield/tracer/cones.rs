@@ -21,7 +21,6 @@ use glam::DVec3;
 
 use crate::base::shader::Module;
 use crate::base::work::Work;
-use crate::heightfield::conemap::generate::mips::rounded_down;
 use crate::heightfield::conemap::{ConeMap, MapKind};
 use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
 use crate::heightfield::heights::{Patches, bilinear};
@@ -262,26 +261,5 @@ impl Tracer for Cones {
                 "CONES_SECANT" = set(matches!(self.method.refine, Refine::Secant(_))),
             ),
         ]
-    }
-
-    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
-        if self.map.kind != MapKind::Quad {
-            return self.surface.buffers(Some(&self.map), self.parameters());
-        }
-        // Four cones for each of 4096 x 4096 samples may exceed a binding: two buffers.
-        let half = |side: usize| -> Vec<u8> {
-            let places = self.map.ratios.chunks(4);
-            let two = places.flat_map(|four| &four[side..side + 2]);
-            two.flat_map(|ratio| rounded_down(*ratio).to_ne_bytes())
-                .collect()
-        };
-        let bare = ConeMap {
-            ratios: Vec::new(),
-            ..*self.map
-        };
-        let mut all = self.surface.buffers(Some(&bare), self.parameters());
-        all.retain(|(name, _)| *name != "ratios");
-        all.extend([("ratios", half(0)), ("ratios_y", half(2))]);
-        all
     }
 }
