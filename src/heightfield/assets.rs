@@ -60,7 +60,7 @@ pub struct Ready {
     /// Heights, and the pyramid of their maxima.
     pub surface: Arc<HeightSurface>,
     /// The tracer of rays, with its cones.
-    pub tracer: Arc<dyn Tracer>,
+    pub tracer: Arc<Tracer>,
     /// What picks the colours.
     pub colors: Colors,
     /// The place in the world.

@@ -11,7 +11,6 @@ use thiserror::Error;
 
 use crate::base::shader::Module;
 use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::mips::rounded_down;
 use crate::heightfield::heights::{Heights, Patches, bilinear};
 use crate::heightfield::max_mip::MaxMip;
 use crate::wgsl;
@@ -235,12 +234,8 @@ impl HeightSurface {
         ]
     }
 
-    /// Bytes to bind, by the names of the WGSL variables, for a tracer with or without a map.
-    pub fn buffers(
-        &self,
-        map: Option<&ConeMap>,
-        tracer: TracerParameters,
-    ) -> Vec<(&'static str, Vec<u8>)> {
+    /// Bytes to bind, by the names of the WGSL variables, for a tracer; its ratios are bound apart.
+    pub fn buffers(&self, map: &ConeMap, tracer: TracerParameters) -> Vec<(&'static str, Vec<u8>)> {
         let mut starts = [0; MOST_LEVELS];
         let mut maxima: Vec<f32> = Vec::new();
         for (start, level) in starts.iter_mut().zip(&self.maxima.levels) {
@@ -252,8 +247,8 @@ impl HeightSurface {
             cells: self.cells.map(|n| n as i32),
             domain: self.domain,
             wrap: self.heights.wrap().map(u32::from),
-            places: map.map_or([1, 1], |m| m.size.map(|n| n as i32)),
-            offset: map.map_or(0.0, |m| m.offset as f32),
+            places: map.size.map(|n| n as i32),
+            offset: map.offset as f32,
             scale: tracer.scale as f32,
             levels: self.maxima.levels.len() as u32,
             steps: tracer.steps,
@@ -261,13 +256,9 @@ impl HeightSurface {
             rounds: tracer.rounds,
             starts,
         };
-        let ratios: Vec<f32> = map.map_or(vec![0.0], |m| {
-            m.ratios.iter().map(|r| rounded_down(*r)).collect()
-        });
         vec![
             ("relief_parameters", bytes_of(&uniform).to_vec()),
             ("heights", cast_slice(self.heights.data()).to_vec()),
-            ("ratios", cast_slice(&ratios).to_vec()),
             ("maxima", cast_slice(&maxima).to_vec()),
         ]
     }

@@ -63,6 +63,11 @@ impl MaxMip {
         (low, high)
     }
 
+    /// The level of the single node.
+    pub fn coarsest(&self) -> u32 {
+        self.levels.len() as u32 - 1
+    }
+
     /// The largest value of all.
     pub fn top(&self) -> f32 {
         self.levels[self.levels.len() - 1].max[0]

@@ -8,7 +8,6 @@ use conemarch::heightfield::conemap::generate::generator::Generator;
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::pattern::Pattern;
-use conemarch::heightfield::tracer::reference::ReferenceTracer;
 use conemarch::heightfield::tracer::settings::TracerSettings;
 use conemarch::heightfield::tracer::walk_mip::walk_mip_level;
 use conemarch::heightfield::tracer::{
@@ -23,7 +22,7 @@ use crate::cases::{Case, END, alone, case, cases, made, rays, run, traced, trace
 const NEVER: f64 = 2.0 * END;
 
 /// The tracers that are off by a pixel, where a texel is as wide as one at a parameter.
-fn distant(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> Vec<Arc<dyn Tracer>> {
+fn distant(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> Vec<Arc<Tracer>> {
     let kinds = TracerKind::ALL.into_iter();
     let made = kinds
         .filter(|kind| kind.facts().accuracy == Accuracy::Pixel)
@@ -37,7 +36,7 @@ fn distant(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> Vec<Ar
     made.collect()
 }
 
-fn walk(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>) -> Arc<dyn Tracer> {
+fn walk(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>) -> Arc<Tracer> {
     tracer(surface, &TracerKind::Walk.into(), Some(map.clone())).unwrap()
 }
 
@@ -109,7 +108,7 @@ fn no_first_hit_is_passed_and_every_hit_is_of_the_node_under_it() {
         let surface = &case.surface;
         let map = made(Generator::Walk, surface, 2.0);
         let rays = rays(surface, 2400, 32);
-        let reference = ReferenceTracer::new(surface.clone());
+        let reference = Tracer::reference(surface.clone());
         let truths = rays.iter().map(|ray| {
             let (step, hit, _) = run(&reference, ray, END).unwrap();
             (step == Step::Hit).then_some(hit.s)
@@ -142,7 +141,7 @@ fn no_first_hit_is_passed_and_every_hit_is_of_the_node_under_it() {
 fn distant_views_take_fewer_steps_than_with_the_walk() {
     let Case { surface, .. } = case(Pattern::Fbm, alone([512, 512], Patches::Bilinear));
     let map = made(Generator::Walk, &surface, 2.0);
-    let reference = ReferenceTracer::new(surface.clone());
+    let reference = Tracer::reference(surface.clone());
     for degrees in [60.0, 80.0] {
         // As many heights away as texels are to be as wide as a pixel.
         let mut rays = view_rays(&surface, degrees, 10_000);

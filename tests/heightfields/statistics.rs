@@ -8,7 +8,6 @@ use conemarch::heightfield::conemap::{ConeMap, MapKind};
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::pattern::Pattern;
-use conemarch::heightfield::tracer::reference::ReferenceTracer;
 use conemarch::heightfield::tracer::settings::TracerSettings;
 use conemarch::heightfield::tracer::{Accuracy, LocalRay, Step, Steps, Tracer, TracerKind};
 use conemarch::measure::tracer_stats::{first_hits, measure, view_rays};
@@ -22,7 +21,7 @@ use crate::cases::{
 fn approximate_tracers_end_on_the_surface_or_say_that_they_do_not() {
     let mut spent = [0, 0];
     for case in cases().iter().step_by(5) {
-        let reference = ReferenceTracer::new(case.surface.clone());
+        let reference = Tracer::reference(case.surface.clone());
         // Without rays that only touch the surface.
         let rays = rays(&case.surface, 600, 12).into_iter().enumerate();
         let rays = rays.filter(|(i, _)| ![7, 9].contains(&(*i as u64 % KINDS)));
@@ -53,7 +52,7 @@ fn approximate_tracers_end_on_the_surface_or_say_that_they_do_not() {
 fn walk_over_pyramid(field: Pattern) -> [f64; 3] {
     let case = case(field, alone([256, 256], Patches::Bilinear));
     let map = made(Generator::Walk, &case.surface, 2.0);
-    let reference = ReferenceTracer::new(case.surface.clone());
+    let reference = Tracer::reference(case.surface.clone());
     let both = [(TracerKind::Walk, Some(map)), (TracerKind::MaxMip, None)];
     let both = both.map(|(kind, map)| tracer(&case.surface, &kind.into(), map).unwrap());
     [30.0, 60.0, 80.0].map(|degrees| {
@@ -95,7 +94,7 @@ fn with(
     kind: TracerKind,
     change: impl Fn(&mut TracerSettings),
     map: Option<ConeMap>,
-) -> Arc<dyn Tracer> {
+) -> Arc<Tracer> {
     let mut settings = kind.into();
     change(&mut settings);
     tracer(surface, &settings, map.map(Arc::new)).unwrap()
@@ -106,12 +105,12 @@ fn statistics_count_what_is_missed() {
     // A wall one cell thick in a plain, and rays that meet it or the ground behind.
     let z = (0..64 * 64).map(|i| if i % 64 == 32 { 1.0 } else { 0.0 });
     let wall = surface(alone([64, 64], Patches::Bilinear), z.collect());
-    let reference = ReferenceTracer::new(wall.clone());
+    let reference = Tracer::reference(wall.clone());
     let linear = |steps, rounds| {
         let numbers = |s: &mut TracerSettings| (s.steps, s.rounds) = (Some(steps), Some(rounds));
         with(&wall, TracerKind::LinearBinary, numbers, None)
     };
-    let view = |own: &dyn Tracer, degrees| {
+    let view = |own: &Tracer, degrees| {
         let rays = view_rays(&wall, degrees, 4000);
         measure(own, &rays, &first_hits(&reference, &rays))
     };

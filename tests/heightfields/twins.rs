@@ -12,7 +12,6 @@ use conemarch::heightfield::conemap::MapKind;
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::pattern::Pattern;
-use conemarch::heightfield::tracer::reference::ReferenceTracer;
 use conemarch::heightfield::tracer::{Accuracy, LocalRay, SURFACE, Step, Tracer, TracerKind};
 use conemarch::wgsl;
 use glam::DVec3;
@@ -45,7 +44,7 @@ fn every_tracer(surface: &Arc<HeightSurface>) -> Vec<Named> {
 }
 
 /// The probe of a tracer.
-fn probe_of(tracer: &dyn Tracer) -> Probe {
+fn probe_of(tracer: &Tracer) -> Probe {
     let mut modules = tracer.modules();
     modules.push(wgsl!("pass/shared.wgsl"));
     modules.push(wgsl!("base/counters_off.wgsl"));
@@ -92,9 +91,9 @@ fn lowered(own: &HeightSurface) -> Arc<HeightSurface> {
 }
 
 /// Skipped hits, rays that do not end, and the 99th percentile of the others' errors in texels.
-fn measure(surface: &Arc<HeightSurface>, tracer: &dyn Tracer) -> (u32, u32, f64) {
+fn measure(surface: &Arc<HeightSurface>, tracer: &Tracer) -> (u32, u32, f64) {
     let all: Vec<_> = rays(surface, 9000, 21).iter().map(narrow).collect();
-    let [reference, low] = [surface.clone(), lowered(surface)].map(ReferenceTracer::new);
+    let [reference, low] = [surface.clone(), lowered(surface)].map(Tracer::reference);
     let (mut skipped, mut unconverged) = (0, 0);
     let mut errors = Vec::new();
     for (ray, (state, s, id)) in all.iter().zip(answers(&probe_of(tracer), &all)) {

@@ -27,8 +27,8 @@ use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::max_mip::MaxMip;
 use crate::heightfield::pattern::Pattern;
+use crate::heightfield::tracer::Tracer;
 use crate::heightfield::tracer::TracerKind;
-use crate::heightfield::tracer::reference::ReferenceTracer;
 use crate::heightfield::tracer::settings::{Supply, TracerSettings};
 use crate::measure::tracer_stats::{first_hits, measure, view_rays};
 
@@ -261,7 +261,7 @@ impl Measured<'_> {
 
     /// Rows of all tracers over all views.
     fn trace(&self, maps: &Maps) -> Result<Vec<TracerRow>> {
-        let reference = ReferenceTracer::new(self.surface.clone());
+        let reference = Tracer::reference(self.surface.clone());
         let mut rows = Vec::new();
         let mut progress = Progress::start(&format!("tracing {}", self.field.name()));
         for (i, view_deg) in VIEWS.into_iter().enumerate() {

@@ -83,6 +83,17 @@ pub struct ConeMap {
 }
 
 impl ConeMap {
+    /// A map of one cone of no width, for programs that read no cones.
+    pub fn none() -> Self {
+        Self {
+            kind: MapKind::Samples,
+            size: [1, 1],
+            wrap: [false; 2],
+            offset: 0.0,
+            ratios: vec![0.0],
+        }
+    }
+
     /// Mean ratio.
     pub fn mean(&self) -> f64 {
         self.ratios.iter().sum::<f64>() / self.ratios.len() as f64

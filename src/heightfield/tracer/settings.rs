@@ -260,8 +260,7 @@ impl TracerSettings {
             None => self.read(folder, surface)?,
         };
         if self.tracer == TracerKind::ConeMip {
-            let nodes = node_cones(surface, &supply.map).map_err(|e| fault(e.to_string()))?;
-            supply.nodes = Some(nodes);
+            supply.nodes = Some(node_cones(surface, &supply.map));
         }
         Ok(Some(supply))
     }
@@ -312,7 +311,7 @@ impl TracerSettings {
         surface: &Arc<HeightSurface>,
         cones: Option<&Supply>,
         pixel: f64,
-    ) -> Result<Arc<dyn Tracer>, Fault> {
+    ) -> Result<Arc<Tracer>, Fault> {
         let made = self.tracer.make(surface, cones, self, pixel);
         made.map_err(|e| fault(e.to_string()))
     }

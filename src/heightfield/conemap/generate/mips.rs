@@ -79,3 +79,9 @@ pub fn rounded_down(ratio: f64) -> f32 {
         nearest
     }
 }
+
+/// Ratios as bytes to bind, each rounded down.
+pub fn stored<'a>(ratios: impl IntoIterator<Item = &'a f64>) -> Vec<u8> {
+    let stored = ratios.into_iter().map(|r| rounded_down(*r));
+    stored.flat_map(f32::to_ne_bytes).collect()
+}
