@@ -64,6 +64,18 @@ pub struct MapFile {
 }
 
 impl MapFile {
+    /// A map without heights and shading.
+    pub(crate) fn bare(map: ConeMap, format: MapFormat, label: Label) -> Self {
+        Self {
+            map,
+            heights: None,
+            shading: Vec::new(),
+            origin: None,
+            format,
+            label,
+        }
+    }
+
     /// A fresh map of some heights. `generator` is the word for what made it.
     pub fn new(map: ConeMap, heights: &Heights, patches: Patches, generator: &str) -> Self {
         let (_, places) = heights.places(map.kind.over_cells().then_some(patches));
@@ -75,12 +87,8 @@ impl MapFile {
             generator: Some(generator.into()),
         };
         Self {
-            map,
             heights: Some(places),
-            shading: Vec::new(),
-            origin: None,
-            format: MapFormat::new(Layout::Full),
-            label,
+            ..Self::bare(map, MapFormat::new(Layout::Full), label)
         }
     }
 
