@@ -4,6 +4,7 @@
 //! - [`assets`]: loads and makes what the settings name, and keeps it
 //! - [`pattern`]: heights made from numbers; [`load`]: heights read from files
 //! - [`raster`]: numbers of PNG, EXR, TIFF and other files
+//! - [`file_error`]: why a file of heights or cones cannot be used
 //! - [`heights`], [`patch`]: samples, and the surface between them
 //! - [`height_surface`]: heights with their pyramid of maxima ([`max_mip`]); [`region_max`]:
 //!   the maximum over a rectangle
@@ -14,6 +15,7 @@
 
 pub mod assets;
 pub mod conemap;
+pub mod file_error;
 pub mod height_surface;
 pub mod heights;
 pub mod load;

@@ -14,11 +14,12 @@ use crate::command::sink::Sink;
 use crate::command::size;
 use crate::heightfield::conemap::MapKind;
 use crate::heightfield::conemap::file::{
-    Bits, ForeignFormat, Layout, MapError, MapFile, MapFormat, RatioScale, Slopes, decode,
-    decode_bytes, encode, has_map,
+    Bits, ForeignFormat, Layout, MapFile, MapFormat, RatioScale, Slopes, decode, decode_bytes,
+    encode, has_map,
 };
+use crate::heightfield::file_error::FileError;
 use crate::heightfield::heights::{MOST_SAMPLES, wrap_name};
-use crate::heightfield::load::{LoadError, LoadOptions, Loaded, load};
+use crate::heightfield::load::{LoadOptions, Loaded, load};
 
 /// How heights are read.
 #[derive(Args, Clone, Copy, Debug)]
@@ -49,7 +50,7 @@ impl Reading {
             normalize: self.normalize,
             size: self.size,
         };
-        let loaded = load(argument, &options).map_err(of_load)?;
+        let loaded = load(argument, &options).map_err(of_map)?;
         if let Some(note) = &loaded.note {
             say(&format!("note: {note}"));
         }
@@ -290,17 +291,8 @@ pub fn shown(path: &Path) -> String {
     }
 }
 
-/// An error of loading: wrong usage if the argument is wrong.
-fn of_load(e: LoadError) -> anyhow::Error {
-    if e.is_usage() {
-        usage(e.to_string())
-    } else {
-        e.into()
-    }
-}
-
-/// An error of a map: wrong usage if an option is wrong.
-pub fn of_map(e: MapError) -> anyhow::Error {
+/// An error of heights or of a map: wrong usage if an argument or an option is wrong.
+pub fn of_map(e: FileError) -> anyhow::Error {
     if e.is_usage() {
         usage(e.to_string())
     } else {

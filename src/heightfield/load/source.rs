@@ -9,8 +9,8 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
+use crate::heightfield::file_error::FileError;
 use crate::heightfield::heights::Heights;
-use crate::heightfield::load::error::LoadError;
 use crate::heightfield::load::file::{Grid, read};
 use crate::heightfield::load::pattern_spec::PatternSpec;
 use crate::heightfield::pattern::Pattern;
@@ -45,7 +45,7 @@ pub struct Loaded {
 ///
 /// # Errors
 /// The argument names nothing, or the file cannot be read or holds no heights.
-pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded, LoadError> {
+pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded, FileError> {
     let path = Path::new(argument.as_ref());
     let shown = path.display().to_string();
     if let Some(named) = path.to_str().and_then(PatternSpec::read) {
@@ -57,9 +57,9 @@ pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded
             "there is no such file or field; fields are {}, and files are PNG, EXR, TIFF or .raw",
             Pattern::ALL.map(Pattern::name).join(", ")
         );
-        return Err(LoadError::argument(&shown, why));
+        return Err(wrong(&shown, &why));
     }
-    let fail = |why: String| LoadError::file(path, why);
+    let fail = |why: String| FileError::file(path, why);
     let Grid {
         size,
         mut values,
@@ -76,12 +76,19 @@ pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded
     })
 }
 
+/// The error of an argument that names no heights.
+fn wrong(argument: &str, why: &str) -> FileError {
+    // A long text is not a name, and need not be repeated in full.
+    let argument: String = argument.chars().take(80).collect();
+    FileError::Usage(format!("{argument}: {why}"))
+}
+
 fn generated(
     named: Result<PatternSpec, String>,
     argument: &str,
     options: &LoadOptions,
-) -> Result<Loaded, LoadError> {
-    let fail = |why: String| LoadError::argument(argument, why);
+) -> Result<Loaded, FileError> {
+    let fail = |why: String| wrong(argument, &why);
     let named = named.map_err(fail)?;
     if options.size.is_some() {
         let name = named.field.name();

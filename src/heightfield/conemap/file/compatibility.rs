@@ -10,8 +10,8 @@
 use std::path::Path;
 
 use crate::heightfield::conemap::MapKind;
-use crate::heightfield::conemap::file::error::MapError;
 use crate::heightfield::conemap::file::map_file::{MapFile, digest, places};
+use crate::heightfield::file_error::FileError;
 use crate::heightfield::heights::{Heights, Patches, wrap_name};
 
 /// What a map shall be used for.
@@ -36,14 +36,9 @@ impl MapFile {
     ///
     /// # Errors
     /// It is of another kind, wraps another way, or was made for other heights.
-    pub fn check_use(&self, path: &Path, wanted: &MapUse<'_>) -> Result<(), MapError> {
-        match self.misfit(wanted) {
-            None => Ok(()),
-            Some(why) => Err(MapError::Misfit {
-                path: path.display().to_string(),
-                why,
-            }),
-        }
+    pub fn check_use(&self, path: &Path, wanted: &MapUse<'_>) -> Result<(), FileError> {
+        let misfit = self.misfit(wanted);
+        misfit.map_or(Ok(()), |why| Err(FileError::file(path, why)))
     }
 
     fn misfit(&self, wanted: &MapUse<'_>) -> Option<String> {

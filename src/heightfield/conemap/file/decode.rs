@@ -7,12 +7,12 @@ use std::io::{BufRead, Cursor, Seek};
 use std::path::Path;
 
 use crate::heightfield::conemap::file::encode::SIDES;
-use crate::heightfield::conemap::file::error::MapError;
 use crate::heightfield::conemap::file::format::{Bits, Layout, MapFormat, RatioScale, Slopes};
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
 use crate::heightfield::conemap::file::map_file::{Label, MapFile, ShadingChannel, scale};
 use crate::heightfield::conemap::file::rounding::Ratios;
 use crate::heightfield::conemap::{ConeMap, MapKind, WIDEST};
+use crate::heightfield::file_error::FileError;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::raster::open::{Format, format_of, open};
 use crate::heightfield::raster::{exr, png};
@@ -34,8 +34,8 @@ pub struct ForeignFormat {
 ///
 /// # Errors
 /// The file cannot be read at all.
-pub fn has_map(path: &Path) -> Result<bool, MapError> {
-    let fail = |why: String| MapError::file(path, why);
+pub fn has_map(path: &Path) -> Result<bool, FileError> {
+    let fail = |why: String| FileError::file(path, why);
     let mut opened = open(path).map_err(fail)?;
     Ok(match opened.format {
         // A broken file is not a map; reading it as heights reports what is broken.
@@ -49,7 +49,7 @@ pub fn has_map(path: &Path) -> Result<bool, MapError> {
 ///
 /// # Errors
 /// The file cannot be read, is not a map, or has a label that contradicts itself.
-pub fn read_map(path: &Path) -> Result<MapFile, MapError> {
+pub fn read_map(path: &Path) -> Result<MapFile, FileError> {
     decode(path, None)
 }
 
@@ -57,12 +57,12 @@ pub fn read_map(path: &Path) -> Result<MapFile, MapError> {
 ///
 /// # Errors
 /// As [`read_map`].
-pub fn decode(path: &Path, foreign: Option<&ForeignFormat>) -> Result<MapFile, MapError> {
+pub fn decode(path: &Path, foreign: Option<&ForeignFormat>) -> Result<MapFile, FileError> {
     let read = || {
         let opened = open(path)?;
-        from(opened.file, opened.format, foreign)
+        decode_as(opened.format, opened.file, foreign)
     };
-    read().map_err(|why| MapError::file(path, why))
+    read().map_err(|why| FileError::file(path, why))
 }
 
 /// Reads a map from the bytes of a file, as [`read_map`] does.
@@ -70,12 +70,13 @@ pub fn decode(path: &Path, foreign: Option<&ForeignFormat>) -> Result<MapFile, M
 /// # Errors
 /// In words, without a file's name.
 pub fn decode_bytes(bytes: &[u8]) -> Result<MapFile, String> {
-    from(Cursor::new(bytes), format_of(bytes), None)
+    decode_as(format_of(bytes), Cursor::new(bytes), None)
 }
 
-fn from(
-    file: impl BufRead + Seek,
+/// Reads a map from a file of a format.
+pub(crate) fn decode_as(
     format: Format,
+    file: impl BufRead + Seek,
     foreign: Option<&ForeignFormat>,
 ) -> Result<MapFile, String> {
     match format {

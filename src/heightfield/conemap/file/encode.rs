@@ -1,12 +1,12 @@
 //! A cone map to the bytes of a file.
 
-use crate::heightfield::conemap::file::error::MapError;
 use crate::heightfield::conemap::file::format::{Layout, MapFormat, RatioScale, Slopes};
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
 use crate::heightfield::conemap::file::map_file::MapFile;
 use crate::heightfield::conemap::file::rounding::{Ratios, Steps, narrowed, share_down};
 use crate::heightfield::conemap::file::shading::{half, normal_shares, whole};
 use crate::heightfield::conemap::generate::slopes::slopes;
+use crate::heightfield::file_error::FileError;
 use crate::heightfield::heights::Heights;
 use crate::heightfield::raster::{exr, png};
 
@@ -18,9 +18,9 @@ pub(crate) const SIDES: [&str; 4] = ["ratio.E", "ratio.W", "ratio.S", "ratio.N"]
 ///
 /// # Errors
 /// The layout cannot hold such a map.
-pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, MapError> {
+pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, FileError> {
     let layout = format.layout;
-    let fail = |why: String| layout.error(why);
+    let fail = |why: String| layout.error(&why);
     layout.check(file.map.kind)?;
     let mut format = *format;
     if layout == Layout::Full {

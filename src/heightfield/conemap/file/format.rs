@@ -18,8 +18,8 @@
 
 use crate::base::named::named_enum;
 use crate::heightfield::conemap::MapKind;
-use crate::heightfield::conemap::file::error::MapError;
 use crate::heightfield::conemap::file::rounding::Steps;
+use crate::heightfield::file_error::FileError;
 
 /// What is particular to a layout.
 #[derive(Clone, Copy, Debug)]
@@ -67,15 +67,12 @@ impl Layout {
     ///
     /// # Errors
     /// It cannot.
-    pub fn check(self, kind: MapKind) -> Result<(), MapError> {
+    pub fn check(self, kind: MapKind) -> Result<(), FileError> {
         self.lacks(kind).map_or(Ok(()), |why| Err(self.error(why)))
     }
 
-    pub(crate) fn error(self, why: impl Into<String>) -> MapError {
-        MapError::Layout {
-            layout: self.name(),
-            why: why.into(),
-        }
+    pub(crate) fn error(self, why: &str) -> FileError {
+        FileError::Usage(format!("the layout `{}` {why}", self.name()))
     }
 
     /// Why the layout cannot hold a kind of map, if it cannot.
