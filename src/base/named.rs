@@ -39,6 +39,9 @@ macro_rules! named_enum {
             /// Every variant, in the order of the list.
             pub const ALL: [Self; [$($name),*].len()] = [$(Self::$variant),*];
 
+            /// Every variant with its word.
+            pub const WORDS: [(&str, Self); Self::ALL.len()] = [$(($name, Self::$variant)),*];
+
             /// The word that chooses the variant.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name),* }

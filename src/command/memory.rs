@@ -98,7 +98,7 @@ pub fn lacking_for(plan: &Plan, assets: &Assets, available: u64) -> Option<Strin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::heightfield::settings::{HeightfieldSettings, Wrap};
+    use crate::heightfield::settings::HeightfieldSettings;
     use crate::heightfield::tracer::TracerKind;
 
     #[test]
@@ -132,7 +132,7 @@ mod tests {
     fn maps_are_weighed_by_their_ratios_before_heights_are_made() {
         let mut shape = HeightfieldSettings::default();
         shape.source.field = "fbm:8192x8192".into();
-        shape.source.wrap = Wrap::Both;
+        shape.source.options.wrap = [true; 2];
         shape.tracing.tracer = TracerKind::Quad;
         let lacking = |shape: &HeightfieldSettings, available| {
             let plan = Plan::new(shape.clone());

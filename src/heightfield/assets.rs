@@ -114,10 +114,7 @@ impl Assets {
     /// # Errors
     /// As [`Assets::prepare`].
     pub fn ready(&self, settings: &HeightfieldSettings, grain: f64) -> Result<Ready, PrepareError> {
-        let surface = self.surface(settings)?;
-        let cones = self.cones(settings, &surface, &mut on_cpu)?;
-        let paint = self.paint(settings, &surface, &mut on_cpu)?;
-        self.assembled(settings, surface, (*cones).as_ref(), paint, grain)
+        self.assembled(settings, grain, &mut on_cpu)
     }
 
     /// As [`Assets::ready`], with empty maps in place of maps that a generator makes. The
@@ -130,15 +127,12 @@ impl Assets {
         settings: &HeightfieldSettings,
         grain: f64,
     ) -> Result<Ready, PrepareError> {
-        let surface = self.surface(settings)?;
-        let tracing = &settings.tracing;
-        let cones = tracing.cones(&surface, &settings.source.folder, &mut without_cones)?;
-        let paint = |by| -> Result<_, PrepareError> {
-            let map = tracing.made(by, &surface, &mut without_cones)?;
-            Ok(Arc::new(Paint::new(&map)))
+        let without_maps = Self {
+            cones: Last::default(),
+            paints: Last::default(),
+            ..self.clone()
         };
-        let paint = settings.paint.map(paint).transpose()?;
-        self.assembled(settings, surface, cones.as_ref(), paint, grain)
+        without_maps.assembled(settings, grain, &mut without_cones)
     }
 
     /// The cone maps that a generator makes; none if the heights cannot be loaded.
@@ -196,11 +190,12 @@ impl Assets {
     fn assembled(
         &self,
         settings: &HeightfieldSettings,
-        surface: Arc<HeightSurface>,
-        cones: Option<&Supply>,
-        paint: Option<Arc<Paint>>,
         grain: f64,
+        make: Make<'_>,
     ) -> Result<Ready, PrepareError> {
+        let surface = self.surface(settings)?;
+        let cones = self.cones(settings, &surface, &mut *make)?;
+        let paint = self.paint(settings, &surface, make)?;
         let [w, h] = surface.domain().map(f64::from);
         let placement = settings.placement(DVec2::new(w, h));
         let pixel = placement.texel / (2.0 * grain);
@@ -210,7 +205,9 @@ impl Assets {
             (None, None) => Colors::Height,
         };
         Ok(Ready {
-            tracer: settings.tracing.tracer(&surface, cones, pixel)?,
+            tracer: settings
+                .tracing
+                .tracer(&surface, (*cones).as_ref(), pixel)?,
             colors,
             placement,
             surface,
@@ -226,7 +223,7 @@ impl Assets {
             None => self.surface(settings).ok()?.heights().size(),
         };
         Some(if generator.over_cells() {
-            cells(size, settings.source.wrap.axes(), settings.patches)
+            cells(size, settings.source.wrap(), settings.patches)
         } else {
             size
         })
@@ -241,7 +238,7 @@ impl Assets {
             let loaded = source.load()?;
             let made = HeightSurface::new(loaded.heights, *patches, *tiles);
             Ok(Ground {
-                surface: Arc::new(made.map_err(|e| tiles_fault(&e))?),
+                surface: Arc::new(made.map_err(tiles_fault)?),
                 note: loaded.note,
             })
         };
@@ -298,7 +295,7 @@ fn surface_key(settings: &HeightfieldSettings) -> SurfaceKey {
 }
 
 /// A fault of `scene.tiles`.
-pub(super) fn tiles_fault(e: &HeightSurfaceError) -> Fault {
+pub(super) fn tiles_fault(e: HeightSurfaceError) -> Fault {
     Fault::new("scene.tiles", e.to_string())
 }
 

@@ -123,6 +123,19 @@ pub struct HeightSurface {
     maxima: MaxMip,
 }
 
+/// Checks that tiles of so many cells are not too many.
+///
+/// # Errors
+/// No tiles, or too many.
+pub fn check_tiles(cells: [u32; 2], tiles: [u32; 2]) -> Result<(), HeightSurfaceError> {
+    for (axis, (cells, tiles)) in cells.into_iter().zip(tiles).enumerate() {
+        if tiles == 0 || u64::from(cells) * u64::from(tiles) > u64::from(MOST_CELLS) {
+            return Err(HeightSurfaceError::Tiles { axis, cells, tiles });
+        }
+    }
+    Ok(())
+}
+
 impl HeightSurface {
     /// A surface of `tiles` repetitions along each axis.
     ///
@@ -134,14 +147,9 @@ impl HeightSurface {
         tiles: [u32; 2],
     ) -> Result<Self, HeightSurfaceError> {
         let cells = heights.cells(patches);
-        for axis in 0..2 {
-            let (cells, tiles) = (cells[axis], tiles[axis]);
-            if tiles == 0 || u64::from(cells) * u64::from(tiles) > u64::from(MOST_CELLS) {
-                return Err(HeightSurfaceError::Tiles { axis, cells, tiles });
-            }
-            if tiles > 1 && !heights.wrap()[axis] {
-                return Err(HeightSurfaceError::Unwrapped(axis));
-            }
+        check_tiles(cells, tiles)?;
+        if let Some(axis) = (0..2).find(|a| tiles[*a] > 1 && !heights.wrap()[*a]) {
+            return Err(HeightSurfaceError::Unwrapped(axis));
         }
         Ok(Self {
             domain: [0, 1].map(|a| (cells[a] * tiles[a]) as i32),

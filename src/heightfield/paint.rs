@@ -17,7 +17,8 @@ pub const PAINTS: &[(&str, Option<Generator>)] = &{
     let mut paints = [("height", None); Generator::ALL.len()];
     let mut i = 1;
     while i < paints.len() {
-        paints[i] = (Generator::ALL[i].name(), Some(Generator::ALL[i]));
+        let (name, generator) = Generator::WORDS[i];
+        paints[i] = (name, Some(generator));
         i += 1;
     }
     paints

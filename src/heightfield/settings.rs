@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::assets::tiles_fault;
 use super::conemap::generate::generator::Generator;
-use super::height_surface::{HeightSurfaceError, MOST_CELLS};
+use super::height_surface::check_tiles;
 use super::heights::{Patches, cells};
 use super::load::PatternSpec;
 use super::paint::PAINTS;
@@ -16,10 +16,8 @@ use super::tracer::settings::TracerSettings;
 use crate::base::key::{Counts, Fault, Key, Number, Text, Triple, Word};
 use crate::keys;
 
-pub use super::source::{Source, Wrap};
+pub use super::source::Source;
 
-/// The words of the key `surface`.
-const PATCHES: &[(&str, Patches)] = &[("bilinear", Patches::Bilinear), ("boxes", Patches::Boxes)];
 /// The value of `texture` for none.
 const NO_TEXTURE: &str = "none";
 
@@ -70,7 +68,7 @@ impl HeightfieldSettings {
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         let mut keys = self.source.keys();
         keys.extend(keys![
-            "surface" = Word(&mut self.patches, PATCHES),
+            "surface" = Word(&mut self.patches, &Patches::WORDS),
                 "what lies between the samples";
             "tiles" = Counts(&mut self.tiles, 1, 256),
                 "number of copies of the map along x and y";
@@ -95,7 +93,7 @@ impl HeightfieldSettings {
     pub fn check(&self) -> Result<(), Fault> {
         self.tracing.check()?;
         for (axis, name) in [(0, "x"), (1, "y")] {
-            if self.tiles[axis] > 1 && !self.source.wrap.axes()[axis] {
+            if self.tiles[axis] > 1 && !self.source.wrap()[axis] {
                 return Err(Fault::new(
                     "scene.tiles",
                     format!(
@@ -106,7 +104,11 @@ impl HeightfieldSettings {
         }
         match PatternSpec::read(&self.source.field) {
             Some(Err(why)) => return Err(Fault::new("scene.field", why)),
-            Some(Ok(pattern)) => self.check_tiles(pattern.size)?,
+            // Before its heights are made.
+            Some(Ok(pattern)) => {
+                let cells = cells(pattern.size, self.source.wrap(), self.patches);
+                check_tiles(cells, self.tiles).map_err(tiles_fault)?;
+            }
             None => {}
         }
         if self.is_textured() && self.paint.is_some() {
@@ -114,22 +116,6 @@ impl HeightfieldSettings {
                 "scene.texture",
                 "scene.paint colours the surface already; set paint = \"height\"",
             ));
-        }
-        Ok(())
-    }
-
-    /// Checks that the tiles of a pattern are not too many cells, before its heights are made.
-    fn check_tiles(&self, samples: [u32; 2]) -> Result<(), Fault> {
-        let cells = cells(samples, self.source.wrap.axes(), self.patches);
-        for axis in 0..2 {
-            let (cells, tiles) = (cells[axis], self.tiles[axis]);
-            if u64::from(cells) * u64::from(tiles) > u64::from(MOST_CELLS) {
-                return Err(tiles_fault(&HeightSurfaceError::Tiles {
-                    axis,
-                    cells,
-                    tiles,
-                }));
-            }
         }
         Ok(())
     }

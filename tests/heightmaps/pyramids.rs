@@ -9,7 +9,7 @@ use conemarch::heightfield::conemap::generate::planes::Planes;
 use conemarch::heightfield::conemap::generate::slopes::slopes;
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::max_mip::MaxMip;
+use conemarch::heightfield::max_mip::{MaxMip, Places};
 use conemarch::heightfield::pattern::Pattern;
 use conemarch::heightfield::tracer::Tracer;
 
@@ -25,7 +25,7 @@ fn planes_lie_above_all_heights() {
             let [w, h] = mip.levels[level].size;
             for at in (0..h).flat_map(|y| (0..w).map(move |x| [x, y])) {
                 let plane = planes.get(level, at);
-                let (low, high) = mip.places(level, at[0], at[1]);
+                let Places { low, high } = mip.places(level, at);
                 let mut touches = f64::INFINITY;
                 for y in low[1]..=high[1] {
                     for x in low[0]..=high[0] {

@@ -17,6 +17,7 @@
 
 use glam::DVec3;
 
+use crate::base::named::named_enum;
 use crate::base::shader::Module;
 use crate::base::work::Work;
 use crate::heightfield::conemap::MapKind;
@@ -31,14 +32,16 @@ use crate::heightfield::tracer::{
 };
 use crate::wgsl;
 
-/// How a ratio is read between the samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Lookup {
-    /// Height and ratio of the nearest sample.
-    Nearest,
-    /// The surface's height, and the ratio interpolated.
-    #[default]
-    Bilinear,
+named_enum! {
+    /// How a ratio is read between the samples.
+    #[derive(Default)]
+    pub enum Lookup {
+        /// The surface's height, and the ratio interpolated.
+        #[default]
+        Bilinear = "bilinear",
+        /// Height and ratio of the nearest sample.
+        Nearest = "nearest",
+    }
 }
 
 /// Cone stepping over samples: what tells one of these tracers from another.

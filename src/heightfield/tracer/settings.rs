@@ -25,9 +25,6 @@ const MOST_STEPS: u32 = 2048;
 /// Most rounds of refinement. After 32 bisections a bracket is below the resolution of f32.
 const MOST_ROUNDS: u32 = 32;
 
-/// The words of `lookup`.
-const LOOKUPS: &[(&str, Lookup)] = &[("bilinear", Lookup::Bilinear), ("nearest", Lookup::Nearest)];
-
 /// Makes cones, on the CPU or on a device.
 pub type Make<'a> =
     &'a mut dyn FnMut(Generator, &Heights, Patches, &Options) -> Result<ConeMap, GenerateError>;
@@ -159,7 +156,7 @@ impl TracerSettings {
                 "how rays find the surface; walk, walk-relaxed and max-mip find every first hit, walk-mip and cone-mip are off by at most a pixel";
             "map" = Text(&mut self.map),
                 "auto, a generator's name, or the file of a cone map";
-            "lookup" = Word(&mut self.lookup, LOOKUPS),
+            "lookup" = Word(&mut self.lookup, &Lookup::WORDS),
                 "how ratios are read between samples";
             "tracer_steps" = AutoCount(&mut self.steps, 1, MOST_STEPS),
                 "steps of a tracer that counts its own";

@@ -13,9 +13,7 @@
 use crate::base::shader::Module;
 use crate::heightfield::conemap::generate::cost::Cost;
 use crate::heightfield::conemap::generate::falling;
-use crate::heightfield::conemap::generate::grid_distance::{
-    GridDistance, Places, Sector, neighbours,
-};
+use crate::heightfield::conemap::generate::grid_distance::{GridDistance, Sector, neighbours};
 use crate::heightfield::conemap::generate::method::{Apex, Method};
 use crate::heightfield::conemap::generate::planes::Planes;
 use crate::heightfield::conemap::generate::task::MapTask;
@@ -139,8 +137,8 @@ impl Search<'_> {
         // Level 0 is done: the siblings of a place are neighbours of it.
         for level in 1..self.mip.levels.len() {
             let own = self.from.place.map(|i| i >> level);
-            let (low, high) = self.mip.places(level, own[0], own[1]);
-            let outside = self.distance.outside(self.from.place, Places { low, high });
+            let block = self.mip.places(level, own);
+            let outside = self.distance.outside(self.from.place, block);
             let Some(steps) = outside else { return };
             if self.cost.of(steps * steps, most) >= best.cost {
                 return;
@@ -164,8 +162,7 @@ impl Search<'_> {
         if rise <= 0.0 {
             return None;
         }
-        let (low, high) = self.mip.places(level, at[0], at[1]);
-        let to = Places { low, high };
+        let to = self.mip.places(level, at);
         let squared = self.distance.squared(self.from.place, to)?;
         let cost = self.cost.of(squared, rise);
         if cost >= best.cost {
