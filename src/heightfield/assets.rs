@@ -9,18 +9,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 use bytemuck::cast_slice;
 use glam::DVec2;
 
-use super::conemap::generate::generator::Generator;
-use super::height_surface::{HeightSurface, HeightSurfaceError};
-use super::heights::{Patches, cells};
-use super::load::PatternSpec;
-use super::paint::{Colors, Paint};
-use super::placement::Placement;
-use super::settings::HeightfieldSettings;
-use super::source::Source;
-use super::texture::Texture;
-use super::tracer::settings::{Make, PrepareError, Supply, on_cpu, without_cones};
-use super::tracer::{Tracer, TracerKind};
 use crate::base::key::Fault;
+use crate::heightfield::conemap::generate::Generator;
+use crate::heightfield::load::PatternSpec;
+use crate::heightfield::paint::{Colors, Paint};
+use crate::heightfield::tracer::settings::{Make, PrepareError, Supply, on_cpu, without_cones};
+use crate::heightfield::tracer::{Tracer, TracerKind};
+use crate::heightfield::{
+    HeightSurface, Patches, height_surface::HeightSurfaceError, heights::cells,
+    placement::Placement, settings::HeightfieldSettings, source::Source, texture::Texture,
+};
 
 /// What decides a surface.
 type SurfaceKey = (Source, Patches, [u32; 2]);

@@ -10,9 +10,7 @@ use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
 use thiserror::Error;
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::heights::{Heights, Patches, bilinear};
-use crate::heightfield::max_mip::MaxMip;
+use crate::heightfield::{ConeMap, Heights, MaxMip, Patches, heights::bilinear};
 use crate::wgsl;
 
 /// Most cells along an axis of the domain. Up to there f32 resolves 1/256 of a texel.

@@ -30,3 +30,9 @@ pub mod settings;
 pub mod source;
 pub mod texture;
 pub mod tracer;
+
+pub use conemap::{ConeMap, MapKind};
+pub use file_error::FileError;
+pub use height_surface::HeightSurface;
+pub use heights::{Heights, Patches};
+pub use max_mip::MaxMip;

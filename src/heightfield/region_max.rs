@@ -5,7 +5,7 @@
 use glam::DVec2;
 
 use crate::base::shader::Module;
-use crate::heightfield::height_surface::HeightSurface;
+use crate::heightfield::HeightSurface;
 use crate::wgsl;
 
 /// The WGSL module.

@@ -4,16 +4,14 @@ use std::path::PathBuf;
 
 use glam::{DVec2, DVec3};
 
-use super::assets::tiles_fault;
-use super::conemap::generate::generator::Generator;
-use super::height_surface::check_tiles;
-use super::heights::{Patches, cells};
-use super::load::PatternSpec;
-use super::paint::PAINTS;
-use super::placement::Placement;
-use super::tracer::TracerKind;
-use super::tracer::settings::TracerSettings;
 use crate::base::key::{Counts, Fault, Key, Number, Text, Triple, Word};
+use crate::heightfield::conemap::generate::Generator;
+use crate::heightfield::load::PatternSpec;
+use crate::heightfield::tracer::{TracerKind, settings::TracerSettings};
+use crate::heightfield::{
+    Patches, assets::tiles_fault, height_surface::check_tiles, heights::cells, paint::PAINTS,
+    placement::Placement,
+};
 use crate::keys;
 
 pub use super::source::Source;

@@ -14,9 +14,9 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 
 use crate::base::shader::Module;
 use crate::base::srgb::linear;
-use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::heights::{MOST_SAMPLES, Patches, brought_in};
+use crate::heightfield::heights::{MOST_SAMPLES, brought_in};
 use crate::heightfield::raster::open::{check_size, open};
+use crate::heightfield::{HeightSurface, Patches};
 use crate::wgsl;
 
 /// A picture over a height surface.

@@ -14,8 +14,8 @@
 use std::io::Read;
 use std::path::Path;
 
+use crate::heightfield::Patches;
 use crate::heightfield::conemap::file::{Layout, decode_as, has_map};
-use crate::heightfield::heights::Patches;
 use crate::heightfield::load::pattern_spec::read_size;
 use crate::heightfield::raster::open::{Format, Opened, open};
 use crate::heightfield::raster::{exr, png, tiff};

@@ -5,8 +5,7 @@
 
 use std::fmt;
 
-use crate::heightfield::heights::MOST_SAMPLES;
-use crate::heightfield::pattern::Pattern;
+use crate::heightfield::{heights::MOST_SAMPLES, pattern::Pattern};
 
 /// A pattern with everything that decides its heights.
 #[derive(Clone, Copy, Debug, PartialEq)]

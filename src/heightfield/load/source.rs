@@ -9,11 +9,9 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
-use crate::heightfield::file_error::FileError;
-use crate::heightfield::heights::Heights;
 use crate::heightfield::load::file::{Grid, read};
 use crate::heightfield::load::pattern_spec::PatternSpec;
-use crate::heightfield::pattern::Pattern;
+use crate::heightfield::{FileError, Heights, pattern::Pattern};
 
 /// How heights are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

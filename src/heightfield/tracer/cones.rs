@@ -20,16 +20,12 @@ use glam::DVec3;
 use crate::base::named::named_enum;
 use crate::base::shader::Module;
 use crate::base::work::Work;
-use crate::heightfield::conemap::MapKind;
 use crate::heightfield::conemap::generate::mips::stored;
-use crate::heightfield::height_surface::TracerParameters;
-use crate::heightfield::heights::{Patches, bilinear};
+use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{
-    GridRay, LocalRay, Method, Step, Trace, Tracer,
-    cone::cone_way,
-    refine::{Refine, refine, refine_over},
-    settings::TracerSettings,
+    GridRay, LocalRay, Method, Step, Trace, Tracer, cone::cone_way, settings::TracerSettings,
 };
+use crate::heightfield::{MapKind, Patches, height_surface::TracerParameters, heights::bilinear};
 use crate::wgsl;
 
 named_enum! {

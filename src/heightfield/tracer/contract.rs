@@ -15,13 +15,11 @@ use crate::base::shader::Module;
 pub use crate::base::work::Step;
 use crate::base::work::Work;
 use crate::heightfield::conemap::generate::mips::stored;
-use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
-use crate::heightfield::tracer::cones::Lookup;
-use crate::heightfield::tracer::grid::{GridRay, grid_begin};
-use crate::heightfield::tracer::reference::Reference;
-use crate::heightfield::tracer::settings::TracerSettings;
-use crate::heightfield::tracer::walk_mip::NodeCones;
+use crate::heightfield::tracer::{
+    GridRay, cones::Lookup, grid::grid_begin, reference::Reference, settings::TracerSettings,
+    walk_mip::NodeCones,
+};
+use crate::heightfield::{ConeMap, HeightSurface, MapKind, height_surface::TracerParameters};
 
 /// A ray in the surface's own units: x and y in texels, z in heights. `axis` is not of unit
 /// length; s is the parameter of the caller's ray.

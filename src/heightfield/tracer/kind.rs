@@ -3,18 +3,13 @@
 use std::sync::Arc;
 
 use crate::base::named::named_enum;
+use crate::heightfield::HeightSurface;
 use crate::heightfield::conemap::MapKind::{self, Relaxed, Samples};
-use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::cone::check_map;
-use crate::heightfield::tracer::contract::{Method, TraceError, Tracer};
 use crate::heightfield::tracer::settings::{Supply, TracerSettings};
+use crate::heightfield::tracer::walk_mip::{WalkMip, node_cones};
 use crate::heightfield::tracer::{
-    cones,
-    linear::LinearBinary,
-    max_mip::MaxMipTracer,
-    relaxed::WalkRelaxed,
-    walk::Walk,
-    walk_mip::{WalkMip, node_cones},
+    Method, TraceError, Tracer, cone::check_map, cones, linear::LinearBinary,
+    max_mip::MaxMipTracer, relaxed::WalkRelaxed, walk::Walk,
 };
 
 /// How well a tracer finds the first hit.

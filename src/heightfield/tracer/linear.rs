@@ -7,10 +7,9 @@
 use crate::base::shader::Module;
 use crate::base::work::Work;
 use crate::heightfield::height_surface::TracerParameters;
+use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{
-    GridRay, LocalRay, Method, Step, Trace, Tracer,
-    refine::{Refine, refine, refine_over},
-    settings::TracerSettings,
+    GridRay, LocalRay, Method, Step, Trace, Tracer, settings::TracerSettings,
 };
 use crate::wgsl;
 

@@ -9,8 +9,8 @@
 //! point near a box does not tell whether the ray meets its top or its side.
 
 use crate::base::work::{Step, Work};
-use crate::heightfield::heights::Patches;
-use crate::heightfield::tracer::grid::GridRay;
+use crate::heightfield::Patches;
+use crate::heightfield::tracer::GridRay;
 
 /// How a bracket becomes a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

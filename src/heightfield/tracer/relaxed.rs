@@ -11,11 +11,8 @@
 
 use crate::base::shader::Module;
 use crate::base::work::Work;
-use crate::heightfield::tracer::{
-    GridRay, Method, Step, Tracer,
-    cone::cone_end,
-    refine::{Refine, refine, refine_over},
-};
+use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
+use crate::heightfield::tracer::{GridRay, Method, Step, Tracer, cone::cone_end};
 use crate::wgsl;
 
 /// The cone walk with relaxed cones.

@@ -7,17 +7,13 @@ use thiserror::Error;
 
 use crate::base::key::{AutoCount, AutoNumber, Fault, Key, Number, Text, Word};
 use crate::heightfield::conemap::file::{MapUse, read_map};
-use crate::heightfield::conemap::generate::cpu::generate;
-use crate::heightfield::conemap::generate::generator::{
-    GenerateError, Generator, LEAST_OFFSET, MOST_OFFSET, Options,
-};
-use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::height_surface::{HeightSurface, MOST_LEVELS};
-use crate::heightfield::heights::{Heights, Patches};
-use crate::heightfield::tracer::cones::Lookup;
-use crate::heightfield::tracer::kind::Steps;
+use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
+use crate::heightfield::conemap::generate::{GenerateError, Generator, Options, cpu::generate};
 use crate::heightfield::tracer::walk_mip::{NodeCones, node_cones};
-use crate::heightfield::tracer::{Tracer, TracerKind};
+use crate::heightfield::tracer::{Steps, Tracer, TracerKind, cones::Lookup};
+use crate::heightfield::{
+    ConeMap, HeightSurface, Heights, MapKind, Patches, height_surface::MOST_LEVELS,
+};
 use crate::keys;
 
 /// Most steps that a tracer may count itself: as many as a shadow may have.

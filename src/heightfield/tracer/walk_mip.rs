@@ -21,14 +21,11 @@ use std::sync::Arc;
 
 use crate::base::shader::Module;
 use crate::base::work::Work;
-use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, stored};
-use crate::heightfield::height_surface::{HeightSurface, Node, TracerParameters};
-use crate::heightfield::tracer::{
-    GridRay, Method, Over, Step, Tracer,
-    cone::{WALK_TRUST, cone_end},
-    settings::TracerSettings,
-};
+use crate::heightfield::height_surface::{Node, TracerParameters};
+use crate::heightfield::tracer::cone::{WALK_TRUST, cone_end};
+use crate::heightfield::tracer::{GridRay, Method, Over, Step, Tracer, settings::TracerSettings};
+use crate::heightfield::{ConeMap, HeightSurface};
 use crate::wgsl;
 
 /// The cones of all nodes over a surface, level by level.

@@ -9,10 +9,8 @@
 
 use std::path::Path;
 
-use crate::heightfield::conemap::MapKind;
-use crate::heightfield::conemap::file::map_file::{MapFile, digest, places};
-use crate::heightfield::file_error::FileError;
-use crate::heightfield::heights::{Heights, Patches, wrap_name};
+use crate::heightfield::conemap::file::{MapFile, digest, map_file::places};
+use crate::heightfield::{FileError, Heights, MapKind, Patches, heights::wrap_name};
 
 /// What a map shall be used for.
 #[derive(Clone, Copy, Debug)]

@@ -6,16 +6,14 @@
 use std::io::{BufRead, Cursor, Seek};
 use std::path::Path;
 
-use crate::heightfield::conemap::file::encode::SIDES;
-use crate::heightfield::conemap::file::format::{Bits, Layout, MapFormat, RatioScale, Slopes};
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
-use crate::heightfield::conemap::file::map_file::{Label, MapFile, ShadingChannel, scale};
-use crate::heightfield::conemap::file::rounding::Ratios;
-use crate::heightfield::conemap::{ConeMap, MapKind, WIDEST};
-use crate::heightfield::file_error::FileError;
-use crate::heightfield::heights::Patches;
+use crate::heightfield::conemap::file::{
+    Bits, Label, Layout, MapFile, MapFormat, RatioScale, Ratios, ShadingChannel, Slopes,
+    encode::SIDES, map_file::scale,
+};
 use crate::heightfield::raster::open::{Format, format_of, open};
 use crate::heightfield::raster::{exr, png};
+use crate::heightfield::{ConeMap, FileError, MapKind, Patches, conemap::WIDEST};
 
 /// What a file without a label contains.
 #[derive(Clone, Copy, Debug, PartialEq)]

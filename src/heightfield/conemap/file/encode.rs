@@ -1,14 +1,13 @@
 //! A cone map to the bytes of a file.
 
-use crate::heightfield::conemap::file::format::{Layout, MapFormat, RatioScale, Slopes};
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
-use crate::heightfield::conemap::file::map_file::MapFile;
-use crate::heightfield::conemap::file::rounding::{Ratios, Steps, narrowed, share_down};
 use crate::heightfield::conemap::file::shading::{half, normal_shares, whole};
+use crate::heightfield::conemap::file::{
+    Layout, MapFile, MapFormat, RatioScale, Ratios, Slopes, Steps, narrowed, rounding::share_down,
+};
 use crate::heightfield::conemap::generate::slopes::slopes;
-use crate::heightfield::file_error::FileError;
-use crate::heightfield::heights::Heights;
 use crate::heightfield::raster::{exr, png};
+use crate::heightfield::{FileError, Heights};
 
 /// Names of the ratios of the four sides in an EXR: east is +x, south +y, as rows go
 /// down.

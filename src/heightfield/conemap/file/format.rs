@@ -17,9 +17,8 @@
 //! points.
 
 use crate::base::named::named_enum;
-use crate::heightfield::conemap::MapKind;
-use crate::heightfield::conemap::file::rounding::Steps;
-use crate::heightfield::file_error::FileError;
+use crate::heightfield::conemap::file::Steps;
+use crate::heightfield::{FileError, MapKind};
 
 /// What is particular to a layout.
 #[derive(Clone, Copy, Debug)]

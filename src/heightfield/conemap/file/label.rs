@@ -4,11 +4,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::heightfield::conemap::file::format::{Layout, MapFormat, RatioScale, Slopes};
-use crate::heightfield::conemap::file::map_file::{Label, MapFile, places, scale};
+use crate::heightfield::conemap::file::map_file::{places, scale};
+use crate::heightfield::conemap::file::{Label, Layout, MapFile, MapFormat, RatioScale, Slopes};
 use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
-use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::heights::{MOST_SAMPLES, Patches, wrap_name, wrap_named};
+use crate::heightfield::heights::{MOST_SAMPLES, wrap_name, wrap_named};
+use crate::heightfield::{ConeMap, MapKind, Patches};
 
 /// Keyword of the text chunk and name of the attribute.
 pub(crate) const KEYWORD: &str = "conemarch cone map";

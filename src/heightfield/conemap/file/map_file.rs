@@ -2,9 +2,8 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::heightfield::conemap::file::format::{Layout, MapFormat, RatioScale};
-use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::conemap::file::{Layout, MapFormat, RatioScale};
+use crate::heightfield::{ConeMap, Heights, MapKind, Patches};
 
 /// A channel of a file that is only used for shading, as shares of 0..=1.
 #[derive(Clone, Debug, PartialEq)]

@@ -26,7 +26,7 @@
 //! know. Over the heights that they were made from, relaxed maps stay what they were; over
 //! those in the file, which the papers trace them with, a ray may cross more than once.
 
-use crate::heightfield::conemap::file::format::RatioScale;
+use crate::heightfield::conemap::file::RatioScale;
 
 /// A channel of whole numbers that stand for 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

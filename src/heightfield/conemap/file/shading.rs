@@ -1,6 +1,6 @@
 //! Slopes and normals as shading channels hold them.
 
-use crate::heightfield::conemap::file::rounding::Steps;
+use crate::heightfield::conemap::file::Steps;
 
 /// Slope as a share: 0.5 flat, 0 and 1 half the height down or up over one texel, which
 /// is what `(share - 0.5) * texture size` makes a slope per texture again (Dummer 2006).

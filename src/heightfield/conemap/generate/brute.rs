@@ -7,11 +7,7 @@
 //! code leaves out the corners beyond two borders.
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::method::{Apex, Method};
-use crate::heightfield::conemap::generate::rings::rings;
-use crate::heightfield::conemap::generate::search::Best;
-use crate::heightfield::conemap::generate::task::MapTask;
+use crate::heightfield::conemap::generate::{Apex, Best, Cost, MapTask, Method, rings};
 use crate::wgsl;
 
 /// The search in rings.

@@ -12,7 +12,7 @@
 
 use rayon::prelude::*;
 
-use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::{Heights, Patches};
 
 /// The value of a place that limits nothing: lower than every height.
 pub const NO_LIMIT: f32 = -1.0;

@@ -9,8 +9,7 @@
 //! lies on that side. The image in the other direction belongs to another side.
 
 use crate::base::shader::Module;
-use crate::heightfield::heights::Axis;
-use crate::heightfield::max_mip::Places;
+use crate::heightfield::{heights::Axis, max_mip::Places};
 use crate::wgsl;
 
 /// Which places bound a cone, by their direction from the apex.

@@ -8,7 +8,7 @@
 
 use rayon::prelude::*;
 
-use crate::heightfield::conemap::ConeMap;
+use crate::heightfield::ConeMap;
 
 /// One level.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,11 +11,10 @@
 //! linear function `plane(v) - height - n.v / R` is nowhere positive on the node's
 //! rectangle, which its corners decide. n is the direction to the rectangle's centre.
 
-use crate::heightfield::conemap::generate::cost::Cost;
 use crate::heightfield::conemap::generate::grid_distance::{GridDistance, Sector};
-use crate::heightfield::conemap::generate::method::Apex;
-use crate::heightfield::heights::grid;
-use crate::heightfield::max_mip::{MaxMip, MipLevel, Places};
+use crate::heightfield::conemap::generate::{Apex, Cost};
+use crate::heightfield::max_mip::{MipLevel, Places};
+use crate::heightfield::{MaxMip, heights::grid};
 
 /// How far below 0 the maximum of the linear function must be. Rounding is far less for
 /// coordinates under ten thousand and gradients that heights of 0..=1 can have.

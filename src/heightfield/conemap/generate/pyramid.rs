@@ -3,8 +3,7 @@
 
 use crate::base::shader::Program;
 use crate::heightfield::conemap::generate::uniform::PyramidUniform;
-use crate::heightfield::heights::grid;
-use crate::heightfield::max_mip::{MaxMip, MipLevel};
+use crate::heightfield::{MaxMip, heights::grid, max_mip::MipLevel};
 use crate::wgsl;
 
 /// The tiles of a pyramid of maxima: level n holds, for each of its nodes, the maxima of

@@ -5,8 +5,7 @@
 //! computed as if the CPU had found the place. Where another place costs nearly as much, f32
 //! may have preferred the wrong one; then the place is searched again on the CPU.
 
-use crate::heightfield::conemap::generate::task::MapTask;
-use crate::heightfield::conemap::generate::uniform::SearchState;
+use crate::heightfield::conemap::generate::{MapTask, SearchState};
 
 /// Whether f32 leaves open what bounds any cone of a place.
 pub fn is_ambiguous(task: &MapTask<'_>, found: &[SearchState]) -> bool {

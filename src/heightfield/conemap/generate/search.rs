@@ -11,14 +11,9 @@
 //! keep short ([`planes`](super::planes); only here, as they only save time).
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::falling;
 use crate::heightfield::conemap::generate::grid_distance::{GridDistance, Sector, neighbours};
-use crate::heightfield::conemap::generate::method::{Apex, Method};
-use crate::heightfield::conemap::generate::planes::Planes;
-use crate::heightfield::conemap::generate::task::MapTask;
-use crate::heightfield::heights::{Heights, Patches};
-use crate::heightfield::max_mip::MaxMip;
+use crate::heightfield::conemap::generate::{Apex, Cost, MapTask, Method, falling, planes::Planes};
+use crate::heightfield::{Heights, MaxMip, Patches};
 use crate::wgsl;
 
 /// Branch and bound.

@@ -2,15 +2,10 @@
 //! Twin: `wgsl/heightfield/conemap/generate/task.wgsl`.
 
 use crate::base::shader::Program;
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
-use crate::heightfield::conemap::generate::method::{Apex, Method};
-use crate::heightfield::conemap::generate::planes::Planes;
-use crate::heightfield::conemap::generate::search::Best;
-use crate::heightfield::conemap::generate::{min3x3, pyramid};
-use crate::heightfield::heights::{Axis, Heights, Patches};
-use crate::heightfield::max_mip::MaxMip;
+use crate::heightfield::conemap::generate::{
+    Apex, Best, Cost, GenerateError, Generator, Method, Options, min3x3, planes::Planes, pyramid,
+};
+use crate::heightfield::{ConeMap, Heights, MaxMip, Patches, heights::Axis};
 use crate::wgsl;
 
 /// A generator with everything that its searches read.
