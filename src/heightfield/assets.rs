@@ -16,8 +16,8 @@ use crate::heightfield::paint::{Colors, Paint};
 use crate::heightfield::tracer::settings::{Make, PrepareError, Supply, on_cpu, without_cones};
 use crate::heightfield::tracer::{Tracer, TracerKind};
 use crate::heightfield::{
-    HeightSurface, Patches, height_surface::HeightSurfaceError, heights::cells,
-    placement::Placement, settings::HeightfieldSettings, source::Source, texture::Texture,
+    HeightSurface, Patches, height_surface::HeightSurfaceError, placement::Placement,
+    settings::HeightfieldSettings, source::Source, texture::Texture,
 };
 
 /// What decides a surface.
@@ -145,7 +145,11 @@ impl Assets {
     /// The largest number of steps that a ray can take; `None` if the heights cannot be loaded.
     pub fn most_steps(&self, settings: &HeightfieldSettings) -> Option<u32> {
         let surface = self.surface(settings).ok()?;
-        Some(settings.most_steps(surface.domain().map(i32::unsigned_abs)))
+        Some(
+            settings
+                .tracing
+                .most_steps(surface.domain().map(i32::unsigned_abs)),
+        )
     }
 
     /// Notes about the named files: what was ignored in them, and what could not be checked.
@@ -220,11 +224,8 @@ impl Assets {
             Some(pattern) => pattern.ok()?.size,
             None => self.surface(settings).ok()?.heights().size(),
         };
-        Some(if generator.over_cells() {
-            cells(size, settings.source.wrap(), settings.patches)
-        } else {
-            size
-        })
+        let kind = generator.kind();
+        Some(kind.places(size, settings.source.options.wrap, settings.patches))
     }
 
     fn surface(&self, settings: &HeightfieldSettings) -> Result<Arc<HeightSurface>, Fault> {
@@ -240,7 +241,7 @@ impl Assets {
                 note: loaded.note,
             })
         };
-        self.surfaces.get(surface_key(settings), make)
+        kept(&self.surfaces, surface_key(settings), make)
     }
 
     fn texture(&self, settings: &HeightfieldSettings) -> Result<Option<Arc<Texture>>, Fault> {
@@ -248,7 +249,7 @@ impl Assets {
             return Ok(None);
         }
         let path = settings.source.folder.join(&settings.texture);
-        let read = self.textures.get(path, |path| Texture::read(path));
+        let read = kept(&self.textures, path, |path| Texture::read(path));
         read.map(Some)
             .map_err(|why| Fault::new("scene.texture", why))
     }
@@ -261,8 +262,9 @@ impl Assets {
     ) -> Result<Arc<Option<Supply>>, PrepareError> {
         let t = &settings.tracing;
         let key = (surface_key(settings), t.tracer, t.map.clone(), t.offset);
-        self.cones
-            .get(key, |_| t.cones(surface, &settings.source.folder, make))
+        kept(&self.cones, key, |_| {
+            t.cones(surface, &settings.source.folder, make)
+        })
     }
 
     fn paint(
@@ -276,7 +278,7 @@ impl Assets {
         };
         let tracing = &settings.tracing;
         let key = (surface_key(settings), by, tracing.offset);
-        let made = self.paints.get(key, |_| -> Result<_, PrepareError> {
+        let made = kept(&self.paints, key, |_| -> Result<_, PrepareError> {
             if tracing.generator() == Some(by)
                 && let Some(supply) = &*self.cones(settings, surface, make)?
             {
@@ -297,38 +299,25 @@ pub(super) fn tiles_fault(e: HeightSurfaceError) -> Fault {
     Fault::new("scene.tiles", e.to_string())
 }
 
-/// The last value that was made, with its key.
-#[derive(Debug)]
-struct Last<K, V>(Arc<Mutex<Kept<K, V>>>);
+/// The last value that was made, with its key. Clones share it.
+type Last<K, V> = Arc<Mutex<Option<(K, Arc<V>)>>>;
 
-type Kept<K, V> = Option<(K, Arc<V>)>;
-
-impl<K: PartialEq, V> Last<K, V> {
-    /// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.
-    fn get<E>(&self, key: K, make: impl FnOnce(&K) -> Result<V, E>) -> Result<Arc<V>, E> {
-        // After a panic in `make` the old value is still there.
-        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((of, value)) = &*last
-            && *of == key
-        {
-            return Ok(value.clone());
-        }
-        let value = Arc::new(make(&key)?);
-        *last = Some((key, value.clone()));
-        Ok(value)
+/// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.
+fn kept<K: PartialEq, V, E>(
+    last: &Last<K, V>,
+    key: K,
+    make: impl FnOnce(&K) -> Result<V, E>,
+) -> Result<Arc<V>, E> {
+    // After a panic in `make` the old value is still there.
+    let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((of, value)) = &*last
+        && *of == key
+    {
+        return Ok(value.clone());
     }
-}
-
-impl<K, V> Default for Last<K, V> {
-    fn default() -> Self {
-        Self(Arc::default())
-    }
-}
-
-impl<K, V> Clone for Last<K, V> {
-    fn clone(&self) -> Self {
-        Self(self.0.clone())
-    }
+    let value = Arc::new(make(&key)?);
+    *last = Some((key, value.clone()));
+    Ok(value)
 }
 
 #[cfg(test)]
@@ -340,14 +329,14 @@ mod tests {
         let last = Last::<u32, u32>::default();
         let mut made = 0;
         for (key, times) in [(1, 1), (1, 1), (2, 2), (1, 3)] {
-            let value = last.clone().get(key, |k| {
+            let value = kept(&last.clone(), key, |k| {
                 made += 1;
                 Ok::<u32, ()>(10 * k)
             });
             assert_eq!(value, Ok(Arc::new(10 * key)));
             assert_eq!(made, times);
         }
-        assert_eq!(last.get(3, |_| Err("no")), Err("no"));
-        assert_eq!(last.get(1, |_| Err("no")), Ok(Arc::new(10)));
+        assert_eq!(kept(&last, 3, |_| Err("no")), Err("no"));
+        assert_eq!(kept(&last, 1, |_| Err("no")), Ok(Arc::new(10)));
     }
 }

@@ -91,7 +91,7 @@ impl HeightfieldSettings {
     pub fn check(&self) -> Result<(), Fault> {
         self.tracing.check()?;
         for (axis, name) in [(0, "x"), (1, "y")] {
-            if self.tiles[axis] > 1 && !self.source.wrap()[axis] {
+            if self.tiles[axis] > 1 && !self.source.options.wrap[axis] {
                 return Err(Fault::new(
                     "scene.tiles",
                     format!(
@@ -104,7 +104,7 @@ impl HeightfieldSettings {
             Some(Err(why)) => return Err(Fault::new("scene.field", why)),
             // Before its heights are made.
             Some(Ok(pattern)) => {
-                let cells = cells(pattern.size, self.source.wrap(), self.patches);
+                let cells = cells(pattern.size, self.source.options.wrap, self.patches);
                 check_tiles(cells, self.tiles).map_err(tiles_fault)?;
             }
             None => {}
@@ -150,11 +150,6 @@ impl HeightfieldSettings {
         let traced = self.tracing.generator();
         let painted = self.paint.filter(|by| traced != Some(*by));
         traced.into_iter().chain(painted).collect()
-    }
-
-    /// The largest number of steps that a ray can take over so many cells along each axis.
-    pub fn most_steps(&self, domain: [u32; 2]) -> u32 {
-        self.tracing.most_steps(domain)
     }
 
     /// The place of a block of so many texels.

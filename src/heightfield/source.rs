@@ -29,11 +29,6 @@ impl Default for Source {
 }
 
 impl Source {
-    /// Which axes wrap.
-    pub fn wrap(&self) -> [bool; 2] {
-        self.options.wrap
-    }
-
     /// The argument of [`load`]: the pattern, or the file's whole path.
     pub fn argument(&self) -> String {
         if PatternSpec::read(&self.field).is_some() {

@@ -5,6 +5,7 @@
 //! its radius, in texels, at one whole height above the apex.
 
 use crate::base::named::named_enum;
+use crate::heightfield::heights::{Patches, cells};
 
 pub mod file;
 pub mod generate;
@@ -54,6 +55,14 @@ impl MapKind {
     /// Whether places are cells instead of samples.
     pub fn over_cells(self) -> bool {
         self.facts().over_cells
+    }
+
+    /// Places along each axis of a map of heights.
+    pub fn places(self, samples: [u32; 2], wrap: [bool; 2], patches: Patches) -> [u32; 2] {
+        match self.over_cells() {
+            true => cells(samples, wrap, patches),
+            false => samples,
+        }
     }
 
     /// Cones per place.

@@ -9,7 +9,7 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
-use crate::heightfield::load::file::{Grid, read};
+use crate::heightfield::load::file::read;
 use crate::heightfield::load::pattern_spec::PatternSpec;
 use crate::heightfield::{FileError, Heights, pattern::Pattern};
 
@@ -47,7 +47,7 @@ pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded
     let path = Path::new(argument.as_ref());
     let shown = path.display().to_string();
     if let Some(named) = path.to_str().and_then(PatternSpec::read) {
-        return generated(named, &shown, options);
+        return generated(named, options).map_err(|why| wrong(&shown, &why));
     }
     let is_path = shown.contains(['/', '\\', '.']) || (!shown.is_empty() && path.exists());
     if !is_path {
@@ -57,21 +57,7 @@ pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded
         );
         return Err(wrong(&shown, &why));
     }
-    let fail = |why: String| FileError::file(path, why);
-    let Grid {
-        size,
-        mut values,
-        form,
-        note,
-    } = read(path, options.size).map_err(fail)?;
-    into_range(&mut values, size[0] as usize, options.normalize).map_err(fail)?;
-    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
-    Ok(Loaded {
-        name: stem.unwrap_or_else(|| "heights".into()),
-        heights: finished(size, values, options).map_err(fail)?,
-        form,
-        note: note.map(|note| format!("{shown} {note}")),
-    })
+    in_file(path, options).map_err(|why| FileError::file(path, why))
 }
 
 /// The error of an argument that names no heights.
@@ -81,26 +67,32 @@ fn wrong(argument: &str, why: &str) -> FileError {
     FileError::Usage(format!("{argument}: {why}"))
 }
 
-fn generated(
-    named: Result<PatternSpec, String>,
-    argument: &str,
-    options: &LoadOptions,
-) -> Result<Loaded, FileError> {
-    let fail = |why: String| wrong(argument, &why);
-    let named = named.map_err(fail)?;
+fn generated(named: Result<PatternSpec, String>, options: &LoadOptions) -> Result<Loaded, String> {
+    let named = named?;
+    let name = named.field.name();
     if options.size.is_some() {
-        let name = named.field.name();
-        let why = format!(
+        return Err(format!(
             "is a field; give its size after a colon like {name}:512x512 (--size is for raw files)"
-        );
-        return Err(fail(why));
+        ));
     }
     let values = named.field.heights(named.size, named.seed, named.power);
     Ok(Loaded {
-        name: named.field.name().into(),
-        heights: finished(named.size, values, options).map_err(fail)?,
+        name: name.into(),
+        heights: finished(named.size, values, options)?,
         form: named.to_string(),
         note: None,
+    })
+}
+
+fn in_file(path: &Path, options: &LoadOptions) -> Result<Loaded, String> {
+    let mut grid = read(path, options.size)?;
+    into_range(&mut grid.values, grid.size[0] as usize, options.normalize)?;
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+    Ok(Loaded {
+        name: stem.unwrap_or_else(|| "heights".into()),
+        heights: finished(grid.size, grid.values, options)?,
+        form: grid.form,
+        note: grid.note.map(|note| format!("{} {note}", path.display())),
     })
 }
 

@@ -42,11 +42,7 @@ pub fn check_map(
         return Err(TraceError::Kind { tracer, kind });
     }
     let heights = surface.heights();
-    let [w, h] = if kind.over_cells() {
-        surface.cells()
-    } else {
-        heights.size()
-    };
+    let [w, h] = kind.places(heights.size(), heights.wrap(), surface.patches());
     let cones = w as usize * h as usize * kind.channels();
     let debug = |value: &dyn std::fmt::Debug| format!("{value:?}");
     for (what, wanted, found) in [

@@ -17,9 +17,7 @@
 
 use glam::DVec3;
 
-use crate::base::named::named_enum;
-use crate::base::shader::Module;
-use crate::base::work::Work;
+use crate::base::{named::named_enum, shader::Module, work::Work};
 use crate::heightfield::conemap::generate::mips::stored;
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{

@@ -11,9 +11,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::base::shader::Module;
 pub use crate::base::work::Step;
-use crate::base::work::Work;
+use crate::base::{shader::Module, work::Work};
 use crate::heightfield::conemap::generate::mips::stored;
 use crate::heightfield::tracer::{
     GridRay, cones::Lookup, grid::grid_begin, reference::Reference, settings::TracerSettings,

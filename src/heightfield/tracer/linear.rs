@@ -4,8 +4,7 @@
 //! The steps divide the part of the ray inside the block, so that they always reach its end.
 //! The tracer misses what is thinner than a step, and needs no map.
 
-use crate::base::shader::Module;
-use crate::base::work::Work;
+use crate::base::{shader::Module, work::Work};
 use crate::heightfield::height_surface::TracerParameters;
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{

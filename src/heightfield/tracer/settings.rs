@@ -43,18 +43,18 @@ pub(crate) fn without_cones(
     patches: Patches,
     options: &Options,
 ) -> Result<ConeMap, GenerateError> {
-    let (size, offset) = if generator.over_cells() {
-        (heights.cells(patches), options.offset)
-    } else {
-        (heights.size(), 0.0)
-    };
-    let places = size[0] as usize * size[1] as usize;
+    let (kind, wrap) = (generator.kind(), heights.wrap());
+    let [w, h] = kind.places(heights.size(), wrap, patches);
     Ok(ConeMap {
-        kind: generator.kind(),
-        size,
-        wrap: heights.wrap(),
-        ratios: vec![0.0; places * generator.channels()],
-        offset,
+        kind,
+        size: [w, h],
+        wrap,
+        ratios: vec![0.0; w as usize * h as usize * kind.channels()],
+        offset: if kind.over_cells() {
+            options.offset
+        } else {
+            0.0
+        },
     })
 }
 

@@ -19,8 +19,7 @@
 
 use std::sync::Arc;
 
-use crate::base::shader::Module;
-use crate::base::work::Work;
+use crate::base::{shader::Module, work::Work};
 use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, stored};
 use crate::heightfield::height_surface::{Node, TracerParameters};
 use crate::heightfield::tracer::cone::{WALK_TRUST, cone_end};

@@ -9,7 +9,7 @@
 
 use std::path::Path;
 
-use crate::heightfield::conemap::file::{MapFile, digest, map_file::places};
+use crate::heightfield::conemap::file::{MapFile, digest};
 use crate::heightfield::{FileError, Heights, MapKind, Patches, heights::wrap_name};
 
 /// What a map shall be used for.
@@ -74,7 +74,7 @@ impl MapFile {
                 wanted.patches.surface()
             ));
         }
-        if self.map.size != places(samples, self.map.wrap, kind, self.label.patches) {
+        if self.map.size != kind.places(samples, self.map.wrap, self.label.patches) {
             return Some("it has another number of cones than the heights have places".into());
         }
         self.other_heights(heights)

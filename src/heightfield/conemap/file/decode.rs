@@ -117,16 +117,15 @@ fn from_png(file: impl BufRead + Seek, foreign: Option<&ForeignFormat>) -> Resul
         255 => Bits::Eight,
         _ => Bits::Sixteen,
     };
-    let steps = bits.steps();
     let ratio = map_file.format.ratio;
     let numbers = Ratios {
-        steps,
+        bits,
         scaling: ratio,
         scale: map_file.label.scale,
         reread: true,
     };
     let ratios = |channel: usize| pixels.channel(channel).map(|n| numbers.ratio(n)).collect();
-    let heights = |channel: usize| pixels.channel(channel).map(|n| steps.height(n)).collect();
+    let heights = |channel: usize| pixels.channel(channel).map(|n| bits.height(n)).collect();
     let shading = |channel: usize, name| ShadingChannel {
         name,
         shares: heights(channel),
@@ -142,7 +141,7 @@ fn from_png(file: impl BufRead + Seek, foreign: Option<&ForeignFormat>) -> Resul
         Layout::Relief => Some(
             pixels
                 .channel(3)
-                .map(|n| steps.height(steps.most - n))
+                .map(|n| bits.height(bits.most() - n))
                 .collect(),
         ),
         _ => Some(heights(0)),

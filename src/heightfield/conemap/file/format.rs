@@ -17,7 +17,6 @@
 //! points.
 
 use crate::base::named::named_enum;
-use crate::heightfield::conemap::file::Steps;
 use crate::heightfield::{FileError, MapKind};
 
 /// What is particular to a layout.
@@ -89,7 +88,7 @@ impl Layout {
     }
 }
 
-/// Bits of a PNG channel.
+/// Bits of a PNG channel, whose whole numbers stand for 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bits {
     /// 0 to 255.
@@ -104,16 +103,6 @@ impl Bits {
         match self {
             Self::Eight => 8,
             Self::Sixteen => 16,
-        }
-    }
-
-    /// The whole numbers of a channel.
-    pub fn steps(self) -> Steps {
-        Steps {
-            most: match self {
-                Self::Eight => u16::from(u8::MAX),
-                Self::Sixteen => u16::MAX,
-            },
         }
     }
 }

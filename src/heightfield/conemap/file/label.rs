@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::heightfield::conemap::file::map_file::{places, scale};
+use crate::heightfield::conemap::file::map_file::scale;
 use crate::heightfield::conemap::file::{Label, Layout, MapFile, MapFormat, RatioScale, Slopes};
 use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
 use crate::heightfield::heights::{MOST_SAMPLES, wrap_name, wrap_named};
@@ -131,7 +131,7 @@ pub(crate) fn read(text: &str) -> Result<MapFile, String> {
     }
     let map = ConeMap {
         kind,
-        size: places(text.samples, wrap, kind, patches),
+        size: kind.places(text.samples, wrap, patches),
         wrap,
         offset: text.offset,
         ratios: Vec::new(),

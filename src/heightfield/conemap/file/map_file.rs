@@ -3,7 +3,7 @@
 use sha2::{Digest, Sha256};
 
 use crate::heightfield::conemap::file::{Layout, MapFormat, RatioScale};
-use crate::heightfield::{ConeMap, Heights, MapKind, Patches};
+use crate::heightfield::{ConeMap, Heights, Patches};
 
 /// A channel of a file that is only used for shading, as shares of 0..=1.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,17 +103,4 @@ impl MapFile {
 /// Texels that a ratio of 1 in a file means: the longer axis.
 pub(crate) fn scale(samples: [u32; 2]) -> f64 {
     f64::from(samples[0].max(samples[1]))
-}
-
-/// Places of a map along each axis.
-pub(crate) fn places(
-    samples: [u32; 2],
-    wrap: [bool; 2],
-    kind: MapKind,
-    patches: Patches,
-) -> [u32; 2] {
-    match kind.over_cells() {
-        true => crate::heightfield::heights::cells(samples, wrap, patches),
-        false => samples,
-    }
 }

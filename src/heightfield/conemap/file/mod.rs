@@ -16,4 +16,4 @@ pub use decode::{ForeignFormat, decode, decode_bytes, has_map, read_map};
 pub use encode::encode;
 pub use format::{Bits, Layout, MapFormat, RatioScale, Slopes};
 pub use map_file::{Label, MapFile, ShadingChannel, digest};
-pub use rounding::{Ratios, Steps, narrowed};
+pub use rounding::{Ratios, narrowed};
