@@ -150,7 +150,7 @@ fn a_cell_beyond_both_borders_joins_all_four_corners_of_the_map() {
     let check = |block, cell: DVec2, at: [f64; 2], height: Option<f64>| {
         let ray = down((cell + DVec2::from_array(at)).extend(1.0));
         for own in tracers(block, Accuracy::Exact) {
-            let found = hit_of(&*own.tracer, &ray).map(|hit| ray.height(hit.s));
+            let found = hit_of(&own.tracer, &ray).map(|hit| ray.height(hit.s));
             let same = match (found, height) {
                 (Some(found), Some(height)) => (found - height).abs() < 1e-12,
                 (found, height) => found == height,
@@ -204,7 +204,7 @@ fn the_block_has_walls_and_a_floor() {
         };
         let wanted = (words[7] != "-").then(|| (n(7), face(words[8]), [n(9), n(10)]));
         for own in tracers(&flat, Accuracy::Exact) {
-            let (step, hit, _) = run(&*own.tracer, &ray, n(6)).unwrap();
+            let (step, hit, _) = run(&own.tracer, &ray, n(6)).unwrap();
             let found = (step == Step::Hit).then_some((hit.s, hit.face(), hit.uv));
             assert_eq!(found, wanted, "{}: {row}", own.name);
             assert!(step == Step::Hit || step == Step::Out);

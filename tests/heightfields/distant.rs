@@ -51,7 +51,7 @@ fn as_long_as_texels_are_wider_than_pixels_it_is_the_walk() {
             .flatten()
         {
             for ray in rays(&case.surface, 1200, 31) {
-                let (truth, own) = (run(&*walk, &ray, END), run(&**own, &ray, END));
+                let (truth, own) = (run(&walk, &ray, END), run(own, &ray, END));
                 assert_eq!(own, truth, "{}: {ray:?}", case.name);
             }
         }
@@ -120,7 +120,7 @@ fn no_first_hit_is_passed_and_every_hit_is_of_the_node_under_it() {
         for lod in [0.02, 0.3, 5.0] {
             for own in distant(surface, &map, lod) {
                 for (ray, truth) in rays.iter().zip(&truths) {
-                    let (end, _) = traced(&*own, ray, END).expect("the ray ends");
+                    let (end, _) = traced(&own, ray, END).expect("the ray ends");
                     let fault = wrong(surface, lod, ray, &end, *truth);
                     told.extend(fault.map(|f| format!("{} {lod}: {ray:?}: {f}", case.name)));
                     coarse += u32::from(end.state == Step::Hit && end.level > 0);
@@ -149,10 +149,10 @@ fn distant_views_take_fewer_steps_than_with_the_walk() {
             ray.origin -= 64.0 * ray.axis;
         }
         let truths = first_hits(&reference, &rays);
-        let walk = measure(&*walk(&surface, &map), &rays, &truths);
+        let walk = measure(&walk(&surface, &map), &rays, &truths);
         for texels in [2.0, 4.0, 8.0] {
             let all = distant(&surface, &map, 64.0 / texels);
-            let found = all.iter().map(|own| measure(&**own, &rays, &truths));
+            let found = all.iter().map(|own| measure(own, &rays, &truths));
             let found: Vec<_> = found.collect();
             println!("{degrees}: {texels} texels to a pixel: {found:?}, walk {walk:?}");
             for own in &found {

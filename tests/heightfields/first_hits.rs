@@ -65,7 +65,7 @@ fn exact_tracers_find_the_first_hit() {
             let mut faults = Vec::new();
             for (ray, truth) in rays.iter().zip(&truths) {
                 traced += 1;
-                let end = run(&*own.tracer, ray, END);
+                let end = run(&own.tracer, ray, END);
                 let Some(fault) = wrong(ray, truth, end) else {
                     continue;
                 };
@@ -122,7 +122,7 @@ fn rising_rays_pass_over_what_lies_under_them() {
     };
     let cells = steps(&Tracer::reference(surface.clone()));
     for own in exact(&surface).iter().filter(|own| own.kind.needs_map()) {
-        let steps = steps(&*own.tracer);
+        let steps = steps(&own.tracer);
         let name = &own.name;
         assert!(
             5 * steps < 3 * cells,
@@ -168,13 +168,13 @@ fn cones_are_not_wider_than_they_may_be() {
         faults.count()
     };
     for own in exact(&block) {
-        assert_eq!(bad(&*own.tracer), 0, "{}", own.name);
+        assert_eq!(bad(&own.tracer), 0, "{}", own.name);
         // With cones that are wider by a hundredth some hits are lost.
         if let Some(kind) = own.kind.facts().kinds.first() {
             let mut map = reference_map(&block, *kind, 1.5);
             map.ratios.iter_mut().for_each(|r| *r *= 1.01);
             let wider = tracer(&block, &own.kind.into(), Some(Arc::new(map))).unwrap();
-            assert!(bad(&*wider) > 0, "{}", own.name);
+            assert!(bad(&wider) > 0, "{}", own.name);
         }
     }
 }

@@ -127,7 +127,7 @@ fn shaders_skip_nothing_and_hit_where_they_should() {
         for accuracy in [Accuracy::Exact, Accuracy::Pixel] {
             for own in tracers(&case.surface, accuracy) {
                 let what = format!("{}, {}", case.name, own.name);
-                let (skipped, unconverged, error) = measure(&case.surface, &*own.tracer);
+                let (skipped, unconverged, error) = measure(&case.surface, &own.tracer);
                 println!("{what}: {skipped} skipped, error {error:.1e}");
                 assert_eq!((skipped, unconverged), (0, 0), "{what}");
                 assert!(
@@ -146,7 +146,7 @@ fn the_check_sees_cones_that_are_too_wide() {
     let mut map = reference_map(&case.surface, MapKind::Walk, 1.5);
     map.ratios.iter_mut().for_each(|r| *r *= 1.5);
     let walk = tracer(&case.surface, &TracerKind::Walk.into(), Some(Arc::new(map)));
-    let (skipped, ..) = measure(&case.surface, &*walk.unwrap());
+    let (skipped, ..) = measure(&case.surface, &walk.unwrap());
     assert!(skipped > 0);
 }
 
@@ -158,10 +158,10 @@ fn inexact_shaders_agree_with_their_twins() {
             if own.kind.facts().accuracy == Accuracy::Exact {
                 continue;
             }
-            let told = answers(&probe_of(&*own.tracer), &all);
+            let told = answers(&probe_of(&own.tracer), &all);
             let mut apart = 0;
             for (ray, (state, s, _)) in all.iter().zip(&told) {
-                let (step, hit, _) = run(&*own.tracer, ray, END).unwrap();
+                let (step, hit, _) = run(&own.tracer, ray, END).unwrap();
                 let code = match step {
                     Step::Out => 0,
                     Step::Hit => 1,
@@ -181,7 +181,7 @@ fn inexact_shaders_agree_with_their_twins() {
 fn every_module_of_a_tracer_is_valid() {
     for case in surfaces() {
         for own in every_tracer(&case.surface) {
-            let mut modules = probe_of(&*own.tracer).modules;
+            let mut modules = probe_of(&own.tracer).modules;
             modules.push(probe!("frame"));
             let valid = Program::new("probe", modules).validate(Capabilities::default());
             assert!(valid.is_ok(), "{}: {}", own.name, valid.unwrap_err());

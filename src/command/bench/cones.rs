@@ -287,7 +287,7 @@ impl Measured<'_> {
                 let cones = map.map(|(_, map)| Supply::from(map.clone()));
                 let settings = TracerSettings::from(kind);
                 let tracer = kind.make(&self.surface, cones.as_ref(), &settings, 0.0)?;
-                let found = measure(&*tracer, &rays, &truths);
+                let found = measure(&tracer, &rays, &truths);
                 rows.push(TracerRow {
                     field: self.field.name().into(),
                     size: self.surface.heights().size(),

@@ -2,16 +2,11 @@
 
 use crate::heightfield::conemap::file::Bits;
 
-/// Slope as a share: 0.5 flat, 0 and 1 half the height down or up over one texel, which
-/// is what `(share - 0.5) * texture size` makes a slope per texture again (Dummer 2006).
-fn slope_share(slope: f32) -> f64 {
-    0.5 + f64::from(slope)
-}
-
-/// Slopes as Dummer's text and shader take them. His rows are in the order of OpenGL, where
-/// y goes up.
+/// Slopes as Dummer's text and shader take them: 0.5 flat, 0 and 1 half the height down or up
+/// over one texel, which is what `(share - 0.5) * texture size` makes a slope per texture again
+/// (Dummer 2006). His rows are in the order of OpenGL, where y goes up.
 pub(crate) fn whole([x, y]: [f32; 2], bits: Bits) -> [u16; 2] {
-    [x, -y].map(|slope| bits.nearest(slope_share(slope)))
+    [x, -y].map(|slope| bits.nearest(0.5 + f64::from(slope)))
 }
 
 /// Slopes of heights as Dummer's program stores them: `127 + (a - b) / 2 / 2` in whole

@@ -114,18 +114,14 @@ fn steps(distance: &GridDistance, a: usize, from: u32, to: Places) -> Option<Ste
     let axis = distance.axes[a];
     let at = f64::from(from);
     let (low, high) = (f64::from(to.low[a]) - at, f64::from(to.high[a]) - at);
-    if !axis.wrap {
-        return Some(Steps {
-            low,
-            high,
-            turn: 0.0,
-        });
-    }
     let n = f64::from(axis.count);
-    let turn = n * (0.5 * (low + high) / n).round();
+    let turn = match axis.wrap {
+        true => n * (0.5 * (low + high) / n).round(),
+        false => 0.0,
+    };
     let (low, high) = (low - turn, high - turn);
     let near = distance.sector == Sector::All && low >= -0.5 * n && high <= 0.5 * n;
-    near.then_some(Steps { low, high, turn })
+    (near || !axis.wrap).then_some(Steps { low, high, turn })
 }
 
 /// The plane of a node, from the planes of the levels below.

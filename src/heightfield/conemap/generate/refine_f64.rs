@@ -21,13 +21,11 @@ pub fn refined(task: &MapTask<'_>, index: usize, found: &[SearchState]) -> [f64;
     let cost = task.cost();
     let mut ratios = [0.0; 4];
     for (ratio, s) in ratios.iter_mut().zip(found) {
-        let bounded = s.top >= 0.0;
-        let found = if bounded {
-            task.method.found_cost(task, s, height).min(cost.widest())
-        } else {
-            cost.widest()
-        };
-        *ratio = cost.ratio(found);
+        let mut least = cost.widest();
+        if s.top >= 0.0 {
+            least = least.min(task.method.found_cost(task, s, height));
+        }
+        *ratio = cost.ratio(least);
     }
     ratios
 }
