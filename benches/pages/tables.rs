@@ -1,22 +1,11 @@
 //! The measured tables of `docs/heightfields.md`.
 
-use conemarch::command::bench::cone_rows::{GeneratorRow, TracerRow};
-use serde::Deserialize;
+use conemarch::command::bench::cone_rows::{ConesRow, GeneratorRow, TracerRow};
 
 use crate::distances::DistanceRow;
 use crate::frames::FrameRow;
 use crate::markdown::table;
 use crate::rows::{NodesRow, SizesRow, TimesRow};
-
-/// A row of `bench cones`, of either kind.
-#[derive(Deserialize)]
-#[serde(untagged)]
-pub enum ConesRow {
-    /// A map of a field.
-    Generator(GeneratorRow),
-    /// A tracer over a view of a field.
-    Tracer(TracerRow),
-}
 
 /// Size at which tracers and nodes are shown field by field.
 const SHOWN: u32 = 256;
@@ -124,9 +113,9 @@ pub fn means(rows: &[ConesRow], size: u32) -> String {
             n if n < fields.len() => format!(" ({n} of {})", fields.len()),
             _ => String::new(),
         };
-        let steps = cells(mean(|r| r.steps_mean).map(|steps| format!("{steps:.1}")));
-        let skipped = joined(mean(|r| r.skipped).map(percent));
-        let unconverged = joined(mean(|r| r.unconverged).map(percent));
+        let steps = cells(mean(|r| r.stats.steps_mean).map(|steps| format!("{steps:.1}")));
+        let skipped = joined(mean(|r| r.stats.skipped).map(percent));
+        let unconverged = joined(mean(|r| r.stats.unconverged).map(percent));
         format!("{tracer} | {map}{note} | {steps} | {skipped} | {unconverged}")
     });
     let head = "tracer | map | steps at 30 | at 60 | at 80 | skipped % | unconverged %";
@@ -144,10 +133,12 @@ pub fn tracers(rows: &[ConesRow]) -> String {
         let body = pairs(&own).into_iter().map(|(tracer, map)| {
             let is = |r: &&&TracerRow| (&*r.tracer, &*r.map) == (tracer, map);
             let of = |show: fn(&TracerRow) -> String| own.iter().filter(is).map(move |r| show(r));
-            let steps = cells(of(|r| format!("{:.1} / {}", r.steps_mean, r.steps_p99)));
-            let skipped = joined(of(|r| percent(r.skipped)));
-            let unconverged = joined(of(|r| percent(r.unconverged)));
-            let error = joined(of(|r| texels(r.error_texels)));
+            let steps = cells(of(|r| {
+                format!("{:.1} / {}", r.stats.steps_mean, r.stats.steps_p99)
+            }));
+            let skipped = joined(of(|r| percent(r.stats.skipped)));
+            let unconverged = joined(of(|r| percent(r.stats.unconverged)));
+            let error = joined(of(|r| texels(r.stats.error_texels)));
             format!("{tracer} | {map} | {steps} | {skipped} | {unconverged} | {error}")
         });
         let table = table(head, "llr", body);
@@ -327,7 +318,10 @@ pub fn aims(cones: &[ConesRow], nodes: &[NodesRow], times: &[TimesRow]) -> Strin
             let steps = |tracer| {
                 let is =
                     |r: &&&TracerRow| (&*r.field, &*r.tracer, r.view_deg) == (field, tracer, view);
-                tracers.iter().find(is).map_or(f64::NAN, |r| r.steps_mean)
+                tracers
+                    .iter()
+                    .find(is)
+                    .map_or(f64::NAN, |r| r.stats.steps_mean)
             };
             steps("walk") / steps("max-mip")
         });

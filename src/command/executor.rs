@@ -45,40 +45,34 @@ impl Executor {
     /// # Errors
     /// No adapter matches, or it does not open. `auto` then takes the CPU executor.
     pub fn open(choice: &Choice) -> Result<(Self, String), DeviceError> {
-        Self::open_with(choice, STORAGE_BUFFERS)
+        Self::open_with(choice, STORAGE_BUFFERS, true)
     }
 
     /// As [`Executor::open`], for programs that bind up to so many storage buffers: cone maps
-    /// need fewer than pictures.
+    /// need fewer than pictures. `auto` takes a software adapter only if `software` is set.
     ///
     /// # Errors
     /// As [`Executor::open`].
-    pub fn open_with(choice: &Choice, storage_buffers: u32) -> Result<(Self, String), DeviceError> {
-        if *choice == Choice::Cpu {
-            return Ok(Self::cpu("as asked"));
-        }
-        let adapters = Adapters::find();
-        if *choice == Choice::Auto {
-            return Ok(match adapters.open_first(storage_buffers, true) {
-                Ok((device, why)) => Self::gpu(device, &why),
-                Err(why) => Self::cpu(&why),
-            });
-        }
-        let Some((adapter, why)) = adapters.choose(choice)? else {
-            return Ok(Self::cpu("as there is no adapter"));
+    pub fn open_with(
+        choice: &Choice,
+        storage_buffers: u32,
+        software: bool,
+    ) -> Result<(Self, String), DeviceError> {
+        let (device, why) = match choice {
+            Choice::Cpu => (None, "as asked".into()),
+            Choice::Auto => match Adapters::find().open_first(storage_buffers, software) {
+                Ok((device, why)) => (Some(device), why),
+                Err(why) => (None, why),
+            },
+            choice => match Adapters::find().choose(choice)? {
+                Some((adapter, why)) => (Some(Device::open(adapter, storage_buffers)?), why),
+                None => (None, "as there is no adapter".into()),
+            },
         };
-        let device = Device::open(adapter, storage_buffers)?;
-        Ok(Self::gpu(device, &why))
-    }
-
-    fn gpu(device: Device, why: &str) -> (Self, String) {
-        let who = format!("{} ({why})", device.info.name);
-        (Self::Gpu(Box::new(Renderer::new(device))), who)
-    }
-
-    fn cpu(why: &str) -> (Self, String) {
-        let who = format!("{} ({why})", Self::Cpu.name());
-        (Self::Cpu, who)
+        let gpu = |device| Self::Gpu(Box::new(Renderer::new(device)));
+        let executor = device.map_or(Self::Cpu, gpu);
+        let who = format!("{} ({why})", executor.name());
+        Ok((executor, who))
     }
 
     /// Renders a plan that passes [`Plan::check`].

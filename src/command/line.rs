@@ -27,10 +27,10 @@ enum Verb {
     Render(Box<render::Render>),
     /// Measure run time against error
     #[command(subcommand)]
-    Bench(bench::verb::Bench),
+    Bench(bench::Bench),
     /// Make, inspect and convert cone maps of heights
     #[command(name = "conemap", subcommand)]
-    ConeMap(conemap::verb::ConeMapVerb),
+    ConeMap(conemap::ConeMapVerb),
     /// List the built-in presets, or print one
     Presets(presets::Presets),
     /// List the devices that can render
@@ -53,9 +53,7 @@ pub fn run() -> ExitCode {
     // that stays.
     set_hook(Box::new(|info| {
         if let Ok(mut said) = PANIC.lock() {
-            let text = info.to_string();
-            let words: Vec<&str> = text.split_whitespace().collect();
-            said.get_or_insert(words.join(" "));
+            said.get_or_insert(failure::one_line(&info.to_string()));
         }
     }));
     match catch_unwind(AssertUnwindSafe(|| line.run())) {
@@ -65,11 +63,8 @@ pub fn run() -> ExitCode {
             ExitCode::from(failure::code(&e))
         }
         Err(_) => {
-            let said = PANIC
-                .lock()
-                .ok()
-                .and_then(|s| s.clone())
-                .unwrap_or_default();
+            let said = PANIC.lock().ok().and_then(|said| said.clone());
+            let said = said.unwrap_or_default();
             say(&format!(
                 "error: a fault in conemarch itself, please report it: {said}"
             ));
@@ -101,8 +96,8 @@ impl Line {
     fn run(&self) -> Result<()> {
         match &self.verb {
             Verb::Render(args) => render::run(args),
-            Verb::Bench(bench) => bench::verb::run(bench),
-            Verb::ConeMap(verb) => conemap::verb::run(verb),
+            Verb::Bench(bench) => bench::run(bench),
+            Verb::ConeMap(verb) => conemap::run(verb),
             Verb::Presets(args) => presets::run(args),
             Verb::Devices => devices::run(),
             Verb::Completions(args) => completions::run(args),

@@ -2,17 +2,18 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Result, bail};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use anyhow::Result;
+use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint, value_parser};
 
+use crate::command::arguments::{size, words};
 use crate::command::executor::{Executor, device};
 use crate::command::output::{Format, default_name};
 use crate::command::print::{print, say};
 use crate::command::progress::Progress;
 use crate::command::sink::{Parcel, Sink, apart, spared};
 use crate::command::stats::{Stats, summary};
-use crate::command::{completions, interrupt, memory, size};
+use crate::command::{completions, interrupt, memory};
 use crate::gpu::RenderError;
 use crate::gpu::device::Choice;
 use crate::measure::truth::{self, Cache};
@@ -46,7 +47,7 @@ pub struct Render {
     output: Option<PathBuf>,
 
     /// Width and height in pixels, in place of the preset's
-    #[arg(long, value_name = "WxH", value_parser = size::read)]
+    #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
 
     /// Set one value of the preset; may be given again
@@ -84,19 +85,15 @@ pub struct Render {
 }
 
 fn layers() -> impl TypedValueParser<Value = Layer> {
-    let values = Layer::ALL.iter();
-    let values = values.map(|(word, _, help)| PossibleValue::new(word).help(help));
-    PossibleValuesParser::new(values).map(|word| {
-        let found = Layer::ALL.iter().find(|(known, _, _)| *known == word);
-        found.map_or(Layer::Color, |(_, layer, _)| *layer)
-    })
+    words(
+        Layer::ALL
+            .iter()
+            .map(|(word, layer, help)| (*layer, *word, *help)),
+    )
 }
 
 fn depths() -> impl TypedValueParser<Value = BitDepth> {
-    PossibleValuesParser::new(["8", "16"]).map(|bits| match bits.as_str() {
-        "16" => BitDepth::Sixteen,
-        _ => BitDepth::Eight,
-    })
+    words([(BitDepth::Eight, "8", ""), (BitDepth::Sixteen, "16", "")])
 }
 
 /// Renders a preset.
@@ -125,13 +122,7 @@ pub fn run(args: &Render) -> Result<()> {
     spared(&outputs[1..], preset.as_slice())?;
     let extras = extras(args, format);
     let per_pixel = format.bytes_per_pixel(args.device == Choice::Cpu);
-    let available = memory::available();
-    let lacking = memory::lacking(plan.size, per_pixel, available);
-    if let Some(why) =
-        lacking.or_else(|| memory::lacking_for(&plan.lean(extras), &assets, available))
-    {
-        bail!(why);
-    }
+    memory::check(&plan.lean(extras), per_pixel, &assets)?;
     for note in plan.scene.notes(&assets) {
         say(&format!("note: {note}"));
     }
@@ -167,13 +158,9 @@ pub fn run(args: &Render) -> Result<()> {
         let mut frame = frame.clone();
         warm_times(&mut executor, &plan, &assets, &mut frame)?;
         let stats = Stats::new(&name, &plan, &executor, &frame);
-        let mut text = serde_json::to_vec_pretty(&stats)?;
-        text.push(b'\n');
-        parcel.put(figures, &text)?;
+        parcel.put_json(figures, &stats)?;
     }
-    if interrupt::asked() {
-        return Err(RenderError::Cancelled.into());
-    }
+    interrupt::check()?;
     parcel.hand_over()?;
     say(&summary(&output, &frame));
     if ends_at_the_eye(&frame, &plan) {

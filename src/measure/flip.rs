@@ -11,20 +11,13 @@ use rayon::prelude::*;
 use crate::base::srgb::linear;
 
 /// Pixels per degree of visual angle: a screen of 3840 pixels and 0.7 m, seen from 0.7 m.
-pub const PIXELS_PER_DEGREE: f64 = 67.0;
+const PIXELS_PER_DEGREE: f64 = 67.0;
 
-/// A picture in sRGB, row by row.
-#[derive(Clone, Copy, Debug)]
-pub struct Picture<'a> {
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    /// sRGB colours from 0 to 1.
-    pub pixels: &'a [DVec3],
-}
-
-/// The mean FLIP difference of two pictures of one size, from 0 to 1; 0 for equal ones.
-pub fn flip(reference: Picture<'_>, test: Picture<'_>) -> f64 {
-    let [one, two] = [reference, test].map(Seen::new);
+/// The mean FLIP difference of two pictures of one size, from 0 to 1; 0 for equal ones. Their
+/// pixels are sRGB colours from 0 to 1, row by row.
+pub fn flip(size: [u32; 2], reference: &[DVec3], test: &[DVec3]) -> f64 {
+    let size = size.map(|n| n as usize);
+    let [one, two] = [reference, test].map(|pixels| Seen::new(size, pixels));
     let most = hyab(hunt(DVec3::Y), hunt(DVec3::Z)).powf(COLOR_POWER);
     let pairs = (0..one.color.len()).into_par_iter();
     let errors: Vec<f64> = pairs
@@ -62,13 +55,8 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(picture: Picture<'_>) -> Self {
-        let size = picture.size.map(|n| n as usize);
-        let opponent: Vec<DVec3> = picture
-            .pixels
-            .iter()
-            .map(|c| opponent(linear(*c)))
-            .collect();
+    fn new(size: [usize; 2], pixels: &[DVec3]) -> Self {
+        let opponent: Vec<DVec3> = pixels.iter().map(|c| opponent(linear(*c))).collect();
         let channel = |i: usize| opponent.iter().map(|c| c[i]).collect::<Vec<f64>>();
         let blurred = [0, 1, 2].map(|i| sensed(&channel(i), size, SENSITIVITY[i]));
         let color = (0..opponent.len())
@@ -287,14 +275,10 @@ mod tests {
                 all.map(|(x, y)| DVec3::from_array(paint(x, y).map(|c| f64::from(c) / 255.0)))
                     .collect::<Vec<_>>()
             });
-            let picture = |pixels| Picture {
-                size: [48, 32],
-                pixels,
-            };
-            let got = flip(picture(&one), picture(&two));
+            let got = flip([48, 32], &one, &two);
             // The authors' program computes in f32.
             assert!((got - want).abs() < 2e-4, "{name}: {got}, {want}");
-            assert_eq!(flip(picture(&one), picture(&one)), 0.0, "{name}");
+            assert_eq!(flip([48, 32], &one, &one), 0.0, "{name}");
         }
     }
 }

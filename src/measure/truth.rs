@@ -8,6 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use bytemuck::{cast_slice, pod_collect_to_vec};
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::base::work::State;
@@ -26,7 +27,14 @@ use crate::scene::{Assets, Hit};
 pub struct Truth {
     /// Depth and states.
     pub frame: Frame,
-    /// Factor on the steps.
+    /// How converged it is.
+    pub note: TruthNote,
+}
+
+/// How converged a truth is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TruthNote {
+    /// Factor on the steps: their length over the estimate.
     pub stride: f64,
     /// Share of sampled pixels that move by more than 2 footprints or change state when the
     /// stride is halved.
@@ -66,10 +74,9 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
     let mut plan = asked(plan);
     let view = plan.view();
     let [width, height] = plan.size.map(|n| n as usize);
-    let pixels = (0..width * height).step_by(SAMPLE);
-    let pixels: Vec<_> = pixels
-        .map(|i| [(i % width) as u32, (i / width) as u32])
-        .collect();
+    let sampled = (0..width * height).step_by(SAMPLE);
+    let sampled = sampled.map(|i| [(i % width) as u32, (i / width) as u32]);
+    let pixels: Vec<_> = sampled.collect();
     let mut stride = 0.1;
     loop {
         plan.march.stride = Some(stride);
@@ -87,11 +94,8 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
         let moved = sample.iter().enumerate().filter(|s| changed(*s)).count();
         let moved = moved as f64 / sample.len().max(1) as f64;
         if moved < CONVERGED || stride <= LEAST_STRIDE {
-            return Ok(Truth {
-                frame,
-                stride,
-                moved,
-            });
+            let note = TruthNote { stride, moved };
+            return Ok(Truth { frame, note });
         }
         stride *= 0.5;
     }
@@ -193,8 +197,8 @@ pub fn cached(
 /// The bytes of a truth's file: numbers, depth, colours, states, and a hash of all before it.
 fn pack(truth: &Truth) -> Vec<u8> {
     let mut bytes = Vec::new();
-    bytes.extend(truth.stride.to_le_bytes());
-    bytes.extend(truth.moved.to_le_bytes());
+    bytes.extend(truth.note.stride.to_le_bytes());
+    bytes.extend(truth.note.moved.to_le_bytes());
     bytes.extend(cast_slice::<f32, u8>(&truth.frame.depth));
     bytes.extend(cast_slice::<[f32; 3], u8>(&truth.frame.radiance));
     bytes.extend(&truth.frame.state);
@@ -215,22 +219,18 @@ fn unpack(bytes: &[u8], size: [u32; 2]) -> Option<Truth> {
         rest = after;
         Some(part)
     };
-    let stride = f64::from_le_bytes(take(8)?.try_into().ok()?);
-    let moved = f64::from_le_bytes(take(8)?.try_into().ok()?);
-    let depth = pod_collect_to_vec(take(4 * pixels)?);
-    let radiance = pod_collect_to_vec(take(12 * pixels)?);
-    let state = take(pixels)?.to_vec();
-    Some(Truth {
-        frame: Frame {
-            size,
-            depth,
-            radiance,
-            state,
-            ..Frame::default()
-        },
-        stride,
-        moved,
-    })
+    let note = TruthNote {
+        stride: f64::from_le_bytes(take(8)?.try_into().ok()?),
+        moved: f64::from_le_bytes(take(8)?.try_into().ok()?),
+    };
+    let frame = Frame {
+        size,
+        depth: pod_collect_to_vec(take(4 * pixels)?),
+        radiance: pod_collect_to_vec(take(12 * pixels)?),
+        state: take(pixels)?.to_vec(),
+        ..Frame::default()
+    };
+    Some(Truth { frame, note })
 }
 
 #[cfg(test)]
@@ -241,17 +241,13 @@ mod tests {
     use crate::heightfield::tracer::TracerKind;
     use crate::scene::Scene;
 
-    fn no_assets() -> Assets {
-        Assets::default()
-    }
-
     /// The truth of a plan, and whether the cache had it.
     fn truth_of(cache: &Cache, plan: &Plan) -> (Truth, bool) {
-        cached(Some(cache), plan, &no_assets(), &mut |_| true).expect("nothing fails")
+        cached(Some(cache), plan, &Assets::default(), &mut |_| true).expect("nothing fails")
     }
 
     fn finds(cache: &Cache, plan: &Plan) -> bool {
-        cache.find(plan, &no_assets()).is_some()
+        cache.find(plan, &Assets::default()).is_some()
     }
 
     fn plan() -> Plan {
@@ -301,11 +297,11 @@ mod tests {
         let (made, before) = truth_of(&cache, &plan());
         let (found, after) = truth_of(&cache, &plan());
         assert!(!before && after);
-        assert!(made.stride <= 0.1 && made.moved < CONVERGED);
+        assert!(made.note.stride <= 0.1 && made.note.moved < CONVERGED);
         assert_eq!(found.frame.depth, made.frame.depth);
         assert_eq!(found.frame.state, made.frame.state);
         assert_eq!(found.frame.radiance, made.frame.radiance);
-        assert_eq!((found.stride, found.moved), (made.stride, made.moved));
+        assert_eq!(found.note, made.note);
         // The shell does not decide a truth, these settings do.
         let mut other = plan();
         other.march.shell = 0.7;
@@ -325,7 +321,7 @@ mod tests {
         rebuilt.program[7] ^= 1;
         assert!(!finds(&rebuilt, &plan()));
         // A file that was cut or changed by one bit is ignored.
-        let file = cache.file(&plan(), &no_assets());
+        let file = cache.file(&plan(), &Assets::default());
         let whole = fs::read(&file).expect("kept");
         let mut changed = whole.clone();
         changed[40] ^= 1;

@@ -2,8 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
-/// One map of one field. Ratios are in texture widths over whole heights.
+use crate::measure::tracer_stats::TracerStats;
+
+/// A row of either kind, as a file has it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum ConesRow {
+    /// A map of a field.
+    Generator(GeneratorRow),
+    /// A tracer over a view of a field.
+    Tracer(TracerRow),
+}
+
+/// One map of one field. Ratios are in texture widths over whole heights.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct GeneratorRow {
     /// Name of the field.
     pub field: String,
@@ -43,14 +55,7 @@ pub struct TracerRow {
     pub tracer: String,
     /// The generator of its cones.
     pub map: String,
-    /// Mean steps of a ray.
-    pub steps_mean: f64,
-    /// The number of steps that is enough for 99 % of the rays.
-    pub steps_p99: u32,
-    /// Share of rays with a hit over one texel behind the true one, or with none.
-    pub skipped: f64,
-    /// Share of rays that run out of steps.
-    pub unconverged: f64,
-    /// Mean distance of the other hits from the true ones.
-    pub error_texels: f64,
+    /// What it costs and misses.
+    #[serde(flatten)]
+    pub stats: TracerStats,
 }

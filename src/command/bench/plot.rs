@@ -55,23 +55,21 @@ pub fn draw(rows: &[Row]) -> String {
 
 /// Rows that no other row beats in both time and wrong pixels, sorted by time.
 pub fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
-    let mut sorted: Vec<&Row> = rows.iter().copied().filter(|r| comparable(r)).collect();
+    let mut sorted: Vec<&Row> = rows.iter().copied().filter(|r| r.is_comparable()).collect();
     sorted.sort_by(|a, b| {
         let time = a.wall_ms.total_cmp(&b.wall_ms);
-        time.then(a.wrong().total_cmp(&b.wrong()))
+        time.then(a.report.wrong().total_cmp(&b.report.wrong()))
     });
     let mut best: Vec<&Row> = Vec::new();
     for row in sorted {
-        if best.last().is_none_or(|b| row.wrong() < b.wrong()) {
+        if best
+            .last()
+            .is_none_or(|b| row.report.wrong() < b.report.wrong())
+        {
             best.push(row);
         }
     }
     best
-}
-
-/// Whether a row is compared with the usual truth: another `detail` has another one.
-fn comparable(row: &Row) -> bool {
-    !row.parameters.contains_key("detail")
 }
 
 /// A logarithmic axis over some values, from `at` over `length`.
@@ -130,11 +128,11 @@ fn rounded(t: f64) -> f64 {
 /// Wrong pixels in percent. None at all is drawn as half a pixel: the axis is logarithmic.
 fn shown(row: &Row) -> f64 {
     let pixels = f64::from(row.size[0]) * f64::from(row.size[1]);
-    100.0 * row.wrong().max(0.5 / pixels)
+    100.0 * row.report.wrong().max(0.5 / pixels)
 }
 
 fn panel(svg: &mut String, preset: &str, rows: &[&Row], [left, top]: [f64; 2]) {
-    let rows: Vec<&Row> = rows.iter().copied().filter(|r| comparable(r)).collect();
+    let rows: Vec<&Row> = rows.iter().copied().filter(|r| r.is_comparable()).collect();
     let [x0, y0] = [left + MARGIN[0], top + MARGIN[1]];
     let [x1, y1] = [left + PANEL[0] - MARGIN[2], top + PANEL[1] - MARGIN[3]];
     let [w, h] = [x1 - x0, y1 - y0];
@@ -186,7 +184,7 @@ fn panel(svg: &mut String, preset: &str, rows: &[&Row], [left, top]: [f64; 2]) {
             color(&row.mode),
             row.label(),
             row.wall_ms,
-            100.0 * row.wrong(),
+            100.0 * row.report.wrong(),
         );
         *svg += &format!(
             r##"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" fill="{color}" stroke="{stroke}"><title>{label}: {ms:.1} ms, {wrong:.4} %</title></circle>
@@ -262,13 +260,17 @@ fn legend(svg: &mut String, y: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::compare::Report;
 
     fn row(wall_ms: f64, behind: f64) -> Row {
         Row {
             preset: "p".into(),
             size: [100, 100],
             wall_ms,
-            behind,
+            report: Report {
+                behind,
+                ..Report::default()
+            },
             ..Row::default()
         }
     }

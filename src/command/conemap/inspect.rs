@@ -7,12 +7,12 @@ use anyhow::Result;
 use clap::{Args, ValueHint};
 
 use crate::command::conemap::describe::{describe_heights, describe_map};
-use crate::command::conemap::options::{Foreign, Reading, of_map, shown};
+use crate::command::conemap::options::{Foreign, Reading};
 use crate::command::conemap::panels::{heights_panels, map_panels};
 use crate::command::conemap::sheet::png;
 use crate::command::failure::usage;
 use crate::command::print::{print, say};
-use crate::command::sink::{Sink, spared};
+use crate::command::sink::{Sink, shown, spared};
 use crate::heightfield::conemap::file::{MapFile, MapUse, has_map};
 
 /// What `inspect` takes.
@@ -104,7 +104,7 @@ fn check_heights(args: &Inspect, file: &MapFile, path: &Path, heights: &OsString
         // Nothing is traced here, so any surface will do.
         patches: file.label.patches,
     };
-    file.check_use(path, &wanted).map_err(of_map)?;
+    file.check_use(path, &wanted)?;
     let verb = match file.unknown() {
         Some(_) => "may belong",
         None => "belongs",
