@@ -92,36 +92,36 @@ impl Executor {
         }
     }
 
+    /// The device; `None` for the CPU.
+    pub fn device(&self) -> Option<&Device> {
+        match self {
+            Self::Gpu(renderer) => Some(&renderer.device),
+            Self::Cpu => None,
+        }
+    }
+
     /// Whether only the clock tells the time: on the CPU, and on devices without timestamps.
     pub fn is_untimed(&self) -> bool {
-        match self {
-            Self::Gpu(renderer) => renderer.device.tick_ns.is_none(),
-            Self::Cpu => true,
-        }
+        self.device().is_none_or(|device| device.tick_ns.is_none())
     }
 
     /// A warning if the executor's numbers are not precise enough for a plan. The f64 of the
     /// CPU always are.
     pub fn precision_warning(&self, plan: &Plan) -> Option<String> {
-        match self {
-            Self::Gpu(_) => plan.precision_warning(),
-            Self::Cpu => None,
-        }
+        self.device().and_then(|_| plan.precision_warning())
     }
 
     /// The device's name.
     pub fn name(&self) -> String {
-        match self {
-            Self::Gpu(renderer) => renderer.device.info.name.clone(),
-            Self::Cpu => format!("the CPU, f64 on {} threads", rayon::current_num_threads()),
+        match self.device() {
+            Some(device) => device.info.name.clone(),
+            None => format!("the CPU, f64 on {} threads", rayon::current_num_threads()),
         }
     }
 
     /// `vulkan`, `metal`, `dx12` or `cpu`.
     pub fn backend(&self) -> String {
-        match self {
-            Self::Gpu(renderer) => format!("{:?}", renderer.device.info.backend).to_lowercase(),
-            Self::Cpu => "cpu".into(),
-        }
+        let backend = |device: &Device| format!("{:?}", device.info.backend).to_lowercase();
+        self.device().map_or("cpu".into(), backend)
     }
 }

@@ -69,7 +69,7 @@ impl Seen {
         let sd = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
         let radius = (3.0 * sd).ceil() as i32;
         let bell = |x: f64| (-x * x / (2.0 * sd * sd)).exp();
-        let blur = even(&taps(radius, bell));
+        let blur = signed(&taps(radius, bell));
         let slope = signed(&taps(radius, |x| -x * bell(x)));
         let bend = signed(&taps(radius, |x| (x * x / (sd * sd) - 1.0) * bell(x)));
         let size_of = |kernel: &[f64]| -> Vec<f64> {
@@ -107,12 +107,6 @@ fn sensed(channel: &[f64], size: [usize; 2], gaussians: [(f64, f64); 2]) -> Vec<
 
 fn taps(radius: i32, f: impl Fn(f64) -> f64) -> Vec<f64> {
     (-radius..=radius).map(|x| f(f64::from(x))).collect()
-}
-
-/// Scales a kernel to the sum 1.
-fn even(kernel: &[f64]) -> Vec<f64> {
-    let sum: f64 = kernel.iter().sum();
-    kernel.iter().map(|k| k / sum).collect()
 }
 
 /// Scales a kernel so that its positive taps sum to 1 and its negative ones to -1.
@@ -238,8 +232,8 @@ mod tests {
         [g, b, r]
     }
 
-    fn edge(x: u32, at: u32) -> [u8; 3] {
-        [[20, 30, 60], [200, 180, 90]][usize::from(x < at)]
+    fn edge<const AT: u32>(x: u32, _: u32) -> [u8; 3] {
+        [[20, 30, 60], [200, 180, 90]][usize::from(x < AT)]
     }
 
     fn point(x: u32, y: u32) -> [u8; 3] {
@@ -252,12 +246,7 @@ mod tests {
         ("black and white", |_, _| [0; 3], |_, _| [255; 3], 0.967_399),
         ("a brighter ramp", ramp, brighter, 0.343_887),
         ("other colours", ramp, turned, 0.817_031),
-        (
-            "a moved edge",
-            |x, _| edge(x, 24),
-            |x, _| edge(x, 26),
-            0.128_674,
-        ),
+        ("a moved edge", edge::<24>, edge::<26>, 0.128_674),
         ("one pixel", |_, _| point(0, 0), point, 0.003_247),
         (
             "green and blue",

@@ -6,7 +6,7 @@ use clap::{Args, value_parser};
 use serde::Serialize;
 
 use crate::base::work::State;
-use crate::command::bench::common::{Common, Measurement, Subject};
+use crate::command::bench::common::{Common, Subject};
 use crate::command::bench::runner::{COUNTED, Runner, TIMED};
 use crate::command::bench::table;
 use crate::command::executor::Executor;
@@ -63,24 +63,19 @@ struct CalibrateRow {
 /// An unknown preset, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &CalibrateBench) -> Result<()> {
     interrupt::listen();
-    let Measurement {
-        subjects,
-        assets,
-        files,
-        mut executor,
-    } = args.common.begin(None)?;
+    let mut all = args.common.begin(None)?;
     let mut rows = Vec::new();
-    for subject in &subjects {
+    for subject in &all.subjects {
         let mut progress = Progress::start(&format!("calibrating {}", subject.what));
         let watch = &mut |share| progress.report(share, "");
         let rays = args.rays as usize;
-        let found = calibrate(&subject.plan, &assets, args.budget, rays, watch)?;
+        let found = calibrate(&subject.plan, &all.assets, args.budget, rays, watch)?;
         drop(progress);
-        let row = measure(&mut executor, &assets, subject, found, args.budget)?;
-        files.show(&sentence(&row, &subject.plan))?;
+        let row = measure(&mut all.executor, &all.assets, subject, found, args.budget)?;
+        all.files.show(&sentence(&row, &subject.plan))?;
         rows.push(row);
     }
-    files.write(&rows)
+    all.files.write(&rows)
 }
 
 /// Measures the proposal on the device, and `safe` for comparison.
@@ -137,13 +132,12 @@ fn measure(
 /// The result as text, with the lines to write into the preset.
 fn sentence(row: &CalibrateRow, plan: &Plan) -> String {
     let [w, h] = row.size;
-    let verdict = if row.found.within {
-        String::new()
-    } else {
-        format!(
-            "\nThe budget of {:.3} % is out of reach: these settings come nearest.\n",
-            100.0 * row.budget
-        )
+    let budget = 100.0 * row.budget;
+    let verdict = match row.found.within {
+        true => String::new(),
+        false => {
+            format!("\nThe budget of {budget:.3} % is out of reach: these settings come nearest.\n")
+        }
     };
     let fudge: Vec<String> = row.found.fudge.iter().map(|f| format!("{f}")).collect();
     let precision = table::precision(row.precision.as_deref());

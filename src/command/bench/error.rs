@@ -10,7 +10,7 @@ use anyhow::Result;
 use clap::Args;
 use glam::DVec3;
 
-use crate::command::bench::common::{Common, Measurement, Subject, of_how_many};
+use crate::command::bench::common::{Common, Subject, of_how_many};
 use crate::command::bench::row::Row;
 use crate::command::bench::runner::{COUNTED, RUNS, Runner, TIMED, median_of};
 use crate::command::bench::setting::{Setting, baselines, sweeps};
@@ -57,32 +57,27 @@ pub fn run(args: &ErrorBench) -> Result<()> {
             path.display()
         )));
     }
-    let Measurement {
-        subjects,
-        assets,
-        mut files,
-        mut executor,
-    } = args.common.begin(args.plot.as_deref())?;
+    let mut all = args.common.begin(args.plot.as_deref())?;
     let cache = Cache::user();
     let mut settings = baselines();
     if args.sweep {
         settings.extend(sweeps());
     }
     let mut rows = Vec::new();
-    for subject in &subjects {
+    for subject in &all.subjects {
         let fitting = settings.iter();
         let fitting = fitting.filter_map(|s| Some((s, s.apply(&subject.plan)?)));
         let fitting: Vec<(&Setting, Plan)> = fitting.collect();
-        let truths = truths(cache.as_ref(), &assets, subject, &fitting)?;
-        let measured = measure(&mut executor, &assets, subject, &fitting, &truths)?;
-        files.show(&table::preset(&measured))?;
+        let truths = truths(cache.as_ref(), &all.assets, subject, &fitting)?;
+        let measured = measure(&mut all.executor, &all.assets, subject, &fitting, &truths)?;
+        all.files.show(&table::preset(&measured))?;
         rows.extend(measured);
     }
-    files.show(&table::means(&rows))?;
-    files.show(&table::better_than_safe(&rows))?;
-    files.show(&table::slides(&rows))?;
-    files.draw(|| plot::draw(&rows))?;
-    files.write(&rows)
+    all.files.show(&table::means(&rows))?;
+    all.files.show(&table::better_than_safe(&rows))?;
+    all.files.show(&table::slides(&rows))?;
+    all.files.draw(|| plot::draw(&rows))?;
+    all.files.write(&rows)
 }
 
 /// Whether a name is that of an SVG or of standard output.

@@ -8,7 +8,7 @@ use clap::builder::TypedValueParser;
 
 use crate::base::work::{State, Work};
 use crate::command::arguments::words;
-use crate::command::bench::common::{Common, Measurement, Subject, of_how_many};
+use crate::command::bench::common::{Common, Subject, of_how_many};
 use crate::command::bench::runner::{COUNTED, RUNS, Runner, TIMED, median_of};
 use crate::command::bench::setting::{Setting, baselines};
 use crate::command::bench::steps_row::StepsRow;
@@ -48,41 +48,35 @@ fn modes() -> impl TypedValueParser<Value = Mode> {
 pub fn run(args: &StepsBench) -> Result<()> {
     interrupt::listen();
     // Without a mode all but the truth, which takes long.
-    let settings = args
-        .mode
-        .map_or_else(baselines, |mode| vec![Setting::of(mode)]);
+    let of_one = |mode| vec![Setting::of(mode)];
+    let settings = args.mode.map_or_else(baselines, of_one);
     // Kept until the end: a folder that was made is removed again if it stays empty.
     let _folder = args.heat.as_deref().map(Folder::prepare).transpose()?;
-    let Measurement {
-        subjects,
-        assets,
-        mut files,
-        mut executor,
-    } = args.common.begin(None)?;
+    let mut all = args.common.begin(None)?;
     let mut rows = Vec::new();
-    for subject in subjects {
+    for subject in &all.subjects {
         let fitting = settings.iter().filter_map(|s| s.apply(&subject.plan));
         let fitting: Vec<Plan> = fitting.collect();
-        for (i, plan) in fitting.iter().enumerate() {
+        let count = fitting.len();
+        for (i, plan) in fitting.into_iter().enumerate() {
             let mode = plan.march.mode.name();
-            let one = Subject {
-                name: subject.name.clone(),
-                plan: plan.clone(),
-                what: format!("{}, {}", subject.what, of_how_many(mode, i, fitting.len())),
-            };
-            let (measured, frame) = measure(&mut executor, &assets, &one)?;
-            files.show(&table::levels(&measured))?;
+            let what = format!("{}, {}", subject.what, of_how_many(mode, i, count));
+            let name = subject.name.clone();
+            let one = Subject { name, plan, what };
+            let (measured, frame) = measure(&mut all.executor, &all.assets, &one)?;
+            all.files.show(&table::levels(&measured))?;
             rows.extend(measured);
             if let Some(folder) = &args.heat {
-                let mut place = Place::prepare(&folder.join(format!("{}-{mode}.png", one.name)))?;
+                let Subject { name, plan, .. } = &one;
+                let mut place = Place::prepare(&folder.join(format!("{name}-{mode}.png")))?;
                 let shades = Shades::new(Layer::Steps, &frame, plan);
                 let text = preset::write(plan);
                 place.write(|to| write_png(to, &shades, BitDepth::Eight, &plan.title, &text))?;
-                files.parcel.add(place);
+                all.files.parcel.add(place);
             }
         }
     }
-    files.write(&rows)
+    all.files.write(&rows)
 }
 
 /// The passes of one plan, and the frame that was counted.

@@ -3,7 +3,7 @@
 use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
 use crate::command::bench::row::Row;
 use crate::command::bench::steps_row::StepsRow;
-use crate::command::table::table;
+use crate::command::table::{Column, table};
 
 /// Stands above the times of a device without timestamps.
 const UNTIMED: &str = "The device has no timestamps: times are wall time.\n\n";
@@ -40,7 +40,6 @@ pub fn preset(rows: &[Row]) -> String {
         let starts = row.report.start_violations.iter().map(u64::to_string);
         starts.collect::<Vec<_>>().join(" ")
     };
-    let work = |row: &Row| row.evaluations_per_pixel;
     text + &table(
         rows,
         &[
@@ -81,12 +80,24 @@ fn wrong(row: &Row) -> f64 {
     row.report.wrong()
 }
 
+fn work(row: &Row) -> f64 {
+    row.evaluations_per_pixel
+}
+
+fn time(row: &Row) -> f64 {
+    row.wall_ms
+}
+
 /// Means over the presets, of each setting against `ray` and `ray-relaxed`.
 pub fn means(rows: &[Row]) -> String {
     let (ray, relaxed) = (of(rows, "ray"), of(rows, "ray-relaxed"));
-    let text = String::from(
-        "\n### Means over the presets\n\nRatios are geometric means, shares are arithmetic means. Wrong pixels are those behind, lost or\nunconverged.\n\n",
-    );
+    let text = "
+### Means over the presets
+
+Ratios are geometric means, shares are arithmetic means. Wrong pixels are those behind, lost or
+unconverged.
+
+";
     let mut labels: Vec<String> = Vec::new();
     for row in rows {
         if !labels.contains(&row.label()) {
@@ -96,21 +107,18 @@ pub fn means(rows: &[Row]) -> String {
     // A setting that does not fit every preset has no mean over them.
     labels.retain(|label| of(rows, label).len() == ray.len());
     let own = |label: &String| of(rows, label);
-    let fewer =
-        |than: &[&Row], l: &String| fixed(ratio(than, &own(l), |r| r.evaluations_per_pixel), 2);
-    let faster = |than: &[&Row], l: &String| fixed(ratio(than, &own(l), |r| r.wall_ms), 2);
-    text + &table(
-        &labels,
-        &[
-            ("setting", &String::clone),
-            ("fewer evaluations than ray", &|l| fewer(&ray, l)),
-            ("than ray-relaxed", &|l| fewer(&relaxed, l)),
-            ("faster than ray", &|l| faster(&ray, l)),
-            ("than ray-relaxed", &|l| faster(&relaxed, l)),
-            ("wrong pixels %", &|l| percent(mean(&own(l), wrong), 4)),
-            ("FLIP", &|l| fixed(mean(&own(l), |r| r.flip), 4)),
-        ],
-    )
+    let fewer = |than: &[&Row], l: &String| fixed(ratio(than, &own(l), work), 2);
+    let faster = |than: &[&Row], l: &String| fixed(ratio(than, &own(l), time), 2);
+    let columns: [Column<'_, String>; 7] = [
+        ("setting", &String::clone),
+        ("fewer evaluations than ray", &|l| fewer(&ray, l)),
+        ("than ray-relaxed", &|l| fewer(&relaxed, l)),
+        ("faster than ray", &|l| faster(&ray, l)),
+        ("than ray-relaxed", &|l| faster(&relaxed, l)),
+        ("wrong pixels %", &|l| percent(mean(&own(l), wrong), 4)),
+        ("FLIP", &|l| fixed(mean(&own(l), |r| r.flip), 4)),
+    ];
+    text.to_string() + &table(&labels, &columns)
 }
 
 /// The rules of the list of what beats `safe`.
@@ -166,37 +174,28 @@ Speed gained over plain rays, and what it costs: pixels behind or lost, against 
 exact step.
 
 ";
-    let gain = |name, figure: fn(&Row) -> f64| ratio(&ray, &of(rows, name), figure);
-    let share = |name, figure: fn(&Row) -> f64| percent(mean(&of(rows, name), figure), 3);
-    let starts = |name| -> u64 {
-        let last = |row: &&Row| row.report.start_violations.last().copied();
-        of(rows, name).iter().filter_map(last).sum()
+    let own = |(name, _): &(&str, u32)| of(rows, name);
+    let share = |figure: fn(&Row) -> f64| move |claim: &_| percent(mean(&own(claim), figure), 3);
+    let starts = |claim: &_| {
+        let all = own(claim).into_iter();
+        let last = all.filter_map(|r| r.report.start_violations.last());
+        last.sum::<u64>().to_string()
     };
-    text.to_string()
-        + &table(
-            &CLAIMS,
-            &[
-                ("budget", &|(name, _)| (*name).to_string()),
-                ("claimed gain %", &|(_, claim)| claim.to_string()),
-                ("measured gain %", &|(n, _)| {
-                    percent(gain(n, |r| r.wall_ms) - 1.0, 0)
-                }),
-                ("fewer evaluations", &|(n, _)| {
-                    fixed(gain(n, |r| r.evaluations_per_pixel), 2)
-                }),
-                ("behind %", &|(n, _)| share(n, |r| r.report.behind)),
-                ("holes %", &|(n, _)| share(n, |r| r.report.holes)),
-                ("unconverged %", &|(n, _)| {
-                    share(n, |r| r.report.unconverged)
-                }),
-                ("cells' pixels started behind", &|(n, _)| {
-                    starts(n).to_string()
-                }),
-                ("behind, holes and unconverged of `safe` %", &|_| {
-                    share("safe", wrong)
-                }),
-            ],
-        )
+    let gain = |claim: &_| percent(ratio(&ray, &own(claim), time) - 1.0, 0);
+    let fewer = |claim: &_| fixed(ratio(&ray, &own(claim), work), 2);
+    let of_safe = |_: &_| percent(mean(&of(rows, "safe"), wrong), 3);
+    let columns: [Column<'_, (&str, u32)>; 9] = [
+        ("budget", &|(name, _)| (*name).to_string()),
+        ("claimed gain %", &|(_, claim)| claim.to_string()),
+        ("measured gain %", &gain),
+        ("fewer evaluations", &fewer),
+        ("behind %", &share(|r| r.report.behind)),
+        ("holes %", &share(|r| r.report.holes)),
+        ("unconverged %", &share(|r| r.report.unconverged)),
+        ("cells' pixels started behind", &starts),
+        ("behind, holes and unconverged of `safe` %", &of_safe),
+    ];
+    text.to_string() + &table(&CLAIMS, &columns)
 }
 
 /// The levels of one preset and mode.
@@ -232,57 +231,47 @@ pub fn levels(rows: &[StepsRow]) -> String {
 
 /// The cone maps of one field.
 pub fn generators(rows: &[GeneratorRow]) -> String {
-    let Some(first) = rows.first() else {
-        return String::new();
-    };
-    let [w, h] = first.size;
     let number = |value: Option<f64>| value.map_or("n/a".into(), |v| fixed(v, 4));
     let ms = |row: &GeneratorRow| match (row.ms, row.estimate_ms) {
         (Some(ms), _) => fixed(ms, 2),
         (None, Some(ms)) => format!("n/a, about {ms:.0}"),
         (None, None) => "n/a".into(),
     };
-    format!(
-        "\n### Maps of {}, {w} x {h}, {}\n\n",
-        first.field, first.surface
-    ) + &table(
-        rows,
-        &[
-            ("generator", &|r| r.generator.clone()),
-            ("ms", &ms),
-            ("mean ratio", &|r| number(r.mean_ratio)),
-            ("of exact", &|r| number(r.of_exact)),
-            ("wider than exact %", &|r| {
-                number(r.wider_than_exact.map(|share| 100.0 * share))
-            }),
-        ],
-    )
+    let wider = |row: &GeneratorRow| number(row.wider_than_exact.map(|share| 100.0 * share));
+    let columns: [Column<'_, GeneratorRow>; 5] = [
+        ("generator", &|r| r.generator.clone()),
+        ("ms", &ms),
+        ("mean ratio", &|r| number(r.mean_ratio)),
+        ("of exact", &|r| number(r.of_exact)),
+        ("wider than exact %", &wider),
+    ];
+    rows.first().map_or(String::new(), |r| {
+        of_field("Maps of", &r.field, r.size, &r.surface) + &table(rows, &columns)
+    })
 }
 
 /// The tracers of one field.
 pub fn tracers(rows: &[TracerRow]) -> String {
-    let Some(first) = rows.first() else {
-        return String::new();
-    };
-    let [w, h] = first.size;
-    format!(
-        "\n### Tracers over {}, {w} x {h}, {}\n\n",
-        first.field, first.surface
-    ) + &table(
-        rows,
-        &[
-            ("view", &|r| r.view_deg.to_string()),
-            ("tracer", &|r| r.tracer.clone()),
-            ("map", &|r| r.map.clone()),
-            ("steps, mean", &|r| fixed(r.stats.steps_mean, 2)),
-            ("p99", &|r| r.stats.steps_p99.to_string()),
-            ("skipped %", &|r| percent(r.stats.skipped, 3)),
-            ("unconverged %", &|r| percent(r.stats.unconverged, 3)),
-            ("error, texels", &|r| {
-                format!("{:.2e}", r.stats.error_texels)
-            }),
-        ],
-    )
+    let columns: [Column<'_, TracerRow>; 8] = [
+        ("view", &|r| r.view_deg.to_string()),
+        ("tracer", &|r| r.tracer.clone()),
+        ("map", &|r| r.map.clone()),
+        ("steps, mean", &|r| fixed(r.stats.steps_mean, 2)),
+        ("p99", &|r| r.stats.steps_p99.to_string()),
+        ("skipped %", &|r| percent(r.stats.skipped, 3)),
+        ("unconverged %", &|r| percent(r.stats.unconverged, 3)),
+        ("error, texels", &|r| {
+            format!("{:.2e}", r.stats.error_texels)
+        }),
+    ];
+    rows.first().map_or(String::new(), |r| {
+        of_field("Tracers over", &r.field, r.size, &r.surface) + &table(rows, &columns)
+    })
+}
+
+/// The title of a table of a field.
+fn of_field(what: &str, field: &str, [w, h]: [u32; 2], surface: &str) -> String {
+    format!("\n### {what} {field}, {w} x {h}, {surface}\n\n")
 }
 
 #[cfg(test)]

@@ -15,10 +15,7 @@ pub struct MapMaker<'a>(Option<Maker<'a>>);
 impl<'a> MapMaker<'a> {
     /// The maker of an executor.
     pub fn new(executor: &'a Executor) -> Self {
-        Self(match executor {
-            Executor::Gpu(renderer) => Some(Maker::new(&renderer.device)),
-            Executor::Cpu => None,
-        })
+        Self(executor.device().map(Maker::new))
     }
 
     /// Makes a map.
