@@ -56,6 +56,9 @@ pub fn one_line(text: &str) -> String {
 
 /// An error of the parser, which has several paragraphs, as one line without the usage block.
 pub fn flatten(error: &clap::Error) -> String {
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return "a command is missing; `conemarch --help` lists the commands".into();
+    }
     if error.kind() == ErrorKind::InvalidUtf8 {
         // The parser does not say which; paths are no reason for it.
         let mut given = std::env::args_os();

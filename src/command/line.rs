@@ -81,10 +81,6 @@ fn refuse(error: &clap::Error) -> ExitCode {
             let _ = error.print();
             ExitCode::SUCCESS
         }
-        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            say("error: a command is missing; `conemarch --help` lists the commands");
-            ExitCode::from(2)
-        }
         _ => {
             say(&format!("error: {}", failure::flatten(error)));
             ExitCode::from(2)

@@ -14,12 +14,10 @@ use crate::command::progress::Progress;
 use crate::command::sink::{Parcel, Sink, apart, spared};
 use crate::command::stats::{Stats, summary};
 use crate::command::{completions, interrupt, memory};
-use crate::gpu::RenderError;
 use crate::gpu::device::Choice;
 use crate::measure::truth::{self, Cache};
 use crate::pass;
-use crate::picture::frame::Frame;
-use crate::picture::frame::errors;
+use crate::picture::frame::{Frame, errors};
 use crate::picture::{BitDepth, Layer};
 use crate::plan::{Extras, Plan};
 use crate::preset::{self, Override, Preset};
@@ -142,7 +140,9 @@ pub fn run(args: &Render) -> Result<()> {
     if let Some(warning) = executor.precision_warning(&plan) {
         say(&format!("warning: {warning}"));
     }
-    let frame = march(&mut executor, &plan, &assets, extras)?;
+    let mut progress = Progress::start("rendering");
+    let frame = executor.render(&plan, &assets, extras, &mut progress.watch())?;
+    drop(progress);
     let errors = match args.layer {
         Layer::Error => {
             let mut progress = Progress::start("rendering the truth");
@@ -204,17 +204,6 @@ fn extras(args: &Render, format: Format) -> Extras {
     extras
 }
 
-/// Renders until done or interrupted, with progress.
-fn march(
-    executor: &mut Executor,
-    plan: &Plan,
-    assets: &Assets,
-    extras: Extras,
-) -> Result<Frame, RenderError> {
-    let mut progress = Progress::start("rendering");
-    executor.render(plan, assets, extras, &mut progress.watch())
-}
-
 /// Longest march that is done again for its time, in milliseconds.
 const MOST_AGAIN: f64 = 5_000.0;
 /// Warm runs that a median is taken of.
@@ -237,17 +226,14 @@ fn warm_times(
         ..Extras::default()
     };
     let watch = &mut |_: &_| !interrupt::asked();
-    let mut runs = Vec::new();
-    for _ in 0..AGAIN {
-        runs.push(executor.render(plan, assets, extras, watch)?);
-    }
+    let runs = (0..AGAIN).map(|_| executor.render(plan, assets, extras, watch));
+    let mut runs: Vec<Frame> = runs.collect::<Result<_, _>>()?;
     runs.sort_by(|a, b| a.march_ms.total_cmp(&b.march_ms));
     let middle = &runs[AGAIN / 2];
     frame.march_ms = middle.march_ms;
     // What was prepared is kept: only the first time tells what it takes.
     let passes = frame.passes.iter_mut().filter(|p| p.pass.marches());
-    let warm = middle.marched();
-    for (pass, warm) in passes.zip(warm) {
+    for (pass, warm) in passes.zip(middle.marched()) {
         pass.gpu_ms = warm.gpu_ms;
         pass.wall_ms = warm.wall_ms;
     }

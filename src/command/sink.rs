@@ -90,6 +90,12 @@ pub fn spared(outputs: &[(&str, Option<&Path>)], inputs: &[(&str, PathBuf)]) -> 
     Ok(())
 }
 
+/// The ending of a name, in small letters.
+pub fn ending(path: &Path) -> String {
+    let ending = path.extension().and_then(|e| e.to_str());
+    ending.unwrap_or_default().to_lowercase()
+}
+
 /// A name in messages.
 pub fn shown(path: &Path) -> String {
     match is_stdout(path) {

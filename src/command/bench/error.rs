@@ -4,7 +4,7 @@
 //! turn, so that a machine whose speed drifts slows all of them alike.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
@@ -20,7 +20,7 @@ use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
 use crate::command::progress::Progress;
-use crate::command::sink::is_stdout;
+use crate::command::sink::{ending, is_stdout};
 use crate::gpu::RenderError;
 use crate::measure::compare::compare;
 use crate::measure::flip::flip;
@@ -50,7 +50,7 @@ pub struct ErrorBench {
 pub fn run(args: &ErrorBench) -> Result<()> {
     interrupt::listen();
     if let Some(path) = &args.plot
-        && !is_svg(path)
+        && !(is_stdout(path) || ending(path) == "svg")
     {
         return Err(usage(format!(
             "--plot draws an SVG, and `{}` does not end in .svg; - is standard output",
@@ -78,12 +78,6 @@ pub fn run(args: &ErrorBench) -> Result<()> {
     all.files.show(&table::slides(&rows))?;
     all.files.draw(|| plot::draw(&rows))?;
     all.files.write(&rows)
-}
-
-/// Whether a name is that of an SVG or of standard output.
-fn is_svg(path: &Path) -> bool {
-    let ending = path.extension().and_then(|e| e.to_str());
-    is_stdout(path) || ending.is_some_and(|e| e.eq_ignore_ascii_case("svg"))
 }
 
 /// Truths by `march.detail`: settings that change the hit rule have a truth of their own.

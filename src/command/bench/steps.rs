@@ -130,14 +130,12 @@ fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
         let n = states.iter().filter(|s| **s == state as u8).count();
         n as f64 / cells.max(1) as f64
     };
-    let mut histogram = vec![(cells - spent.len()) as u64];
+    // 1, 2, 3-4, 5-8 ...: the power of two that holds n.
+    let bin = |n: u32| 1 + n.next_power_of_two().ilog2() as usize;
+    let mut histogram = vec![0; spent.last().map_or(1, |most| bin(*most) + 1)];
+    histogram[0] = (cells - spent.len()) as u64;
     for n in &spent {
-        // 1, 2, 3-4, 5-8 ...: the power of two that holds n.
-        let bin = 1 + n.next_power_of_two().ilog2() as usize;
-        if histogram.len() <= bin {
-            histogram.resize(bin + 1, 0);
-        }
-        histogram[bin] += 1;
+        histogram[bin(*n)] += 1;
     }
     StepsRow {
         cells: cells as u64,
@@ -161,20 +159,16 @@ fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
 /// lanes need. Lanes past the edge of the level idle too.
 fn waste(work: &[Work], width: usize, tile: [usize; 2]) -> f64 {
     let height = work.len().checked_div(width).unwrap_or(0);
-    let (mut needed, mut spent) = (0_u64, 0_u64);
+    let needed = |cell: usize| u64::from(work[cell].evaluations);
+    let mut spent = 0;
     for y in (0..height).step_by(tile[1]) {
         for x in (0..width).step_by(tile[0]) {
             let rows = (y..(y + tile[1]).min(height)).map(|y| y * width);
             let cells = rows.flat_map(|row| row + x..row + (x + tile[0]).min(width));
-            let mut longest = 0;
-            for cell in cells {
-                let n = u64::from(work[cell].evaluations);
-                needed += n;
-                longest = longest.max(n);
-            }
-            spent += longest * (tile[0] * tile[1]) as u64;
+            spent += cells.map(needed).max().unwrap_or(0) * (tile[0] * tile[1]) as u64;
         }
     }
+    let needed: u64 = (0..work.len()).map(needed).sum();
     spent as f64 / needed.max(1) as f64
 }
 

@@ -11,7 +11,7 @@ use clap::{Args, ValueHint};
 use crate::command::arguments::{self, words};
 use crate::command::failure::usage;
 use crate::command::print::say;
-use crate::command::sink::Sink;
+use crate::command::sink::{Sink, ending, is_stdout};
 use crate::heightfield::conemap::MapKind;
 use crate::heightfield::conemap::file::{
     Bits, ForeignFormat, Layout, MapFile, MapFormat, RatioScale, Slopes, decode, decode_bytes,
@@ -69,10 +69,8 @@ impl Reading {
 
 /// The first option of a list that was given.
 fn first_given(options: &[(bool, &'static str)]) -> Option<&'static str> {
-    options
-        .iter()
-        .find(|(given, _)| *given)
-        .map(|(_, name)| *name)
+    let found = options.iter().find(|(given, _)| *given);
+    found.map(|(_, name)| *name)
 }
 
 fn samples(text: &str) -> Result<[u32; 2], String> {
@@ -166,17 +164,17 @@ pub struct Writing {
 impl Writing {
     /// The format for a file's name and a kind of map.
     pub fn format(&self, output: &Path, kind: MapKind) -> Result<MapFormat> {
-        let ending = output.extension().and_then(|e| e.to_str()).unwrap_or("");
-        let is_png = ending.eq_ignore_ascii_case("png") || output.as_os_str() == "-";
-        let layout = if ending.eq_ignore_ascii_case("exr") {
-            Layout::Full
-        } else if is_png {
-            self.layout.unwrap_or(Layout::usual(kind))
-        } else {
-            return Err(usage(format!(
-                "`{}` must end in .png or .exr, which is the format to write; - writes PNG to standard output",
-                output.display()
-            )));
+        let layout = match ending(output).as_str() {
+            "exr" => Layout::Full,
+            other if other == "png" || is_stdout(output) => {
+                self.layout.unwrap_or(Layout::usual(kind))
+            }
+            _ => {
+                return Err(usage(format!(
+                    "`{}` must end in .png or .exr, which is the format to write; - writes PNG to standard output",
+                    output.display()
+                )));
+            }
         };
         let given = first_given(&[
             (self.layout.is_some(), "--layout"),

@@ -12,7 +12,7 @@ use embedded_graphics::prelude::{
 use embedded_graphics::text::{Alignment, Baseline, Text};
 use glam::DVec3;
 use image::imageops::{FilterType, replace, resize, thumbnail};
-use image::{ImageFormat, Rgb, RgbImage};
+use image::{ImageError, ImageFormat, Rgb, RgbImage};
 
 const FONT: &MonoFont<'_> = &FONT_7X13;
 /// Small maps are magnified by whole numbers to at most the first edge, large ones are scaled
@@ -88,8 +88,8 @@ fn rgb(color: DVec3) -> Rgb<u8> {
 /// Draws panels side by side, as the bytes of a PNG with its size.
 ///
 /// # Errors
-/// In words: what the encoder said.
-pub fn png(panels: &[Panel]) -> Result<(Vec<u8>, [u32; 2]), String> {
+/// The encoder failed.
+pub fn png(panels: &[Panel]) -> Result<(Vec<u8>, [u32; 2]), ImageError> {
     let tallest = panels.iter().map(|p| p.image.height()).max().unwrap_or(0);
     let width = GAP + panels.iter().map(|p| p.width() + GAP).sum::<u32>();
     let bars = GAP + LINE + tallest + BAR;
@@ -113,8 +113,7 @@ pub fn png(panels: &[Panel]) -> Result<(Vec<u8>, [u32; 2]), String> {
         left += w + GAP;
     }
     let mut bytes = Cursor::new(Vec::new());
-    let written = sheet.0.write_to(&mut bytes, ImageFormat::Png);
-    written.map_err(|e| e.to_string())?;
+    sheet.0.write_to(&mut bytes, ImageFormat::Png)?;
     Ok((bytes.into_inner(), [width, height]))
 }
 
