@@ -27,7 +27,7 @@ const OFF: f64 = 0.15;
 /// The tracers' rows at a size.
 fn tracer_rows(rows: &[ConesRow], size: u32) -> Vec<&TracerRow> {
     let own = rows.iter().filter_map(|row| match row {
-        ConesRow::Tracer(row) if row.size == [size; 2] => Some(row),
+        ConesRow::Tracer(row) if row.over.size == [size; 2] => Some(row),
         _ => None,
     });
     own.collect()
@@ -95,7 +95,7 @@ fn tilde(estimated: bool) -> &'static str {
 /// Tracers in the mean of the fields at a size.
 pub fn means(rows: &[ConesRow], size: u32) -> String {
     let rows = tracer_rows(rows, size);
-    let fields = once(rows.iter().map(|r| r.field.as_str()));
+    let fields = once(rows.iter().map(|r| r.over.field.as_str()));
     let body = pairs(&rows).into_iter().map(|(tracer, map)| {
         let of_view = |view| {
             let key = (tracer, map, view);
@@ -128,8 +128,12 @@ pub fn tracers(rows: &[ConesRow]) -> String {
     let mut text = means(rows, SMALL) + &means(rows, SHOWN);
     let rows = tracer_rows(rows, SHOWN);
     let head = "tracer | map | steps at 30, mean / p99 | at 60 | at 80 | skipped % | unconverged % | error, texels";
-    for field in once(rows.iter().map(|r| r.field.as_str())) {
-        let own: Vec<&TracerRow> = rows.iter().copied().filter(|r| r.field == field).collect();
+    for field in once(rows.iter().map(|r| r.over.field.as_str())) {
+        let own: Vec<&TracerRow> = rows
+            .iter()
+            .copied()
+            .filter(|r| r.over.field == field)
+            .collect();
         let body = pairs(&own).into_iter().map(|(tracer, map)| {
             let is = |r: &&&TracerRow| (&*r.tracer, &*r.map) == (tracer, map);
             let of = |show: fn(&TracerRow) -> String| own.iter().filter(is).map(move |r| show(r));
@@ -154,16 +158,16 @@ pub fn generators(rows: &[ConesRow]) -> String {
         ConesRow::Tracer(_) => None,
     });
     let rows: Vec<&GeneratorRow> = own.collect();
-    let fields = once(rows.iter().map(|r| r.field.as_str()));
+    let fields = once(rows.iter().map(|r| r.over.field.as_str()));
     let names = once(rows.iter().map(|r| r.generator.as_str()));
     let head = format!("generator | {}", fields.join(" | "));
     let mut text = String::new();
-    for size in once(rows.iter().map(|r| r.size)) {
+    for size in once(rows.iter().map(|r| r.over.size)) {
         let body = names.iter().map(|name| {
             let figures = fields.iter().map(|field| {
                 let key = (size, *field, *name);
                 let mut all = rows.iter();
-                let own = all.find(|r| (r.size, &*r.field, &*r.generator) == key);
+                let own = all.find(|r| (r.over.size, &*r.over.field, &*r.generator) == key);
                 own.map_or("n/a".into(), |r| generator(r))
             });
             format!("{name} | {}", cells(figures))
@@ -313,11 +317,12 @@ pub fn aims(cones: &[ConesRow], nodes: &[NodesRow], times: &[TimesRow]) -> Strin
         improved <= OVER_IMPROVED,
     );
     let tracers = tracer_rows(cones, SHOWN);
-    for field in once(tracers.iter().map(|r| r.field.as_str())) {
+    for field in once(tracers.iter().map(|r| r.over.field.as_str())) {
         let ratios = VIEWS.map(|view| {
             let steps = |tracer| {
-                let is =
-                    |r: &&&TracerRow| (&*r.field, &*r.tracer, r.view_deg) == (field, tracer, view);
+                let is = |r: &&&TracerRow| {
+                    (&*r.over.field, &*r.tracer, r.view_deg) == (field, tracer, view)
+                };
                 tracers
                     .iter()
                     .find(is)

@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
+use crate::heightfield::heights::MOST_SAMPLES;
 use crate::plan::MOST_PIXELS;
 
 /// Reads a size like `1280x720`.
@@ -19,6 +20,18 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = side(w).zip(side(h)).map(|(w, h)| [w, h]);
     sides.ok_or_else(|| {
         format!("must be width x height in pixels, each from 1 to {MOST_PIXELS}, like 1280x720")
+    })
+}
+
+/// Reads the size of a height map.
+///
+/// # Errors
+/// As [`size`]; maps have fewer samples than pictures have pixels.
+pub fn samples(text: &str) -> Result<[u32; 2], String> {
+    let fits = |s: &[u32; 2]| s.iter().all(|n| *n <= MOST_SAMPLES);
+    let read = size(text).ok().filter(fits);
+    read.ok_or_else(|| {
+        format!("must be columns x rows, each from 1 to {MOST_SAMPLES}, like 512x256")
     })
 }
 

@@ -8,6 +8,8 @@ use anyhow::Result;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 
+use crate::command::bench::Bench;
+use crate::command::conemap::ConeMapVerb;
 use crate::command::print::say;
 use crate::command::{bench, completions, conemap, devices, failure, presets, render};
 
@@ -27,10 +29,10 @@ enum Verb {
     Render(Box<render::Render>),
     /// Measure run time against error
     #[command(subcommand)]
-    Bench(bench::Bench),
+    Bench(Bench),
     /// Make, inspect and convert cone maps of heights
     #[command(name = "conemap", subcommand)]
-    ConeMap(conemap::ConeMapVerb),
+    ConeMap(ConeMapVerb),
     /// List the built-in presets, or print one
     Presets(presets::Presets),
     /// List the devices that can render
@@ -92,8 +94,13 @@ impl Line {
     fn run(&self) -> Result<()> {
         match &self.verb {
             Verb::Render(args) => render::run(args),
-            Verb::Bench(bench) => bench::run(bench),
-            Verb::ConeMap(verb) => conemap::run(verb),
+            Verb::Bench(Bench::Error(args)) => bench::error::run(args),
+            Verb::Bench(Bench::Steps(args)) => bench::steps::run(args),
+            Verb::Bench(Bench::Cones(args)) => bench::cones::run(args),
+            Verb::Bench(Bench::Calibrate(args)) => bench::calibrate::run(args),
+            Verb::ConeMap(ConeMapVerb::Make(args)) => conemap::make::run(args),
+            Verb::ConeMap(ConeMapVerb::Inspect(args)) => conemap::inspect::run(args),
+            Verb::ConeMap(ConeMapVerb::Convert(args)) => conemap::convert::run(args),
             Verb::Presets(args) => presets::run(args),
             Verb::Devices => devices::run(),
             Verb::Completions(args) => completions::run(args),

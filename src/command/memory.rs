@@ -106,10 +106,8 @@ fn lacking_for(plan: &Plan, assets: &Assets, available: u64) -> Option<String> {
         let places: u64 = made.places.map(u64::from).iter().product();
         places * made.generator.channels() as u64
     };
-    lacking_maps(
-        plan.scene.preparations(assets).iter().map(ratios).sum(),
-        available,
-    )
+    let made = plan.scene.preparations(assets);
+    lacking_maps(made.iter().map(ratios).sum(), available)
 }
 
 #[cfg(test)]
@@ -129,11 +127,10 @@ mod tests {
                 let Some(why) = lacking(asked, 60, available) else {
                     continue;
                 };
-                let advised = why.rsplit("--size ").next().unwrap_or_default();
-                let advised = advised.split(' ').next().unwrap_or_default();
-                match size(advised) {
-                    Ok(advised) => assert_eq!(lacking(advised, 60, available), None),
-                    Err(_) => assert!(available < 67 && why.ends_with("free some memory")),
+                let advised = why.split("--size ").nth(1);
+                match advised.and_then(|rest| size(rest.split(' ').next()?).ok()) {
+                    Some(advised) => assert_eq!(lacking(advised, 60, available), None),
+                    None => assert!(available < 67 && why.ends_with("free some memory")),
                 }
             }
         }

@@ -83,11 +83,8 @@ pub struct Render {
 }
 
 fn layers() -> impl TypedValueParser<Value = Layer> {
-    words(
-        Layer::ALL
-            .iter()
-            .map(|(word, layer, help)| (*layer, *word, *help)),
-    )
+    let all = Layer::ALL.iter();
+    words(all.map(|(word, layer, help)| (*layer, *word, *help)))
 }
 
 fn depths() -> impl TypedValueParser<Value = BitDepth> {

@@ -78,10 +78,8 @@ pub fn compare(frame: &Frame, reference: &Frame, plan: &Plan, solid: &AnySolid) 
         let count = (0..errors.len()).filter(|i| counts(*i)).count();
         count as f64 / errors.len().max(1) as f64
     };
-    let mut depths: Vec<f64> = (0..errors.len())
-        .filter(|i| both(*i))
-        .map(|i| errors[i].abs())
-        .collect();
+    let hits = (0..errors.len()).filter(|i| both(*i));
+    let mut depths: Vec<f64> = hits.map(|i| errors[i].abs()).collect();
     depths.sort_by(f64::total_cmp);
     Report {
         depth_error: DepthError {

@@ -20,15 +20,14 @@ pub fn flip(size: [u32; 2], reference: &[DVec3], test: &[DVec3]) -> f64 {
     let [one, two] = [reference, test].map(|pixels| Seen::new(size, pixels));
     let most = hyab(hunt(DVec3::Y), hunt(DVec3::Z)).powf(COLOR_POWER);
     let pairs = (0..one.color.len()).into_par_iter();
-    let errors: Vec<f64> = pairs
-        .map(|i| {
-            let color = redistribute(hyab(one.color[i], two.color[i]).powf(COLOR_POWER), most);
-            let edges = (one.edges[i] - two.edges[i]).abs();
-            let points = (one.points[i] - two.points[i]).abs();
-            let feature = (edges.max(points) / std::f64::consts::SQRT_2).powf(FEATURE_POWER);
-            color.powf(1.0 - feature)
-        })
-        .collect();
+    let error = |i: usize| {
+        let color = redistribute(hyab(one.color[i], two.color[i]).powf(COLOR_POWER), most);
+        let edges = (one.edges[i] - two.edges[i]).abs();
+        let points = (one.points[i] - two.points[i]).abs();
+        let feature = (edges.max(points) / std::f64::consts::SQRT_2).powf(FEATURE_POWER);
+        color.powf(1.0 - feature)
+    };
+    let errors: Vec<f64> = pairs.map(error).collect();
     // In order, so that the number of threads does not change the sum.
     errors.iter().sum::<f64>() / errors.len().max(1) as f64
 }
@@ -59,12 +58,11 @@ impl Seen {
         let opponent: Vec<DVec3> = pixels.iter().map(|c| opponent(linear(*c))).collect();
         let channel = |i: usize| opponent.iter().map(|c| c[i]).collect::<Vec<f64>>();
         let blurred = [0, 1, 2].map(|i| sensed(&channel(i), size, SENSITIVITY[i]));
-        let color = (0..opponent.len())
-            .map(|i| {
-                let c = DVec3::new(blurred[0][i], blurred[1][i], blurred[2][i]);
-                hunt(from_opponent(c).clamp(DVec3::ZERO, DVec3::ONE))
-            })
-            .collect();
+        let shown = |i: usize| {
+            let c = DVec3::from_array(blurred.each_ref().map(|channel| channel[i]));
+            hunt(from_opponent(c).clamp(DVec3::ZERO, DVec3::ONE))
+        };
+        let color = (0..opponent.len()).map(shown).collect();
         let light: Vec<f64> = channel(0).iter().map(|y| (y + 16.0) / 116.0).collect();
         let sd = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
         let radius = (3.0 * sd).ceil() as i32;
@@ -125,10 +123,9 @@ fn convolve(image: &[f64], [width, height]: [usize; 2], x: &[f64], y: &[f64]) ->
         let taps = x.iter().enumerate();
         taps.map(|(tap, k)| k * from[at(i, tap, width - 1)]).sum()
     };
-    let rows: Vec<f64> = image
-        .par_chunks(width)
-        .flat_map_iter(|from| (0..width).map(move |i| row(from, i)))
-        .collect();
+    let rows = image.par_chunks(width);
+    let rows = rows.flat_map_iter(|from| (0..width).map(move |i| row(from, i)));
+    let rows: Vec<f64> = rows.collect();
     let mut all = vec![0.0; image.len()];
     all.par_chunks_mut(width).enumerate().for_each(|(j, to)| {
         for (tap, k) in y.iter().enumerate() {
@@ -160,10 +157,9 @@ fn hyab(a: DVec3, b: DVec3) -> f64 {
 fn hunt(rgb: DVec3) -> DVec3 {
     let f = |t: f64| {
         let d = 6.0_f64 / 29.0;
-        if t > d.powi(3) {
-            t.cbrt()
-        } else {
-            t / (3.0 * d * d) + 4.0 / 29.0
+        match t > d.powi(3) {
+            true => t.cbrt(),
+            false => t / (3.0 * d * d) + 4.0 / 29.0,
         }
     };
     let n = to_xyz(rgb) / white();
@@ -260,9 +256,9 @@ mod tests {
     fn agrees_with_the_authors_program() {
         for (name, one, two, want) in KNOWN {
             let [one, two] = [one, two].map(|paint| {
-                let all = (0..32).flat_map(|y| (0..48).map(move |x| (x, y)));
-                all.map(|(x, y)| DVec3::from_array(paint(x, y).map(|c| f64::from(c) / 255.0)))
-                    .collect::<Vec<_>>()
+                let all = (0..32).flat_map(|y| (0..48).map(move |x| paint(x, y)));
+                let all = all.map(|c| DVec3::from_array(c.map(f64::from)) / 255.0);
+                all.collect::<Vec<_>>()
             });
             let got = flip([48, 32], &one, &two);
             // The authors' program computes in f32.

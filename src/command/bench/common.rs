@@ -70,9 +70,8 @@ impl Common {
         let presets = self.names.iter().filter_map(|name| preset::file(name));
         let presets = presets.map(|file| ("a preset", file));
         let read = subjects.iter().flat_map(|one| one.plan.scene.files());
-        let files = self
-            .rows
-            .prepare(plot, &presets.chain(read).collect::<Vec<_>>())?;
+        let read: Vec<_> = presets.chain(read).collect();
+        let files = self.rows.prepare(plot, &read)?;
         Ok(Measurement {
             executor: open(&self.device, STORAGE_BUFFERS)?,
             subjects,

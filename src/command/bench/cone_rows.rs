@@ -14,15 +14,23 @@ pub enum ConesRow {
     Tracer(TracerRow),
 }
 
-/// One map of one field. Ratios are in texture widths over whole heights.
+/// A surface.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct GeneratorRow {
+pub struct SurfaceNote {
     /// Name of the field.
     pub field: String,
     /// Samples along each axis.
     pub size: [u32; 2],
     /// `bilinear` patches between the samples, or `boxes`.
     pub surface: String,
+}
+
+/// One map of one field. Ratios are in texture widths over whole heights.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct GeneratorRow {
+    /// What it was made for.
+    #[serde(flatten)]
+    pub over: SurfaceNote,
     /// The generator.
     pub generator: String,
     /// The device that makes it.
@@ -43,12 +51,9 @@ pub struct GeneratorRow {
 /// One tracer over one view.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TracerRow {
-    /// Name of the field.
-    pub field: String,
-    /// Samples along each axis.
-    pub size: [u32; 2],
-    /// `bilinear` patches between the samples, or `boxes`.
-    pub surface: String,
+    /// What it was traced over.
+    #[serde(flatten)]
+    pub over: SurfaceNote,
     /// Angle from the vertical.
     pub view_deg: u32,
     /// The tracer.

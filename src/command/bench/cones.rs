@@ -8,14 +8,13 @@ use anyhow::Result;
 use clap::Args;
 use clap::builder::TypedValueParser;
 
-use crate::command::arguments::{size, words};
+use crate::command::arguments::{samples, words};
 use crate::command::bench::common::open;
-use crate::command::bench::cone_rows::{ConesRow, GeneratorRow, TracerRow};
+use crate::command::bench::cone_rows::{ConesRow, GeneratorRow, SurfaceNote, TracerRow};
 use crate::command::bench::files::RowFiles;
 use crate::command::bench::table;
 use crate::command::conemap::maker::MapMaker;
 use crate::command::executor::{Executor, device};
-use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
 use crate::command::progress::Progress;
@@ -77,7 +76,7 @@ pub struct ConesBench {
     #[arg(value_name = "FIELD", value_parser = fields())]
     fields: Vec<Pattern>,
     /// Samples, instead of 128x128 and 256x256
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", value_parser = samples)]
     size: Option<[u32; 2]>,
     /// Treat each sample as a flat box, instead of joining four samples by a patch
     #[arg(long)]
@@ -98,7 +97,7 @@ type Maps = Vec<(Generator, Arc<ConeMap>)>;
 
 /// One surface to measure, and who makes its maps.
 struct Measured<'a> {
-    field: Pattern,
+    note: SurfaceNote,
     surface: Arc<HeightSurface>,
     executor: &'a Executor,
 }
@@ -114,14 +113,9 @@ pub fn run(args: &ConesBench) -> Result<()> {
         named => named,
     };
     let sizes = args.size.map_or(SIZES.to_vec(), |size| vec![size]);
-    for size in &sizes {
-        let area = size[0] as usize * size[1] as usize;
-        Heights::new(*size, [false; 2], vec![0.0; area]).map_err(|e| usage(e.to_string()))?;
-    }
-    let patches = if args.boxes {
-        Patches::Boxes
-    } else {
-        Patches::Bilinear
+    let patches = match args.boxes {
+        true => Patches::Boxes,
+        false => Patches::Bilinear,
     };
     let files = args.rows.prepare(None, &[])?;
     let executor = &open(&args.device, PROMISED_BUFFERS)?;
@@ -130,7 +124,11 @@ pub fn run(args: &ConesBench) -> Result<()> {
         for &field in fields {
             let heights = Heights::new(size, [false; 2], field.heights(size, SEED, POWER))?;
             let measured = Measured {
-                field,
+                note: SurfaceNote {
+                    field: field.name().into(),
+                    size,
+                    surface: patches.name().into(),
+                },
                 surface: Arc::new(HeightSurface::new(heights, patches, [1, 1])?),
                 executor,
             };
@@ -151,9 +149,7 @@ impl Measured<'_> {
     /// The row of a generator, without any figures.
     fn row(&self, generator: &str) -> GeneratorRow {
         GeneratorRow {
-            field: self.field.name().into(),
-            size: self.surface.heights().size(),
-            surface: self.surface.patches().name().into(),
+            over: self.note.clone(),
             generator: generator.into(),
             device: self.executor.name(),
             ..GeneratorRow::default()
@@ -166,7 +162,7 @@ impl Measured<'_> {
         let (heights, patches) = (self.surface.heights(), self.surface.patches());
         let mut maker = MapMaker::new(self.executor);
         let (mut rows, mut maps) = (Vec::new(), Maps::new());
-        let mut progress = Progress::start(&format!("making maps of {}", self.field.name()));
+        let mut progress = Progress::start(&format!("making maps of {}", self.note.field));
         for (i, generator) in Generator::ALL.into_iter().enumerate() {
             let mut row = self.row(generator.name());
             let (start, mut done) = (Instant::now(), 0.0);
@@ -205,7 +201,7 @@ impl Measured<'_> {
     fn trace(&self, maps: &Maps) -> Result<Vec<TracerRow>> {
         let reference = ReferenceTracer::new(self.surface.clone());
         let mut rows = Vec::new();
-        let mut progress = Progress::start(&format!("tracing {}", self.field.name()));
+        let mut progress = Progress::start(&format!("tracing {}", self.note.field));
         for (i, view_deg) in VIEWS.into_iter().enumerate() {
             let rays = view_rays(&self.surface, f64::from(view_deg), RAYS);
             let truths = first_hits(&reference, &rays);
@@ -228,9 +224,7 @@ impl Measured<'_> {
                 let settings = TracerSettings::from(kind);
                 let tracer = kind.make(&self.surface, cones.as_ref(), &settings, 0.0)?;
                 rows.push(TracerRow {
-                    field: self.field.name().into(),
-                    size: self.surface.heights().size(),
-                    surface: self.surface.patches().name().into(),
+                    over: self.note.clone(),
                     view_deg,
                     tracer: kind.name().into(),
                     map: generator.map_or("none", Generator::name).into(),

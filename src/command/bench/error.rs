@@ -76,7 +76,9 @@ pub fn run(args: &ErrorBench) -> Result<()> {
     all.files.show(&table::means(&rows))?;
     all.files.show(&table::better_than_safe(&rows))?;
     all.files.show(&table::slides(&rows))?;
-    all.files.draw(|| plot::draw(&rows))?;
+    if let Some(sink) = all.files.plot.take() {
+        all.files.parcel.put(sink, plot::draw(&rows).as_bytes())?;
+    }
     all.files.write(&rows)
 }
 
@@ -95,19 +97,18 @@ fn truths(
     settings: &[(&Setting, Plan)],
 ) -> Result<Truths, RenderError> {
     let mut found = Truths::new();
+    let Subject { name, what, .. } = subject;
     for (_, plan) in settings {
         if found.contains_key(&truth_key(plan)) {
             continue;
         }
-        let mut progress = Progress::start(&format!("rendering the truth of {}", subject.what));
+        let mut progress = Progress::start(&format!("rendering the truth of {what}"));
         let (truth, kept) = cached(cache, plan, assets, &mut progress.watch())?;
         drop(progress);
+        let kept = if kept { ", kept from before," } else { "" };
+        let (stride, moved) = (truth.note.stride, 100.0 * truth.note.moved);
         say(&format!(
-            "{}: truth{} at {} of the estimate, {:.4} % of pixels still move",
-            subject.name,
-            if kept { ", kept from before," } else { "" },
-            truth.note.stride,
-            100.0 * truth.note.moved
+            "{name}: truth{kept} at {stride} of the estimate, {moved:.4} % of pixels still move"
         ));
         found.insert(truth_key(plan), truth);
     }
@@ -126,14 +127,14 @@ fn measure(
     let precision = executor.precision_warning(&subject.plan);
     let all = settings.len();
     let mut runner = Runner::new(executor, assets, &subject.what, all * (RUNS + 2));
+    let counted = Extras {
+        depth_only: false,
+        ..COUNTED
+    };
     let detail = |i: usize, setting: &Setting| of_how_many(setting.mode.name(), i, all);
     let mut rows = Vec::new();
     for (i, (setting, plan)) in settings.iter().enumerate() {
         let truth = &truths[&truth_key(plan)];
-        let counted = Extras {
-            depth_only: false,
-            ..COUNTED
-        };
         let frame = runner.render(plan, counted, &detail(i, setting))?;
         let work = frame.work_per_pixel().unwrap_or((0.0, 0.0));
         rows.push(Row {

@@ -50,7 +50,8 @@ impl RowFiles {
 pub struct Files {
     json: Option<Sink>,
     csv: Option<Sink>,
-    plot: Option<Sink>,
+    /// Where the picture goes, if one was asked for.
+    pub plot: Option<Sink>,
     /// Whether standard output is one of them.
     printing: bool,
     /// Results that are written already.
@@ -68,17 +69,6 @@ impl Files {
             return Ok(());
         }
         print(table.as_bytes())
-    }
-
-    /// Writes the picture, if one was asked for.
-    ///
-    /// # Errors
-    /// The disk is full.
-    pub fn draw(&mut self, picture: impl FnOnce() -> String) -> Result<()> {
-        if let Some(sink) = self.plot.take() {
-            self.parcel.put(sink, picture().as_bytes())?;
-        }
-        Ok(())
     }
 
     /// Writes all rows, and hands over all files or none.

@@ -1,6 +1,5 @@
 //! `conemarch bench`: the time that pictures take, and their errors.
 
-use anyhow::Result;
 use clap::Subcommand;
 
 pub mod calibrate;
@@ -28,17 +27,4 @@ pub enum Bench {
     Cones(cones::ConesBench),
     /// Propose lipschitz, shell and fudge for a budget of lost pixels
     Calibrate(calibrate::CalibrateBench),
-}
-
-/// Runs a measurement.
-///
-/// # Errors
-/// An unknown preset or field, a device that fails, an unwritable file, an interrupt.
-pub fn run(bench: &Bench) -> Result<()> {
-    match bench {
-        Bench::Error(args) => error::run(args),
-        Bench::Steps(args) => steps::run(args),
-        Bench::Cones(args) => cones::run(args),
-        Bench::Calibrate(args) => calibrate::run(args),
-    }
 }

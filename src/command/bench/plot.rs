@@ -52,10 +52,8 @@ pub fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     });
     let mut best: Vec<&Row> = Vec::new();
     for row in sorted {
-        if best
-            .last()
-            .is_none_or(|b| row.report.wrong() < b.report.wrong())
-        {
+        let beats = |best: &&Row| row.report.wrong() < best.report.wrong();
+        if best.last().is_none_or(beats) {
             best.push(row);
         }
     }

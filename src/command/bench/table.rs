@@ -1,6 +1,6 @@
 //! The tables of measurements.
 
-use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
+use crate::command::bench::cone_rows::{GeneratorRow, SurfaceNote, TracerRow};
 use crate::command::bench::row::Row;
 use crate::command::bench::steps_row::StepsRow;
 use crate::command::table::{Column, table};
@@ -246,7 +246,7 @@ pub fn generators(rows: &[GeneratorRow]) -> String {
         ("wider than exact %", &wider),
     ];
     rows.first().map_or(String::new(), |r| {
-        of_field("Maps of", &r.field, r.size, &r.surface) + &table(rows, &columns)
+        of_field("Maps of", &r.over) + &table(rows, &columns)
     })
 }
 
@@ -265,13 +265,14 @@ pub fn tracers(rows: &[TracerRow]) -> String {
         }),
     ];
     rows.first().map_or(String::new(), |r| {
-        of_field("Tracers over", &r.field, r.size, &r.surface) + &table(rows, &columns)
+        of_field("Tracers over", &r.over) + &table(rows, &columns)
     })
 }
 
 /// The title of a table of a field.
-fn of_field(what: &str, field: &str, [w, h]: [u32; 2], surface: &str) -> String {
-    format!("\n### {what} {field}, {w} x {h}, {surface}\n\n")
+fn of_field(what: &str, over: &SurfaceNote) -> String {
+    let ([w, h], surface) = (over.size, &over.surface);
+    format!("\n### {what} {}, {w} x {h}, {surface}\n\n", over.field)
 }
 
 #[cfg(test)]

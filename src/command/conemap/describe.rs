@@ -185,10 +185,8 @@ fn octaves(ratios: &Sorted, scale: f64) -> Vec<(String, usize)> {
     let (least, most) = (short(bounds[0]), short(bounds[bounds.len() - 1]));
     let between = bounds.windows(2);
     let between = between.map(|pair| format!("{} to {}", short(pair[0]), short(pair[1])));
-    let names = ["0".into(), format!("under {least}")]
-        .into_iter()
-        .chain(between);
-    let names = names.chain([format!("{most} and wider")]);
+    let names = ["0".to_string(), format!("under {least}")].into_iter();
+    let names = names.chain(between).chain([format!("{most} and wider")]);
     let under = bounds.iter().map(|bound| ratios.under(*bound).max(zero));
     let counts: Vec<usize> = [0, zero].into_iter().chain(under).chain([all]).collect();
     let counts = counts.windows(2).map(|pair| pair[1] - pair[0]);

@@ -1,12 +1,11 @@
 //! `conemarch conemap make|inspect|convert`
 
-use anyhow::Result;
 use clap::Subcommand;
 
-mod convert;
+pub mod convert;
 mod describe;
-mod inspect;
-mod make;
+pub mod inspect;
+pub mod make;
 pub mod maker;
 mod options;
 mod panels;
@@ -21,16 +20,4 @@ pub enum ConeMapVerb {
     Inspect(Box<inspect::Inspect>),
     /// Write a cone map in another layout or format
     Convert(Box<convert::Convert>),
-}
-
-/// Runs one.
-///
-/// # Errors
-/// As the verb says.
-pub fn run(verb: &ConeMapVerb) -> Result<()> {
-    match verb {
-        ConeMapVerb::Make(args) => make::run(args),
-        ConeMapVerb::Inspect(args) => inspect::run(args),
-        ConeMapVerb::Convert(args) => convert::run(args),
-    }
 }

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint};
 
-use crate::command::arguments::{self, words};
+use crate::command::arguments::{samples, words};
 use crate::command::failure::usage;
 use crate::command::print::say;
 use crate::command::sink::{Sink, ending, is_stdout};
@@ -17,7 +17,7 @@ use crate::heightfield::conemap::file::{
     Bits, ForeignFormat, Layout, MapFile, MapFormat, RatioScale, Slopes, decode, decode_bytes,
     encode, has_map,
 };
-use crate::heightfield::heights::{MOST_SAMPLES, wrap_name};
+use crate::heightfield::heights::wrap_name;
 use crate::heightfield::load::{LoadOptions, Loaded, load};
 
 /// How heights are read.
@@ -71,14 +71,6 @@ impl Reading {
 fn first_given(options: &[(bool, &'static str)]) -> Option<&'static str> {
     let found = options.iter().find(|(given, _)| *given);
     found.map(|(_, name)| *name)
-}
-
-fn samples(text: &str) -> Result<[u32; 2], String> {
-    let fits = |s: &[u32; 2]| s.iter().all(|n| *n <= MOST_SAMPLES);
-    let read = arguments::size(text).ok().filter(fits);
-    read.ok_or_else(|| {
-        format!("must be columns x rows, each from 1 to {MOST_SAMPLES}, like 512x256")
-    })
 }
 
 /// `none`, `x`, `y` or `xy`.
