@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::base::work::{Step, Work};
 use crate::heightfield::height_surface::HeightSurface;
@@ -28,7 +29,7 @@ pub const SKIPPED_BY: f64 = 1.0;
 const EVEN: f64 = 1.220_744_084_605_759_6;
 
 /// The figures of one tracer over one view. Shares are of all rays, 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TracerStats {
     /// Mean steps of a ray; rounds of refinement are not counted.
     pub steps_mean: f64,
