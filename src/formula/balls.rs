@@ -7,7 +7,7 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, DVec4, Vec4};
 
-use crate::base::key::{Fault, Key, Number};
+use crate::base::key::{Fault, Key, number};
 use crate::base::shader::Module;
 use crate::formula::contract::{Bounds, DistanceEstimate};
 use crate::{settings, wgsl};
@@ -33,9 +33,9 @@ pub struct BallsUniform {
 settings! {
     /// Three balls, two boxes and a vertical rod.
     pub struct Balls {
-        rod_radius: f64 = 0.05, Number(1e-6, 0.5), "radius of the rod";
-        box_size: f64 = 0.7, Number(1e-3, 1.2), "half edge of the larger box";
-        ball_radius: f64 = 1.0, Number(1e-3, 2.5), "radius of the largest ball";
+        rod_radius: f64 = 0.05, number(1e-6, 0.5), "radius of the rod";
+        box_size: f64 = 0.7, number(1e-3, 1.2), "half edge of the larger box";
+        ball_radius: f64 = 1.0, number(1e-3, 2.5), "radius of the largest ball";
     }
 }
 

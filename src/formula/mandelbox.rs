@@ -9,7 +9,8 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3};
 
-use crate::base::key::{AutoNumber, Fault, Key, Number, Switch, Triple, Word};
+use crate::base::key::{Fault, Key, auto_number, number, switch, triple, word};
+use crate::base::named::named_enum;
 use crate::base::shader::Module;
 use crate::formula::contract::{Bounds, DistanceEstimate};
 use crate::formula::rotation::Rotation;
@@ -48,33 +49,30 @@ pub struct MandelboxUniform {
     pub classic_skin: f32,
 }
 
-/// A distance estimate.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Estimate {
-    /// `(|z| - K) / (w + 1/(|s| - 1))`: a lower bound of the limit of `|z|/w`.
-    #[default]
-    Proven,
-    /// `(|z| - |s - 1|)/w - |s|^(1 - N)`: the form of other programs, for comparison. It
-    /// is too large at up to 8 % of points.
-    Classic,
+named_enum! {
+    /// A distance estimate.
+    pub enum Estimate {
+        /// `(|z| - K) / (w + 1/(|s| - 1))`: a lower bound of the limit of `|z|/w`.
+        Proven = "proven",
+        /// `(|z| - |s - 1|)/w - |s|^(1 - N)`: the form of other programs, for comparison. It
+        /// is too large at up to 8 % of points.
+        Classic = "classic",
+    }
 }
-
-const ESTIMATES: &[(&str, Estimate)] =
-    &[("proven", Estimate::Proven), ("classic", Estimate::Classic)];
 
 settings! {
     /// The Mandelbox and its parameters.
     pub struct Mandelbox {
-        scale: f64 = 2.0, Number(-100.0, 100.0), "factor after the folds; its size must be at least 1.001";
-        min_radius: f64 = 0.5, Number(1e-6, 1e3), "inner radius of the ball fold";
-        fixed_radius: f64 = 1.0, Number(1e-6, 1e3), "outer radius of the ball fold";
-        fold_limit: f64 = 1.0, Number(1e-3, 1e3), "half edge of the box fold";
-        rotation: DVec3 = DVec3::ZERO, Triple(-360.0, 360.0),
+        scale: f64 = 2.0, number(-100.0, 100.0), "factor after the folds; its size must be at least 1.001";
+        min_radius: f64 = 0.5, number(1e-6, 1e3), "inner radius of the ball fold";
+        fixed_radius: f64 = 1.0, number(1e-6, 1e3), "outer radius of the ball fold";
+        fold_limit: f64 = 1.0, number(1e-3, 1e3), "half edge of the box fold";
+        rotation: DVec3 = DVec3::ZERO, triple(-360.0, 360.0),
             "degrees about x, y, z between folds and scale";
-        julia: bool = false, Switch(), "add a constant instead of the starting point";
-        julia_constant: DVec3 = DVec3::ZERO, Triple(-1e3, 1e3), "that constant";
-        estimate: Estimate = Estimate::Proven, Word(ESTIMATES), "which distance estimate";
-        lipschitz: Option<f64> = None, AutoNumber(0.05, 100.0),
+        julia: bool = false, switch(), "add a constant instead of the starting point";
+        julia_constant: DVec3 = DVec3::ZERO, triple(-1e3, 1e3), "that constant";
+        estimate: Estimate = Estimate::Proven, word(&Estimate::WORDS), "which distance estimate";
+        lipschitz: Option<f64> = None, auto_number(0.05, 100.0),
             "steps divide by it; auto is the formula's own";
     }
 }
@@ -138,20 +136,17 @@ impl DistanceEstimate for Mandelbox {
     }
 
     fn check(&self) -> Result<(), Fault> {
-        // Below this the bounds exceed 4000 fold limits: too large for f32.
-        if self.scale.abs() < 1.001 {
-            return Err(Fault::new(
-                "scene.scale",
-                "the size of a Mandelbox's scale must be at least 1.001; 2 and -1.5 are classics",
-            ));
-        }
-        if self.min_radius > self.fixed_radius {
-            return Err(Fault::new(
-                "scene.min_radius",
-                format!("it must not exceed fixed_radius, {}", self.fixed_radius),
-            ));
-        }
-        Ok(())
+        Fault::unless(
+            // Below this the bounds exceed 4000 fold limits: too large for f32.
+            self.scale.abs() >= 1.001,
+            "scene.scale",
+            "the size of a Mandelbox's scale must be at least 1.001; 2 and -1.5 are classics",
+        )?;
+        Fault::unless(
+            self.min_radius <= self.fixed_radius,
+            "scene.min_radius",
+            format!("it must not exceed fixed_radius, {}", self.fixed_radius),
+        )
     }
 
     fn modules(&self) -> Vec<Module> {

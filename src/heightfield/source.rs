@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::base::key::{Fault, Key, Switch, Text, Word};
+use crate::base::key::{Fault, Key, switch, text, word};
 use crate::heightfield::load::{LoadOptions, Loaded, PatternSpec, load};
 use crate::keys;
 
@@ -80,13 +80,13 @@ impl Source {
     /// Its keys in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
-            "field" = Text(&mut self.field),
+            "field" = text(&mut self.field),
                 "a pattern like fbm:512x512,seed=7,power=2.6, or a file of heights";
-            "invert" = Switch(&mut self.invert),
+            "invert" = switch(&mut self.invert),
                 "whether the numbers are depths";
-            "normalize" = Switch(&mut self.normalize),
+            "normalize" = switch(&mut self.normalize),
                 "whether to stretch the heights to the range from 0 to 1";
-            "wrap" = Word(&mut self.wrap, Wrap::WORDS),
+            "wrap" = word(&mut self.wrap, Wrap::WORDS),
                 "axes along which the map repeats";
         ]
     }

@@ -14,7 +14,7 @@ pub mod pyramid;
 
 use std::borrow::Cow;
 
-use crate::base::key::{Fault, Key, Size};
+use crate::base::key::{Fault, Key, size};
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::heightfield::tracer::settings::PrepareError;
@@ -72,7 +72,7 @@ impl Plan {
             "march" => self.march.keys(),
             "look" => self.look.keys(),
             "image" => keys![
-                "size" = Size(&mut self.size, MOST_PIXELS), "width and height in pixels";
+                "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
             ],
             _ => return None,
         })

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use toml::Value;
 
-use crate::base::key::{Fault, Key, Slot, Text};
+use crate::base::key::{Fault, Key, Slot, text};
 use crate::formula::Formula;
 use crate::plan::Plan;
 use crate::preset::document::{
@@ -185,7 +185,7 @@ impl Reader<'_> {
     /// Puts one entry into the plan.
     fn put(&self, plan: &mut Plan, entry: &Entry) -> Result<(), PresetError> {
         if entry.section.is_empty() {
-            let set = Text(&mut plan.title).set(&entry.value);
+            let set = text(&mut plan.title).set(&entry.value);
             return set.map_err(|why| self.value(entry, &format!("must be {why}")));
         }
         let (kind, formula) = (plan.scene.kind(), plan.scene.formula());

@@ -2,7 +2,7 @@
 
 use super::distance::Distance;
 use super::{AnySolid, Assets, Scene, SceneSettings, Viewpoint};
-use crate::base::key::{AutoCount, Fault, Key};
+use crate::base::key::{Fault, Key, auto_count};
 use crate::formula::Formula;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::keys;
@@ -77,7 +77,7 @@ impl SceneSettings for DistanceSettings {
     fn keys(&mut self) -> Vec<Key<'_>> {
         let mut keys = self.formula.keys();
         keys.extend(keys![
-            "iterations" = AutoCount(&mut self.iterations, 1, MOST_ITERATIONS),
+            "iterations" = auto_count(&mut self.iterations, 1, MOST_ITERATIONS),
                 "iteration limit; auto is as many as the finest footprint needs, up to 1000";
         ]);
         keys

@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::base::cone::ConeRule;
-use crate::base::key::{Fault, Key, Number, Triple};
+use crate::base::key::{Fault, Key, number, triple};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
@@ -41,9 +41,9 @@ pub struct SlabUniform {
 settings! {
     /// The settings of a slab about the origin.
     pub struct SlabSettings {
-        normal: DVec3 = DVec3::Z, Triple(-1e6, 1e6), "direction of the planes' normal";
-        half: f64 = 0.5, Number(1e-6, 1e6), "half the thickness";
-        radius: f64 = 6.0, Number(1e-6, 1e6), "radius of the disc";
+        normal: DVec3 = DVec3::Z, triple(-1e6, 1e6), "direction of the planes' normal";
+        half: f64 = 0.5, number(1e-6, 1e6), "half the thickness";
+        radius: f64 = 6.0, number(1e-6, 1e6), "radius of the disc";
     }
 }
 
@@ -58,13 +58,11 @@ impl SceneSettings for SlabSettings {
 
     /// Checks that the normal is a direction.
     fn check(&self) -> Result<(), Fault> {
-        if self.normal.length() < 1e-9 {
-            return Err(Fault::new(
-                "scene.normal",
-                "the normal must not be zero; try [0, 0, 1]",
-            ));
-        }
-        Ok(())
+        Fault::unless(
+            self.normal.length() >= 1e-9,
+            "scene.normal",
+            "the normal must not be zero; try [0, 0, 1]",
+        )
     }
 
     fn solid(&self, from: &Viewpoint, _: &Assets) -> Result<AnySolid, PrepareError> {
