@@ -18,7 +18,7 @@ use crate::gpu::RenderError;
 use crate::picture::frame::Frame;
 use crate::picture::{BitDepth, Folder, Layer, Place, Shades, write_png};
 use crate::plan::Plan;
-use crate::plan::march::MODES;
+use crate::plan::march::Mode;
 use crate::preset;
 use crate::scene::Assets;
 
@@ -75,11 +75,10 @@ fn modes(name: Option<&str>) -> Result<Vec<Setting>> {
     let Some(name) = name else {
         return Ok(baselines());
     };
-    if let Some((_, mode)) = MODES.iter().find(|(known, _)| *known == name) {
-        return Ok(vec![Setting::of(*mode)]);
+    if let Some(mode) = Mode::named(name) {
+        return Ok(vec![Setting::of(mode)]);
     }
-    let names: Vec<&str> = MODES.iter().map(|(known, _)| *known).collect();
-    let names = names.join(", ");
+    let names = Mode::ALL.map(Mode::name).join(", ");
     Err(usage(format!(
         "there is no mode `{name}`; the modes are {names}"
     )))

@@ -130,17 +130,6 @@ named_enum! {
 }
 
 impl TracerKind {
-    /// Every tracer with its word.
-    pub const WORDS: [(&str, Self); Self::ALL.len()] = {
-        let mut words = [("", Self::Walk); Self::ALL.len()];
-        let mut i = 0;
-        while i < words.len() {
-            words[i] = (Self::ALL[i].name(), Self::ALL[i]);
-            i += 1;
-        }
-        words
-    };
-
     /// Whether it needs a cone map.
     pub fn needs_map(self) -> bool {
         !self.facts().kinds.is_empty()
