@@ -84,12 +84,8 @@ pub struct Render {
 }
 
 fn layers() -> impl TypedValueParser<Value = Layer> {
-    let values = Layer::ALL.iter();
-    let values = values.map(|(word, _, help)| PossibleValue::new(word).help(help));
-    PossibleValuesParser::new(values).map(|word| {
-        let found = Layer::ALL.iter().find(|(known, _, _)| *known == word);
-        found.map_or(Layer::Color, |(_, layer, _)| *layer)
-    })
+    let values = Layer::ALL.map(|layer| PossibleValue::new(layer.name()).help(layer.facts()));
+    PossibleValuesParser::new(values).map(|word| Layer::named(&word).unwrap_or_default())
 }
 
 fn depths() -> impl TypedValueParser<Value = BitDepth> {

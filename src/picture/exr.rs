@@ -57,11 +57,10 @@ pub fn write_exr(
     drop(position);
     channel("A", vec![1.0; frame.depth.len()]);
     let forward = (plan.camera.target - plan.camera.eye).normalize();
-    let width = frame.size[0] as usize;
     let depths = frame.depth.iter().enumerate();
     let planar = depths.map(|(i, t)| {
-        let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
-        finite((f64::from(*t) * ray.axis.dot(forward)) as f32)
+        let slant = frame.ray(&view, i).axis.dot(forward);
+        finite((f64::from(*t) * slant) as f32)
     });
     channel("Z", planar.collect());
     channel("depth.Z", frame.depth.iter().copied().map(finite).collect());
