@@ -14,7 +14,7 @@ pub mod pyramid;
 
 use std::borrow::Cow;
 
-use crate::base::key::{Fault, Key, size};
+use crate::base::key::{Fault, Key, size, text};
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::heightfield::tracer::settings::PrepareError;
@@ -63,10 +63,12 @@ impl Plan {
         }
     }
 
-    /// The keys of a section; `None` if there is no such section. `scene.kind` and
-    /// `scene.formula` are not among them: they choose the [`Scene`].
+    /// The keys of a section, or with an empty name those above all sections; `None` if there is
+    /// no such section. `scene.kind` and `scene.formula` are not among them: they choose the
+    /// [`Scene`].
     pub fn keys(&mut self, section: &str) -> Option<Vec<Key<'_>>> {
         Some(match section {
+            "" => keys!["title" = text(&mut self.title), "a line for people";],
             "scene" => self.scene.keys(),
             "camera" => self.camera.keys(),
             "march" => self.march.keys(),

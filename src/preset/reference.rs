@@ -2,8 +2,9 @@
 //! presets are read by, so that it names exactly the keys that exist.
 
 use std::fmt::Write as _;
+use std::iter;
 
-use crate::base::key::{self, Key};
+use crate::base::key::Key;
 use crate::plan::Plan;
 use crate::preset::document::SECTIONS;
 use crate::scene::Scene;
@@ -31,26 +32,21 @@ in error.
 /// The reference of all keys, section by section, as Markdown.
 pub fn reference() -> String {
     let mut text = HEAD.to_string();
-    let mut title = String::new();
-    let top = vec![Key::new(
-        "title",
-        key::text(&mut title),
-        "a line for people",
-    )];
-    table(&mut text, "Above all sections", top);
-    for section in SECTIONS {
+    for section in iter::once("").chain(SECTIONS) {
         for scene in Scene::all() {
             let (kind, formula) = (scene.kind(), scene.formula());
+            let chosen = formula.map_or(String::new(), |f| format!(", `formula = \"{f}\"`"));
+            let head = match section {
+                "" => "Above all sections".into(),
+                "scene" => format!("`[scene]` with `kind = \"{kind}\"`{chosen}"),
+                _ => format!("`[{section}]`"),
+            };
             let mut plan = Plan::new(scene);
-            let keys = plan.keys(section).unwrap_or_default();
+            table(&mut text, &head, plan.keys(section).unwrap_or_default());
             if section != "scene" {
                 // The same for every scene.
-                table(&mut text, &format!("`[{section}]`"), keys);
                 break;
             }
-            let chosen = formula.map_or(String::new(), |f| format!(", `formula = \"{f}\"`"));
-            let head = format!("`[scene]` with `kind = \"{kind}\"`{chosen}");
-            table(&mut text, &head, keys);
         }
     }
     text.truncate(text.trim_end().len());
