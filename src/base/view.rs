@@ -10,9 +10,6 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
-use crate::base::shader::Module;
-use crate::wgsl;
-
 /// The view as WGSL reads it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -42,11 +39,6 @@ pub struct ViewUniform {
 /// More than the rounding error of a chord in f32: two unit vectors are each off by up to
 /// about 1.5 * 2^-24 along a component.
 pub const CHORD_SLACK: f64 = 4e-7;
-
-/// The WGSL module of the view.
-pub fn module() -> Module {
-    wgsl!("base/view.wgsl")
-}
 
 /// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint
 /// is `grain0 + grain t`.

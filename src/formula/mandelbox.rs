@@ -252,31 +252,31 @@ impl DistanceEstimate for Mandelbox {
             let c = self.julia_constant.abs();
             let k = self.k(c.length());
             let unturned = (DVec3::splat(2.0 * l * s.abs()) + c) * self.tail();
-            let half = if rotated { DVec3::splat(k) } else { unturned };
-            (half, half.length().min(k))
+            (if rotated { DVec3::splat(k) } else { unturned }, k)
         } else if rotated {
             let radius = TWO_SQRT_3 * l * (s.abs() + 1.0) * self.tail();
             (DVec3::splat(radius), radius)
         } else if s > 0.0 {
-            return Bounds::cuboid(DVec3::splat(2.0 * l * (s + 1.0) * self.tail()));
+            let edge = 2.0 * l * (s + 1.0) * self.tail();
+            (DVec3::splat(edge), f64::INFINITY)
         } else {
-            return Bounds::cuboid(DVec3::splat(2.0 * l));
+            (DVec3::splat(2.0 * l), f64::INFINITY)
         };
         Bounds {
             centre: DVec3::ZERO,
             half,
-            radius,
+            radius: half.length().min(radius),
         }
     }
 
     fn iterations(&self, eps: f64) -> u32 {
         let s = self.scale.abs();
         let c = self.largest_c();
+        let skin = TWO_SQRT_3 * self.fold_limit * s + 2.0 * c;
         let n = if self.julia {
-            let skin = (TWO_SQRT_3 * self.fold_limit * s + 2.0 * c) * self.tail();
-            (skin / eps).ln() / s.ln()
+            (skin * self.tail() / eps).ln() / s.ln()
         } else {
-            (1.0 + (TWO_SQRT_3 * self.fold_limit * s + 2.0 * c) / eps).ln() / s.ln() - 1.0
+            (1.0 + skin / eps).ln() / s.ln() - 1.0
         };
         #[allow(
             clippy::cast_possible_truncation,
@@ -307,56 +307,37 @@ fn slope(scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::iter;
 
-    /// A linear congruential generator of numbers from 0 to 1.
-    struct Random(u64);
-
-    impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005);
-            self.0 = self.0.wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-        }
-        fn point(&mut self) -> DVec3 {
-            DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0
-        }
+    /// A point of the cube from -1 to 1: they fill it evenly.
+    fn point(i: u32) -> DVec3 {
+        let steps = DVec3::new(0.819_172_513, 0.671_043_607, 0.549_700_478);
+        (f64::from(i) * steps).fract() * 2.0 - 1.0
     }
 
     /// The largest share of a ball's radius by which a ray from its centre meets the surface
-    /// inside the ball, over random points and rays.
+    /// inside the ball, over many points and rays.
     fn worst_ball(shape: &Mandelbox, lipschitz: f64) -> f64 {
-        let mut random = Random(7);
         let size = shape.bounds().half.x;
         let skin = 1e-4 * size;
         let most = shape.iterations(skin);
+        let estimate = |p: DVec3| shape.estimate(p, most).0;
         let mut worst = 0.0_f64;
-        for _ in 0..4000 {
-            let mut p = random.point() * size;
-            let mut d = shape.estimate(p, most).0 / lipschitz;
-            // Come closer to the surface, where folds are dense, in a random direction.
-            let towards = random.point().normalize_or_zero();
-            for _ in 0..8 {
-                let q = p + 0.9 * d * towards;
-                let e = shape.estimate(q, most).0 / lipschitz;
-                if e < 10.0 * skin {
-                    break;
-                }
-                (p, d) = (q, e);
-            }
-            if d < 10.0 * skin {
+        for i in 0..4000 {
+            // Come closer to the surface, where folds are dense, in some direction.
+            let towards = point(7919 * i).normalize_or_zero();
+            let closer = |p: &DVec3| Some(p + 0.9 * estimate(*p) / lipschitz * towards);
+            let path = iter::successors(Some(point(i) * size), closer).take(9);
+            let balls = path.map(|p| (p, estimate(p) / lipschitz));
+            let Some((p, d)) = balls.take_while(|(_, d)| *d > 10.0 * skin).last() else {
                 continue;
-            }
-            for _ in 0..4 {
-                let u = random.point().normalize_or_zero();
-                let mut t = 0.0;
-                while t < d {
-                    let e = shape.estimate(p + t * u, most).0;
-                    if e < skin {
-                        worst = worst.max((d - t) / d);
-                        break;
-                    }
-                    t += 0.1 * e;
-                }
+            };
+            for j in 0..4 {
+                let u = point(104_729 * (4 * i + j)).normalize_or_zero();
+                let along = |t: &f64| Some(t + 0.1 * estimate(p + t * u));
+                let mut way = iter::successors(Some(0.0), along).take_while(|t| *t < d);
+                let met = way.find(|t| estimate(p + t * u) < skin);
+                worst = worst.max(met.map_or(0.0, |t| (d - t) / d));
             }
         }
         worst

@@ -155,7 +155,7 @@ pub fn calibrate(
             break;
         }
     }
-    let levels = best.pyramid().levels.len();
+    let levels = best.levels().len();
     let mut fudge = vec![1.0; levels];
     let exact = lost(&best, PROBING)?;
     for level in 0..levels {
@@ -243,7 +243,7 @@ impl Task for Lost<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
-        let levels = self.plan.pyramid().levels;
+        let levels = self.plan.levels();
         let limit = self.limit;
         let one = |probe: &&Probe| {
             let Some(hit) = probe.hit else { return false };

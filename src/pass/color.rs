@@ -3,24 +3,12 @@
 
 use glam::DVec3;
 
-use crate::base::shader::Module;
 use crate::base::view::{Beam, footprint};
 use crate::base::work::State;
 use crate::pass::look::Light;
 use crate::pass::shadow::{self, Shadow};
 use crate::pass::{fog, occlusion};
 use crate::scene::{Hit, Solid, Surface};
-use crate::wgsl;
-
-/// The WGSL module of the pass. `keeps_normals` writes normals out; `colored` takes pigments
-/// as colours instead of looking the palette up.
-pub fn module(keeps_normals: bool, colored: bool) -> Module {
-    wgsl!(
-        "pass/color.wgsl",
-        "COLOR_KEEPS_NORMALS" = f64::from(u8::from(keeps_normals)),
-        "COLOR_IS_PIGMENT" = f64::from(u8::from(colored))
-    )
-}
 
 /// Radiance that leaves a surface towards the eye, and whether the shadow ray reached its end.
 /// `q` is the hit relative to the eye, `grain` half a pixel's width there.

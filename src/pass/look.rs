@@ -7,13 +7,11 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
 
-use crate::base::shader::Module;
 use crate::base::srgb::linear;
 use crate::pass::LookFeature;
 use crate::plan::Plan;
 use crate::plan::look::{Look, MOST_STOPS, SHADOW_STEPS};
 use crate::scene::{Assets, MOST_SHADOW_STEPS};
-use crate::wgsl;
 
 /// The look as WGSL reads it.
 #[repr(C)]
@@ -55,11 +53,6 @@ pub struct LookUniform {
     pub pad: [u32; 2],
     /// The palette's colours, linear.
     pub palette: [Vec4; MOST_STOPS],
-}
-
-/// The WGSL module of the look.
-pub fn module() -> Module {
-    wgsl!("pass/look.wgsl")
 }
 
 /// A [`Look`] in the numbers that passes use.

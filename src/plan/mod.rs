@@ -23,7 +23,7 @@ use crate::scene::{AnySolid, Assets, Scene, Viewpoint};
 use camera::Camera;
 use look::Look;
 use march::Marching;
-use pyramid::{Level, Pyramid};
+use pyramid::Level;
 
 /// The largest width and height of an image.
 pub const MOST_PIXELS: u32 = 65_536;
@@ -96,9 +96,14 @@ impl Plan {
         self.camera.view(self.size)
     }
 
-    /// The cone levels.
-    pub fn pyramid(&self) -> Pyramid {
-        self.march.pyramid()
+    /// The cone levels, coarsest first; none in modes without cones.
+    pub fn levels(&self) -> Vec<Level> {
+        self.march.levels()
+    }
+
+    /// The divisor of the first cone level; 1 without levels.
+    pub fn coarsest(&self) -> u32 {
+        self.levels().first().map_or(1, |level| level.divisor)
     }
 
     /// The eye, the finest pixel and the steps of the plan.
@@ -132,7 +137,7 @@ impl Plan {
     /// The passes of a frame, in order. [`Pass::Prepare`] is not among them: it runs once for
     /// many frames.
     pub fn passes(&self, extras: Extras) -> Vec<Pass> {
-        let levels = self.pyramid().levels.into_iter().map(Pass::March);
+        let levels = self.levels().into_iter().map(Pass::March);
         let colours = (!extras.depth_only).then_some(Pass::Color);
         levels.chain([Pass::Trace]).chain(colours).collect()
     }

@@ -13,7 +13,7 @@ use crate::base::view::Beam;
 use crate::base::work::Work;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use crate::scene::{AnySolid, Assets, MOST_SHADOW_STEPS, SceneSettings, Viewpoint};
+use crate::scene::{AnySolid, Assets, SceneSettings, Viewpoint};
 use crate::{settings, wgsl};
 
 /// The slab as WGSL reads it.
@@ -68,10 +68,6 @@ impl SceneSettings for SlabSettings {
     fn solid(&self, from: &Viewpoint, _: &Assets) -> Result<AnySolid, PrepareError> {
         let slab = Slab::new(self, from.eye, from.stepping.rule);
         Ok(AnySolid::Slab(slab))
-    }
-
-    fn most_shadow_steps(&self) -> u32 {
-        MOST_SHADOW_STEPS
     }
 }
 
@@ -179,10 +175,8 @@ impl Solid for Slab {
         let (z, dz) = (p.dot(self.normal), ray.axis.dot(self.normal));
         let (s, ds) = (self.along(p), self.along(ray.axis));
         // The distance and the face of the hit.
-        let mut hit = None;
-        if self.slab_distance(ray.at(front)) <= 0.0 {
-            hit = Some((front, 0));
-        }
+        let inside = self.slab_distance(ray.at(front)) <= 0.0;
+        let mut hit = inside.then_some((front, 0));
         if hit.is_none() && z.abs() > self.half && dz.abs() > 1e-12 {
             let t = (self.half.copysign(z) - z) / dz;
             if t >= front && (s + t * ds).length() <= self.radius {
@@ -217,11 +211,10 @@ impl Solid for Slab {
     }
 
     fn walk_hit(&self, walk: &Walk) -> Hit {
-        let at = Hit {
+        Hit {
             t: walk.t,
-            ..Hit::default()
-        };
-        walk.hit.map_or(at, |hit| Hit { t: walk.t, ..hit })
+            ..walk.hit.unwrap_or_default()
+        }
     }
 
     fn walk_radius(&self, _ray: &Beam, _walk: &Walk) -> f64 {
