@@ -70,15 +70,12 @@ pub fn write_exr(
         channel("steps.Y", frame.steps());
     }
     let size = (frame.size[0] as usize, frame.size[1] as usize);
-    let mut attributes = LayerAttributes {
-        software_name: Some(SOFTWARE.into()),
-        ..LayerAttributes::default()
-    };
+    let mut attributes = LayerAttributes::default();
+    attributes.software_name = Some(SOFTWARE.into());
     // The maps of further attributes are written in no certain order: one in each.
     let text = |text: &str| AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes()));
-    attributes
-        .other
-        .insert("conemarch preset".into(), text(preset));
+    let other = &mut attributes.other;
+    other.insert("conemarch preset".into(), text(preset));
     // Lines in their order, so that threads that end in any order give the same bytes.
     let encoding = Encoding {
         blocks: Blocks::ScanLines,
@@ -88,11 +85,8 @@ pub fn write_exr(
     let layer = exr::prelude::Layer::new(size, attributes, encoding, AnyChannels::sort(list));
     let mut image = Image::from_layer(layer);
     image.attributes.chromaticities = Some(SRGB);
-    let camera = text(&camera(plan));
-    image
-        .attributes
-        .other
-        .insert("conemarch camera".into(), camera);
+    let other = &mut image.attributes.other;
+    other.insert("conemarch camera".into(), text(&camera(plan)));
     let written = image.write().to_buffered(to);
     written.map_err(|e| OutputError::encode("EXR", e))
 }

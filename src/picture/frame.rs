@@ -207,31 +207,3 @@ pub fn errors(frame: &Frame, reference: &Frame, view: &View) -> Vec<f64> {
     };
     (0..frame.state.len()).map(error).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plan::camera::Camera;
-    use glam::DVec3;
-
-    #[test]
-    fn positions_lie_on_the_rays() {
-        let camera = Camera {
-            eye: DVec3::new(1.0, -2.0, 3.0),
-            ..Camera::default()
-        };
-        let view = camera.view([3, 1]);
-        let frame = Frame {
-            size: [3, 1],
-            depth: vec![2.0, 4.0, f32::INFINITY],
-            ..Frame::default()
-        };
-        let found = frame.positions(&view);
-        for (x, t) in [(0, 2.0), (1, 4.0)] {
-            let want = camera.eye + t * view.view_ray([x, 0]).axis;
-            let got = DVec3::from_array(found[x as usize].map(f64::from));
-            assert!((got - want).length() < 1e-6, "{got} {want}");
-        }
-        assert_eq!(found[2], [0.0; 3]);
-    }
-}

@@ -21,6 +21,7 @@ use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 
 use crate::base::key::Fault;
+use crate::formula::Formula;
 pub use crate::heightfield::assets::Assets;
 use crate::heightfield::assets::Preparation;
 use crate::heightfield::settings::HeightfieldSettings;
@@ -101,7 +102,7 @@ scenes![
 impl Scene {
     /// Every scene with its defaults: each formula, and each other kind.
     pub fn all() -> Vec<Self> {
-        let formulas = DistanceSettings::all().into_iter().map(Self::Distance);
+        let formulas = Formula::all().into_iter().map(Self::from);
         let others = [
             HeightfieldSettings::default().into(),
             SlabSettings::default().into(),
