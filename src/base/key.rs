@@ -154,7 +154,6 @@ impl Fault {
 
 /// The number in a TOML value, if it is in a closed range. An integer is also a number.
 pub fn number_in(value: &Value, low: f64, high: f64) -> Option<f64> {
-    #[allow(clippy::cast_precision_loss, reason = "settings are small")]
     let number = value.as_float().or(value.as_integer().map(|i| i as f64));
     number.filter(|x| (low..=high).contains(x))
 }

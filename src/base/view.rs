@@ -116,7 +116,6 @@ impl View {
     pub fn uniform(&self, origin: [u32; 2], block: [u32; 2]) -> ViewUniform {
         ViewUniform {
             right: self.right.as_vec3(),
-            #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
             pixel: self.pixel as f32,
             up: self.up.as_vec3(),
             slack: CHORD_SLACK as f32,

@@ -161,7 +161,6 @@ impl DistanceEstimate for Mandelbox {
         ]
     }
 
-    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     fn uniforms(&self, iterations: u32) -> Vec<(&'static str, Vec<u8>)> {
         let (min2, fixed2) = self.radii2();
         let folds = MandelboxUniform {
@@ -278,13 +277,7 @@ impl DistanceEstimate for Mandelbox {
         } else {
             (1.0 + skin / eps).ln() / s.ln() - 1.0
         };
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "clamped"
-        )]
-        let n = n.ceil().clamp(2.0, 1e6) as u32;
-        n
+        n.ceil().clamp(2.0, 1e6) as u32
     }
 }
 

@@ -99,7 +99,6 @@ impl Light {
     }
 
     /// The values of the WGSL struct.
-    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     pub fn uniform(&self) -> LookUniform {
         let look = &self.look;
         let mut palette = [Vec4::W; MOST_STOPS];

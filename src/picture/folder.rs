@@ -54,26 +54,3 @@ impl Drop for Folder {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_was_made_goes_unless_something_lies_in_it() {
-        let base = std::env::temp_dir().join(format!("conemarch-folder-{}", std::process::id()));
-        let inner = base.join("one/two");
-        drop(Folder::prepare(&inner).expect("can be made"));
-        assert!(!base.exists());
-        let folder = Folder::prepare(&inner).expect("can be made");
-        fs::write(base.join("one/file"), "kept").expect("can be written");
-        drop(folder);
-        assert!(!inner.exists() && base.join("one/file").exists());
-        // What was there before stays, though it is empty.
-        fs::create_dir(&inner).expect("can be made");
-        drop(Folder::prepare(&inner).expect("is there"));
-        assert!(inner.is_dir());
-        assert!(Folder::prepare(&base.join("one/file")).is_err());
-        fs::remove_dir_all(base).expect("can be removed");
-    }
-}

@@ -148,7 +148,6 @@ impl Frame {
             sum.1 += pass.iterations?;
         }
         let n = self.state.len().max(1);
-        #[allow(clippy::cast_precision_loss, reason = "a ratio for reading")]
         Some((sum.0 as f64 / n as f64, sum.1 as f64 / n as f64))
     }
 
@@ -162,9 +161,7 @@ impl Frame {
                 let cell = (y / d) * level.cells[0] as usize + x / d;
                 level.work.get(cell).map(|w| w.evaluations)
             });
-            #[allow(clippy::cast_precision_loss, reason = "counts are small")]
-            let sum = (work.evaluations + above.sum::<u32>()) as f32;
-            sum
+            (work.evaluations + above.sum::<u32>()) as f32
         };
         self.work.iter().enumerate().map(of).collect()
     }

@@ -160,11 +160,6 @@ impl Marching {
         match self.budget() {
             Some([_, ray]) => ray,
             // Shorter steps need more of them to come as far.
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "clamped"
-            )]
             None if self.mode == Mode::Truth => {
                 (f64::from(steps) * 16.0 / self.stride()).min(1e6) as u32
             }

@@ -207,7 +207,6 @@ impl Twin for Heightfield {
         all
     }
 
-    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {
         let [row_x, row_y, row_z] = self.made.placement.rows().map(|r| r.as_vec3());
         let scene = HeightfieldUniform {

@@ -124,7 +124,6 @@ impl Twin for Slab {
         ]
     }
 
-    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {
         let slab = SlabUniform {
             eye: self.eye.as_vec3(),
