@@ -120,11 +120,10 @@ impl View {
             up: self.up.as_vec3(),
             slack: CHORD_SLACK as f32,
             forward: self.forward.as_vec3(),
-            pad: 0.0,
             size: self.size,
             block_origin: origin,
             block_size: block,
-            pad2: [0; 2],
+            ..Zeroable::zeroed()
         }
     }
 

@@ -227,10 +227,7 @@ mod tests {
     use crate::formula::Formula;
 
     fn plan() -> Plan {
-        let shape = Formula::all().remove(0);
-        let mut plan = Plan::new(shape);
-        plan.size = [3, 1];
-        plan
+        Plan::new(Formula::all().remove(0))
     }
 
     #[test]

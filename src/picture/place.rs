@@ -107,8 +107,10 @@ impl Place {
     /// The disk is full.
     pub fn write_all(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         let shown = self.shown.clone();
-        let fail = |e: io::Error| OutputError::full(&shown, &e);
-        self.write(|to| to.write_all(bytes).map_err(fail))
+        self.write(|to| {
+            to.write_all(bytes)
+                .map_err(|e| OutputError::full(&shown, &e))
+        })
     }
 }
 

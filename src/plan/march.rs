@@ -175,14 +175,11 @@ impl Marching {
     /// What the scene needs to know to take its steps.
     pub fn stepping(&self) -> Stepping {
         let facts = self.mode.facts();
+        let relaxation = facts.relaxed.then_some(self.relaxation);
         Stepping {
             detail: self.detail,
             shell: if facts.shell { self.shell } else { 0.0 },
-            relaxation: if facts.relaxed {
-                self.relaxation
-            } else {
-                Relaxation::Off
-            },
+            relaxation: relaxation.unwrap_or(Relaxation::Off),
             stride: self.stride(),
             clip: self.clip.unwrap_or(facts.cones.is_some()),
             rule: facts.cones.unwrap_or_default(),

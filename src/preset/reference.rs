@@ -49,9 +49,7 @@ pub fn reference() -> String {
             }
         }
     }
-    text.truncate(text.trim_end().len());
-    text.push('\n');
-    text
+    format!("{}\n", text.trim_end())
 }
 
 /// Every `section.key` that `--set` takes, with its help.
@@ -63,8 +61,7 @@ pub fn keys() -> Vec<(String, &'static str)> {
     ];
     let mut all = first.map(|(path, help)| (path.to_string(), help)).to_vec();
     for section in SECTIONS {
-        for scene in Scene::all() {
-            let mut plan = Plan::new(scene);
+        for mut plan in Scene::all().into_iter().map(Plan::new) {
             for key in plan.keys(section).unwrap_or_default() {
                 let path = format!("{section}.{}", key.name);
                 if all.iter().all(|(known, _)| *known != path) {
@@ -82,13 +79,9 @@ fn table(text: &mut String, head: &str, keys: Vec<Key<'_>>) {
     let _ = writeln!(text, "## {head}\n");
     text.push_str("| key | what it is | what it takes | default |\n|---|---|---|---|\n");
     for key in keys {
-        let (takes, default) = (key.slot.expects(), key.slot.get());
-        let cells = [key.help, &takes].map(|cell| cell.replace('|', "\\|"));
-        let _ = writeln!(
-            text,
-            "| `{}` | {} | {} | `{default}` |",
-            key.name, cells[0], cells[1]
-        );
+        let (name, takes, default) = (key.name, key.slot.expects(), key.slot.get());
+        let [help, takes] = [key.help, &takes].map(|cell| cell.replace('|', "\\|"));
+        let _ = writeln!(text, "| `{name}` | {help} | {takes} | `{default}` |");
     }
     text.push('\n');
 }

@@ -14,10 +14,8 @@ use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
 use crate::heightfield::assets::{Assets, Ready};
-
 use crate::heightfield::heights::Patches;
 use crate::heightfield::paint::Colors;
-
 use crate::heightfield::region_max::{self, region_max};
 use crate::heightfield::settings::HeightfieldSettings;
 use crate::heightfield::tracer::grid::{FAR, FLAT};
@@ -241,26 +239,21 @@ impl Solid for Heightfield {
     type Walk = Trace;
 
     fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance {
+        let free_to = |front| Advance { front, going: true };
         let ray = self.local(cone);
         let here = ray.at(front);
         let away = self.made.placement.distance(here) - cone.r0;
         // Far outside the block, the distance to it is enough.
         let carried = self.rule.cone_front(front, front, away, cone.k);
         if away > 0.0 && carried - front > 0.5 * away {
-            return Advance {
-                front: carried,
-                going: true,
-            };
+            return free_to(carried);
         }
         let thick = cone.r0 + cone.k * front;
         let mut length = self.far * 1.0001 - front;
         for _ in 0..HEIGHTFIELD_HALVINGS {
             let end = front + length;
             if self.sweep_is_free(here, ray.at(end), cone.r0 + cone.k * end, work) {
-                return Advance {
-                    front: end,
-                    going: true,
-                };
+                return free_to(end);
             }
             length *= 0.5;
             // The four thinner children gain more.
