@@ -70,18 +70,20 @@ pub fn write_exr(
         channel("steps.Y", frame.steps());
     }
     let size = (frame.size[0] as usize, frame.size[1] as usize);
-    let mut attributes = LayerAttributes::default();
-    attributes.software_name = Some(SOFTWARE.into());
-    // The maps of further attributes are written in no certain order: one in each.
-    let text = |text: &str| AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes()));
-    let other = &mut attributes.other;
-    other.insert("conemarch preset".into(), text(preset));
     // Lines in their order, so that threads that end in any order give the same bytes.
     let encoding = Encoding {
         blocks: Blocks::ScanLines,
         line_order: LineOrder::Increasing,
         ..Encoding::SMALL_FAST_LOSSLESS
     };
+    let text = |text: &str| AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes()));
+    // The maps of further attributes are written in no certain order: one in each.
+    let mut attributes = LayerAttributes {
+        software_name: Some(SOFTWARE.into()),
+        ..LayerAttributes::default()
+    };
+    let other = &mut attributes.other;
+    other.insert("conemarch preset".into(), text(preset));
     let layer = exr::prelude::Layer::new(size, attributes, encoding, AnyChannels::sort(list));
     let mut image = Image::from_layer(layer);
     image.attributes.chromaticities = Some(SRGB);
@@ -99,8 +101,6 @@ fn finite(t: f32) -> f32 {
 fn camera(plan: &Plan) -> String {
     let mut camera = plan.camera.clone();
     let keys = camera.keys().into_iter();
-    let lines: Vec<String> = keys
-        .map(|k| format!("{} = {}", k.name, k.slot.get()))
-        .collect();
-    lines.join("\n")
+    let lines = keys.map(|k| format!("{} = {}", k.name, k.slot.get()));
+    lines.collect::<Vec<_>>().join("\n")
 }
