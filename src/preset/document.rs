@@ -36,10 +36,14 @@ pub(crate) struct Entry {
 impl Entry {
     /// `section.key`, or the key alone at the top level.
     pub fn path(&self) -> String {
-        match self.section.as_str() {
-            "" => self.key.clone(),
-            section => format!("{section}.{}", self.key),
-        }
+        path(&self.section, &self.key)
+    }
+}
+
+fn path(section: &str, key: &str) -> String {
+    match section {
+        "" => key.into(),
+        _ => format!("{section}.{key}"),
     }
 }
 
@@ -109,12 +113,8 @@ pub(crate) fn brief(text: &str) -> String {
         true => c.escape_default().to_string(),
         false => c.to_string(),
     };
-    let mut line: String = words
-        .join(" ")
-        .chars()
-        .take(MOST + 1)
-        .map(escaped)
-        .collect();
+    let words = words.join(" ");
+    let mut line: String = words.chars().take(MOST + 1).map(escaped).collect();
     if line.chars().count() > MOST {
         line = line.chars().take(MOST - 3).chain("...".chars()).collect();
     }
@@ -169,19 +169,18 @@ pub(crate) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError>
     })?;
     let shown = |value: &Spanned<DeValue<'_>>| brief(text.get(value.span()).unwrap_or_default());
     let entry = |section: &str, key: &Spanned<DeString<'_>>, value: &Spanned<DeValue<'_>>| {
-        let mut entry = Entry {
+        let (at, shown) = (key.span().start, shown(value));
+        let read = convert(value.get_ref()).map_err(|why| {
+            let path = brief(&path(section, key.get_ref()));
+            content(at, format!("{path} = {shown}: {why}"))
+        })?;
+        Ok(Entry {
             section: section.into(),
             key: key.get_ref().to_string(),
-            value: Value::Boolean(false),
-            shown: shown(value),
-            said: Said::File(key.span().start),
-        };
-        let read = convert(value.get_ref());
-        entry.value = read.map_err(|why| {
-            let (path, shown) = (brief(&entry.path()), &entry.shown);
-            content(key.span().start, format!("{path} = {shown}: {why}"))
-        })?;
-        Ok(entry)
+            value: read,
+            shown,
+            said: Said::File(at),
+        })
     };
     let mut entries = Vec::new();
     for (key, value) in table.get_ref() {
