@@ -64,7 +64,6 @@ const ERRORS: &str = r#"
 [scene => p.toml:1: this is not TOML:
 [scene]|kind = "slab"||[camera]|fov = 400 => p.toml:5: camera.fov = 400: must be a number from 1 to 170
 [scene]|kind = "slab"|[camera]|Fow = 40 => p.toml:4: camera.Fow = 40: unknown key, perhaps `fov`; [camera] has eye, target, up, fov
-[scene]|kind = "slab"|[camera]|palette = 40 => p.toml:4: camera.palette = 40: unknown key; [camera] has
 [scene]|kind = "slab"|[camer]|fov = 40 => p.toml:3: unknown section `camer`, perhaps `camera`
 [scene]|kind = "slab"|half = [|0.5|] => p.toml:3: scene.half = [ 0.5 ]: must be a number from
 camera = 3|[scene]|kind = "slab" => p.toml:1: camera = 3: must be a section, like [camera]

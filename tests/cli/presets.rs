@@ -146,14 +146,13 @@ fn every_key_can_be_set_in_a_file_and_by_override_and_reads_back() {
             let set = Override::read(&format!("{section}.{name}={text}"));
             let set = set.unwrap_or_else(|e| panic!("{e}"));
             // Some values fit the key, but not the rest of the plan.
-            let Ok(preset) = Preset::read(&least(&plan), "least", &[set]) else {
+            let Ok(set) = Preset::read(&least(&plan), "least", &[set]) else {
                 continue;
             };
-            let by_set = preset.plan;
             let file = with(&plan, section, &format!("{name} = {text}"));
-            assert_eq!(read(&file, "file").expect(&file), by_set, "{file}");
-            assert_eq!(read(&write(&by_set), "again").expect(&file), by_set);
-            changed += usize::from(get(&by_set, section, name) != before);
+            assert_eq!(read(&file, "file").expect(&file), set.plan, "{file}");
+            assert_eq!(read(&write(&set.plan), "again").expect(&file), set.plan);
+            changed += usize::from(get(&set.plan, section, name) != before);
         }
         // More than one tile needs axes that wrap, a texture a file: see the heightfields.
         let elsewhere = ["tiles", "texture"].contains(&name);

@@ -5,7 +5,6 @@ use conemarch::base::view::{Beam, footprint};
 use conemarch::pass::{LookFeature, fog, occlusion, shadow};
 use conemarch::plan::Plan;
 use conemarch::scene::{Hit, Solid};
-use conemarch::wgsl;
 use glam::DVec3;
 
 use super::beams::beam;
@@ -18,7 +17,7 @@ use super::{balls, three};
 /// Adds the look of a plan to what a probe binds.
 fn with_look(mut probe: Probe, plan: &Plan) -> Probe {
     let look = light(plan).uniform();
-    probe.modules.push(wgsl!("pass/look.wgsl"));
+    probe.modules.push(conemarch::wgsl!("pass/look.wgsl"));
     probe
         .parameters
         .push(("look_parameters", bytes_of(&look).to_vec()));
