@@ -124,7 +124,7 @@ pub fn default_name(name: &str, args: &Render, plan: &Plan, own_size: [u32; 2]) 
         file += &format!("-{}x{}", plan.size[0], plan.size[1]);
     }
     if args.layer != Layer::Color {
-        file += &format!(".{}", args.layer.word());
+        file += &format!(".{}", args.layer.name());
     }
     let file = PathBuf::from(file + ".png");
     let same = || preset::find(&file).is_ok_and(|found| found.text == preset::write(plan));

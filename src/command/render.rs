@@ -83,8 +83,7 @@ pub struct Render {
 }
 
 fn layers() -> impl TypedValueParser<Value = Layer> {
-    let all = Layer::ALL.iter();
-    words(all.map(|(word, layer, help)| (*layer, *word, *help)))
+    words(Layer::ALL.map(|layer| (layer, layer.name(), layer.facts())))
 }
 
 fn depths() -> impl TypedValueParser<Value = BitDepth> {

@@ -48,7 +48,7 @@ impl Job<'_> {
             Pass::Color | Pass::Prepare(_) => (1, 1),
         };
         let cells = self.cells(divisor);
-        let has_parents = pass.marches() && divisor < self.plan.pyramid().coarsest();
+        let has_parents = pass.marches() && divisor < self.plan.coarsest();
         let level = |fudge: f64| LevelUniform {
             divisor,
             fudge: fudge as f32,

@@ -138,7 +138,7 @@ impl Renderer {
         // Compile everything before any time is measured.
         let kernel = |pass: &Pass| self.kernel(&program(plan, &scene, *pass, extras));
         let kernels: Vec<_> = passes.iter().map(kernel).collect::<Result<_, _>>()?;
-        let blocks = Block::cut(plan.size, self.cutting.block, plan.pyramid().coarsest());
+        let blocks = Block::cut(plan.size, self.cutting.block, plan.coarsest());
         let mut frame = Frame::blank(plan, extras);
         let steps = (blocks.len() * passes.len()) as f64;
         let mut done = 0.0;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::key::{Counts, Fault, Key, Number, Text, Triple, Word};
+use crate::base::key::{Fault, Key, counts, number, text, triple, word};
 use crate::heightfield::conemap::generate::Generator;
 use crate::heightfield::load::PatternSpec;
 use crate::heightfield::tracer::{TracerKind, settings::TracerSettings};
@@ -66,21 +66,21 @@ impl HeightfieldSettings {
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         let mut keys = self.source.keys();
         keys.extend(keys![
-            "surface" = Word(&mut self.patches, &Patches::WORDS),
+            "surface" = word(&mut self.patches, &Patches::WORDS),
                 "what lies between the samples";
-            "tiles" = Counts(&mut self.tiles, 1, 256),
+            "tiles" = counts(&mut self.tiles, 1, 256),
                 "number of copies of the map along x and y";
-            "width" = Number(&mut self.width, 1e-6, 1e6),
+            "width" = number(&mut self.width, 1e-6, 1e6),
                 "world length of the block's longer side";
-            "depth" = Number(&mut self.depth, 1e-6, 1e6),
+            "depth" = number(&mut self.depth, 1e-6, 1e6),
                 "world length of the height 1";
-            "centre" = Triple(&mut self.centre, -1e6, 1e6),
+            "centre" = triple(&mut self.centre, -1e6, 1e6),
                 "the middle of the block's base";
-            "turn" = Triple(&mut self.turn, -360.0, 360.0),
+            "turn" = triple(&mut self.turn, -360.0, 360.0),
                 "rotation in degrees about x, then y, then z";
-            "paint" = Word(&mut self.paint, PAINTS),
+            "paint" = word(&mut self.paint, PAINTS),
                 "what picks the colour: the height, or the width of the cones in a generator's map";
-            "texture" = Text(&mut self.texture),
+            "texture" = text(&mut self.texture),
                 "a PNG, JPEG or WebP that colours each tile in place of the palette; \"none\" for none";
         ]);
         keys.extend(self.tracing.keys());

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::base::key::{Fault, Key, Switch, Text, Word};
+use crate::base::key::{Fault, Key, switch, text, word};
 use crate::heightfield::heights::WRAPS;
 use crate::heightfield::load::{LoadOptions, Loaded, PatternSpec, load};
 use crate::keys;
@@ -41,13 +41,13 @@ impl Source {
     /// Its keys in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
-            "field" = Text(&mut self.field),
+            "field" = text(&mut self.field),
                 "a pattern like fbm:512x512,seed=7,power=2.6, or a file of heights";
-            "invert" = Switch(&mut self.options.invert),
+            "invert" = switch(&mut self.options.invert),
                 "whether the numbers are depths";
-            "normalize" = Switch(&mut self.options.normalize),
+            "normalize" = switch(&mut self.options.normalize),
                 "whether to stretch the heights to the range from 0 to 1";
-            "wrap" = Word(&mut self.options.wrap, &WRAPS),
+            "wrap" = word(&mut self.options.wrap, &WRAPS),
                 "axes along which the map repeats";
         ]
     }

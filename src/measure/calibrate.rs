@@ -152,7 +152,7 @@ pub fn calibrate(
             break;
         }
     }
-    let levels = best.pyramid().levels.len();
+    let levels = best.levels().len();
     let mut fudge = vec![1.0; levels];
     let exact = lost(&best, PROBING)?;
     for level in 0..levels {
@@ -239,7 +239,7 @@ impl Task for Lost<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
-        let levels = self.plan.pyramid().levels;
+        let levels = self.plan.levels();
         let one = |probe: &&Probe| {
             let Some(hit) = probe.hit else { return false };
             let Some(front) = front(solid, &view, &levels, probe.pixel) else {

@@ -4,11 +4,9 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
 use crate::scene::Solid;
-use crate::wgsl;
 
 /// A level as WGSL reads it.
 #[repr(C)]
@@ -22,11 +20,6 @@ pub struct LevelUniform {
     pub origin: [u32; 2],
     /// Cells in the block.
     pub cells: [u32; 2],
-}
-
-/// The WGSL module of the pass.
-pub fn module() -> Module {
-    wgsl!("pass/march.wgsl")
 }
 
 /// Why a cone ended.

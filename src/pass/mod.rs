@@ -23,8 +23,7 @@ pub mod queue;
 pub mod shadow;
 pub mod trace;
 
-use crate::base::shader::{Module, Program};
-use crate::base::view;
+use crate::base::shader::Program;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::AnySolid;
 use crate::wgsl;
@@ -34,34 +33,33 @@ pub use features::LookFeature;
 /// The program of a pass over cells or pixels.
 pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Program {
     let mut modules = solid.twin().modules();
-    modules.extend([view::module(), wgsl!("pass/shared.wgsl")]);
-    modules.push(counters(extras.count && pass.marches()));
+    modules.extend([wgsl!("base/view.wgsl"), wgsl!("pass/shared.wgsl")]);
+    modules.push(match extras.count && pass.marches() {
+        true => wgsl!("base/counters.wgsl"),
+        false => wgsl!("base/counters_off.wgsl"),
+    });
     let entry = match pass {
         Pass::Color => {
-            modules.push(look::module());
+            modules.push(wgsl!("pass/look.wgsl"));
             let features = LookFeature::ALL.iter();
             modules.extend(features.map(|f| f.module(f.is_on(&plan.look))));
-            modules.push(color::module(extras.normals, solid.is_colored()));
+            modules.push(wgsl!(
+                "pass/color.wgsl",
+                "COLOR_KEEPS_NORMALS" = f64::from(u8::from(extras.normals)),
+                "COLOR_IS_PIGMENT" = f64::from(u8::from(solid.is_colored()))
+            ));
             "color"
         }
         Pass::Trace => {
-            modules.extend([queue::module(), trace::module()]);
+            modules.extend([wgsl!("pass/queue.wgsl"), wgsl!("pass/trace.wgsl")]);
             "trace"
         }
         Pass::March(_) | Pass::Prepare(_) => {
-            modules.extend([queue::module(), march::module()]);
+            modules.extend([wgsl!("pass/queue.wgsl"), wgsl!("pass/march.wgsl")]);
             "march"
         }
     };
     Program::new(entry, modules)
-}
-
-fn counters(on: bool) -> Module {
-    if on {
-        wgsl!("base/counters.wgsl")
-    } else {
-        wgsl!("base/counters_off.wgsl")
-    }
 }
 
 /// What an output buffer holds before its pass runs.

@@ -6,9 +6,6 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::base::shader::Module;
-use crate::wgsl;
-
 /// The head of a queue: the numbers of the dispatch that reads it. The count of the cells and
 /// the cells follow it; only the device writes those.
 #[repr(C)]
@@ -60,8 +57,3 @@ impl Turn {
 
 /// Offset of the count in bytes. The cells follow it.
 pub const COUNT_AT: u64 = std::mem::size_of::<Turn>() as u64;
-
-/// The WGSL module of the queue.
-pub fn module() -> Module {
-    wgsl!("pass/queue.wgsl")
-}

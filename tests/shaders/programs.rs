@@ -8,7 +8,7 @@ use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
 use conemarch::heightfield::conemap::generate::task::every_program;
 use conemarch::pass::LookFeature;
-use conemarch::plan::march::MODES;
+use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
 use conemarch::scene::{AnySolid, Assets, Scene};
@@ -107,7 +107,7 @@ fn plans() -> Vec<Plan> {
     let first = presets.chain(scenes().into_iter().map(Plan::new));
     let mut all = Vec::new();
     for plan in first {
-        for (_, mode) in MODES {
+        for mode in &Mode::ALL {
             for look in 0..1 << LookFeature::ALL.len() {
                 let apart = matches!(plan.scene, Scene::Heightfield(_));
                 if apart && look > 0 && *mode != plan.march.mode {

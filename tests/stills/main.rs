@@ -26,7 +26,7 @@ use conemarch::measure::compare::{DepthError, Report, quantile};
 use conemarch::measure::truth::truth;
 use conemarch::pass::look::tone;
 use conemarch::picture::frame::Frame;
-use conemarch::plan::march::{MODES, Mode};
+use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
 use conemarch::scene::Assets;
@@ -161,7 +161,7 @@ fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
 #[test]
 fn every_mode_renders_on_both_executors() {
     let mut plan = sized("bench-outside", [96, 54]);
-    for (name, mode) in MODES {
+    for (name, mode) in &Mode::WORDS {
         plan.march.mode = *mode;
         let pair = [
             render(&plan, Extras::default()),

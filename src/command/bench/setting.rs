@@ -5,7 +5,7 @@ use serde_json::{Map, json};
 use toml::Value;
 
 use crate::plan::Plan;
-use crate::plan::march::{MODES, Mode};
+use crate::plan::march::Mode;
 
 /// A mode, and perhaps a key of `[march]` that is changed.
 #[derive(Clone, Debug)]
@@ -45,7 +45,7 @@ impl Setting {
 /// left out: all are measured against it.
 pub fn baselines() -> Vec<Setting> {
     let first = [Mode::Ray, Mode::RayRelaxed, Mode::Safe];
-    let rest = MODES.iter().map(|(_, mode)| *mode);
+    let rest = Mode::ALL.into_iter();
     let rest = rest.filter(|m| !first.contains(m) && *m != Mode::Truth);
     first.into_iter().chain(rest).map(Setting::of).collect()
 }

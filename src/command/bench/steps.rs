@@ -20,7 +20,7 @@ use crate::measure::compare::quantile;
 use crate::picture::frame::Frame;
 use crate::picture::{BitDepth, Folder, Layer, Place, Shades, write_png};
 use crate::plan::Plan;
-use crate::plan::march::{MODES, Mode};
+use crate::plan::march::Mode;
 use crate::preset;
 use crate::scene::Assets;
 
@@ -38,7 +38,7 @@ pub struct StepsBench {
 }
 
 fn modes() -> impl TypedValueParser<Value = Mode> {
-    words(MODES.iter().map(|(word, mode)| (*mode, *word, "")))
+    words(Mode::ALL.map(|mode| (mode, mode.name(), "")))
 }
 
 /// Runs the measurement.

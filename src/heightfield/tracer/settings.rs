@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::base::key::{AutoCount, AutoNumber, Fault, Key, Number, Text, Word};
+use crate::base::key::{Fault, Key, auto_count, auto_number, number, text, word};
 use crate::heightfield::conemap::file::{MapUse, read_map};
 use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
 use crate::heightfield::conemap::generate::{GenerateError, Generator, Options, cpu::generate};
@@ -148,21 +148,21 @@ impl TracerSettings {
     /// The keys of the tracer in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
-            "tracer" = Word(&mut self.tracer, &TracerKind::WORDS),
+            "tracer" = word(&mut self.tracer, &TracerKind::WORDS),
                 "how rays find the surface; walk, walk-relaxed and max-mip find every first hit, walk-mip and cone-mip are off by at most a pixel";
-            "map" = Text(&mut self.map),
+            "map" = text(&mut self.map),
                 "auto, a generator's name, or the file of a cone map";
-            "lookup" = Word(&mut self.lookup, &Lookup::WORDS),
+            "lookup" = word(&mut self.lookup, &Lookup::WORDS),
                 "how ratios are read between samples";
-            "tracer_steps" = AutoCount(&mut self.steps, 1, MOST_STEPS),
+            "tracer_steps" = auto_count(&mut self.steps, 1, MOST_STEPS),
                 "steps of a tracer that counts its own";
-            "tracer_rounds" = AutoCount(&mut self.rounds, 1, MOST_ROUNDS),
+            "tracer_rounds" = auto_count(&mut self.rounds, 1, MOST_ROUNDS),
                 "rounds of its refinement";
-            "stretch" = AutoNumber(&mut self.stretch, 0.01, 100.0),
+            "stretch" = auto_number(&mut self.stretch, 0.01, 100.0),
                 "factor on the steps that cones give";
-            "lod" = AutoNumber(&mut self.lod, 0.0, 1e6),
+            "lod" = auto_number(&mut self.lod, 0.0, 1e6),
                 "distance at which a texel is as wide as a pixel to walk-mip and cone-mip, and csm-loop has half its steps; 0 for never; auto follows the camera for the first two and is never for csm-loop";
-            "offset" = Number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
+            "offset" = number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
                 "offset of the walks' cones when they are made, in texels";
         ]
     }
