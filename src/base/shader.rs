@@ -154,15 +154,6 @@ impl Program {
         })
     }
 
-    /// The same program with f64 in the place of f32 wherever it uses `wgsl/base/real.wgsl`.
-    pub fn in_f64(&self) -> Self {
-        let wide = |module: Module| match module.path {
-            "wgsl/base/real.wgsl" => wgsl!("base/real64.wgsl"),
-            _ => module,
-        };
-        Self::new(self.entry, self.modules.iter().cloned().map(wide).collect())
-    }
-
     /// A listing of modules and constants, for `--explain`.
     pub fn describe(&self) -> String {
         let mut text = String::new();

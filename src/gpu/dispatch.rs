@@ -93,7 +93,6 @@ impl Dispatcher {
         self.told.unmap();
         let stamp = |at: usize| u64::from(told[at]) | (u64::from(told[at + 1]) << 32);
         let tick = device.tick_ns.filter(|_| queries.is_some());
-        #[allow(clippy::cast_precision_loss, reason = "a time for reading")]
         let ns = tick.map(|tick| stamp(4).saturating_sub(stamp(2)) as f64 * f64::from(tick));
         Ok(Told {
             moving: told[0],

@@ -6,7 +6,6 @@ use std::sync::LazyLock;
 
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
-use conemarch::heightfield::conemap::generate::task::every_program;
 use conemarch::pass::LookFeature;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
@@ -17,6 +16,7 @@ use toml::Value;
 use wgpu::naga::{self, valid::Capabilities};
 
 use super::common::plans::{distance, outline, preset, program};
+use super::common::programs::map_programs;
 
 /// Switches a feature of the look, by the key that does and nothing else.
 pub fn switch(plan: &mut Plan, feature: LookFeature, on: bool) {
@@ -162,7 +162,7 @@ pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     let assets = Assets::default();
     let plans = plans().into_iter();
     let of_plans = plans.flat_map(|plan| programs_of(&plan, &outline(&plan, &assets)));
-    for program in every_program().into_iter().chain(of_plans) {
+    for program in map_programs().into_iter().chain(of_plans) {
         let listing = format!("{}\n{}", program.entry, program.describe());
         found.entry(listing).or_insert(program);
     }

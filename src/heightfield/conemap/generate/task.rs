@@ -3,7 +3,7 @@
 
 use crate::base::shader::Program;
 use crate::heightfield::conemap::generate::{
-    Apex, Best, Cost, GenerateError, Generator, Method, Options, min3x3, planes::Planes, pyramid,
+    Apex, Best, Cost, GenerateError, Generator, Method, Options, planes::Planes,
 };
 use crate::heightfield::{ConeMap, Heights, MaxMip, Patches, heights::Axis};
 use crate::wgsl;
@@ -159,11 +159,4 @@ pub fn program_of(generator: Generator) -> Program {
     let one = Heights::new([1, 1], [false, false], vec![0.0]).expect("one sample is a map");
     let task = MapTask::new(generator, &one, Patches::default(), &Options::default());
     task.expect("the default options are in range").program()
-}
-
-/// Every program that a device makes cone maps with.
-pub fn every_program() -> Vec<Program> {
-    let shared = [pyramid::program(), min3x3::program()];
-    let generators = Generator::ALL.into_iter().map(program_of);
-    shared.into_iter().chain(generators).collect()
 }
