@@ -7,7 +7,7 @@ use std::hint::black_box;
 
 use conemarch::base::cone::ConeRule;
 use conemarch::formula::{DistanceEstimate as _, mandelbox::Mandelbox};
-use conemarch::measure::flip::{Picture, flip};
+use conemarch::measure::flip::flip;
 use conemarch::measure::{compare, truth};
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
@@ -84,12 +84,8 @@ fn comparisons(c: &mut Criterion) {
         .map(|i| DVec3::splat(f64::from(i) / 14_400.0))
         .collect();
     let grey = vec![DVec3::splat(0.5); ramp.len()];
-    let picture = |pixels| Picture {
-        size: [160, 90],
-        pixels,
-    };
     c.bench_function("flip, 160 x 90", |b| {
-        b.iter(|| flip(picture(black_box(&ramp)), picture(&grey)));
+        b.iter(|| flip([160, 90], black_box(&ramp), &grey));
     });
 }
 

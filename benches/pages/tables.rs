@@ -1,22 +1,11 @@
 //! The measured tables of `docs/heightfields.md`.
 
-use conemarch::command::bench::cone_rows::{GeneratorRow, TracerRow};
-use serde::Deserialize;
+use conemarch::command::bench::cone_rows::{ConesRow, GeneratorRow, TracerRow};
 
 use crate::distances::DistanceRow;
 use crate::frames::FrameRow;
 use crate::markdown::table;
 use crate::rows::{NodesRow, SizesRow, TimesRow};
-
-/// A row of `bench cones`, of either kind.
-#[derive(Deserialize)]
-#[serde(untagged)]
-pub enum ConesRow {
-    /// A map of a field.
-    Generator(GeneratorRow),
-    /// A tracer over a view of a field.
-    Tracer(TracerRow),
-}
 
 /// Size at which tracers and nodes are shown field by field.
 const SHOWN: u32 = 256;
@@ -38,7 +27,7 @@ const OFF: f64 = 0.15;
 /// The tracers' rows at a size.
 fn tracer_rows(rows: &[ConesRow], size: u32) -> Vec<&TracerRow> {
     let own = rows.iter().filter_map(|row| match row {
-        ConesRow::Tracer(row) if row.size == [size; 2] => Some(row),
+        ConesRow::Tracer(row) if row.over.size == [size; 2] => Some(row),
         _ => None,
     });
     own.collect()
@@ -106,7 +95,7 @@ fn tilde(estimated: bool) -> &'static str {
 /// Tracers in the mean of the fields at a size.
 pub fn means(rows: &[ConesRow], size: u32) -> String {
     let rows = tracer_rows(rows, size);
-    let fields = once(rows.iter().map(|r| r.field.as_str()));
+    let fields = once(rows.iter().map(|r| r.over.field.as_str()));
     let body = pairs(&rows).into_iter().map(|(tracer, map)| {
         let of_view = |view| {
             let key = (tracer, map, view);
@@ -124,9 +113,9 @@ pub fn means(rows: &[ConesRow], size: u32) -> String {
             n if n < fields.len() => format!(" ({n} of {})", fields.len()),
             _ => String::new(),
         };
-        let steps = cells(mean(|r| r.steps_mean).map(|steps| format!("{steps:.1}")));
-        let skipped = joined(mean(|r| r.skipped).map(percent));
-        let unconverged = joined(mean(|r| r.unconverged).map(percent));
+        let steps = cells(mean(|r| r.stats.steps_mean).map(|steps| format!("{steps:.1}")));
+        let skipped = joined(mean(|r| r.stats.skipped).map(percent));
+        let unconverged = joined(mean(|r| r.stats.unconverged).map(percent));
         format!("{tracer} | {map}{note} | {steps} | {skipped} | {unconverged}")
     });
     let head = "tracer | map | steps at 30 | at 60 | at 80 | skipped % | unconverged %";
@@ -139,15 +128,21 @@ pub fn tracers(rows: &[ConesRow]) -> String {
     let mut text = means(rows, SMALL) + &means(rows, SHOWN);
     let rows = tracer_rows(rows, SHOWN);
     let head = "tracer | map | steps at 30, mean / p99 | at 60 | at 80 | skipped % | unconverged % | error, texels";
-    for field in once(rows.iter().map(|r| r.field.as_str())) {
-        let own: Vec<&TracerRow> = rows.iter().copied().filter(|r| r.field == field).collect();
+    for field in once(rows.iter().map(|r| r.over.field.as_str())) {
+        let own: Vec<&TracerRow> = rows
+            .iter()
+            .copied()
+            .filter(|r| r.over.field == field)
+            .collect();
         let body = pairs(&own).into_iter().map(|(tracer, map)| {
             let is = |r: &&&TracerRow| (&*r.tracer, &*r.map) == (tracer, map);
             let of = |show: fn(&TracerRow) -> String| own.iter().filter(is).map(move |r| show(r));
-            let steps = cells(of(|r| format!("{:.1} / {}", r.steps_mean, r.steps_p99)));
-            let skipped = joined(of(|r| percent(r.skipped)));
-            let unconverged = joined(of(|r| percent(r.unconverged)));
-            let error = joined(of(|r| texels(r.error_texels)));
+            let steps = cells(of(|r| {
+                format!("{:.1} / {}", r.stats.steps_mean, r.stats.steps_p99)
+            }));
+            let skipped = joined(of(|r| percent(r.stats.skipped)));
+            let unconverged = joined(of(|r| percent(r.stats.unconverged)));
+            let error = joined(of(|r| texels(r.stats.error_texels)));
             format!("{tracer} | {map} | {steps} | {skipped} | {unconverged} | {error}")
         });
         let table = table(head, "llr", body);
@@ -163,16 +158,16 @@ pub fn generators(rows: &[ConesRow]) -> String {
         ConesRow::Tracer(_) => None,
     });
     let rows: Vec<&GeneratorRow> = own.collect();
-    let fields = once(rows.iter().map(|r| r.field.as_str()));
+    let fields = once(rows.iter().map(|r| r.over.field.as_str()));
     let names = once(rows.iter().map(|r| r.generator.as_str()));
     let head = format!("generator | {}", fields.join(" | "));
     let mut text = String::new();
-    for size in once(rows.iter().map(|r| r.size)) {
+    for size in once(rows.iter().map(|r| r.over.size)) {
         let body = names.iter().map(|name| {
             let figures = fields.iter().map(|field| {
                 let key = (size, *field, *name);
                 let mut all = rows.iter();
-                let own = all.find(|r| (r.size, &*r.field, &*r.generator) == key);
+                let own = all.find(|r| (r.over.size, &*r.over.field, &*r.generator) == key);
                 own.map_or("n/a".into(), |r| generator(r))
             });
             format!("{name} | {}", cells(figures))
@@ -322,12 +317,16 @@ pub fn aims(cones: &[ConesRow], nodes: &[NodesRow], times: &[TimesRow]) -> Strin
         improved <= OVER_IMPROVED,
     );
     let tracers = tracer_rows(cones, SHOWN);
-    for field in once(tracers.iter().map(|r| r.field.as_str())) {
+    for field in once(tracers.iter().map(|r| r.over.field.as_str())) {
         let ratios = VIEWS.map(|view| {
             let steps = |tracer| {
-                let is =
-                    |r: &&&TracerRow| (&*r.field, &*r.tracer, r.view_deg) == (field, tracer, view);
-                tracers.iter().find(is).map_or(f64::NAN, |r| r.steps_mean)
+                let is = |r: &&&TracerRow| {
+                    (&*r.over.field, &*r.tracer, r.view_deg) == (field, tracer, view)
+                };
+                tracers
+                    .iter()
+                    .find(is)
+                    .map_or(f64::NAN, |r| r.stats.steps_mean)
             };
             steps("walk") / steps("max-mip")
         });

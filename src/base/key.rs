@@ -12,17 +12,50 @@ use toml::Value;
 pub trait Slot {
     /// The current value as TOML.
     fn get(&self) -> Value;
-    /// Sets the value. Returns `None` and changes nothing if it does not fit.
-    fn put(&mut self, value: &Value) -> Option<()>;
     /// Describes the values that fit.
     fn expects(&self) -> String;
-
     /// Sets the value.
     ///
     /// # Errors
-    /// The value does not fit. The error is [`Slot::expects`].
+    /// The value does not fit, and nothing changes. The error is [`Slot::expects`].
+    fn set(&mut self, value: &Value) -> Result<(), String>;
+}
+
+/// A slot over a variable, given by how its value is written and read.
+pub struct Place<'a, T, W, R> {
+    at: &'a mut T,
+    expects: String,
+    write: W,
+    read: R,
+}
+
+impl<'a, T, W, R> Place<'a, T, W, R>
+where
+    W: Fn(&T) -> Value,
+    R: Fn(&Value) -> Option<T>,
+{
+    /// A slot over `at`. `expects` describes the values that fit, and `read` returns `None` for
+    /// all others.
+    pub fn new(at: &'a mut T, expects: impl Into<String>, write: W, read: R) -> Self {
+        Self {
+            at,
+            expects: expects.into(),
+            write,
+            read,
+        }
+    }
+}
+
+impl<T, W: Fn(&T) -> Value, R: Fn(&Value) -> Option<T>> Slot for Place<'_, T, W, R> {
+    fn get(&self) -> Value {
+        (self.write)(self.at)
+    }
+    fn expects(&self) -> String {
+        self.expects.clone()
+    }
     fn set(&mut self, value: &Value) -> Result<(), String> {
-        self.put(value).ok_or_else(|| self.expects())
+        *self.at = (self.read)(value).ok_or_else(|| self.expects())?;
+        Ok(())
     }
 }
 
@@ -57,7 +90,7 @@ macro_rules! keys {
 
 /// Declares one part of a Plan: the struct, its defaults and its keys.
 ///
-/// A line has the form `field: Type = default, Slot(limits), "help";`. The key is called like
+/// A line has the form `field: Type = default, slot(limits), "help";`. The key is called like
 /// the field, and the help text also documents the field.
 #[macro_export]
 macro_rules! settings {
@@ -109,51 +142,36 @@ impl Fault {
             why: why.into(),
         }
     }
+
+    /// A fault of the key `section.key`, unless its value fits.
+    ///
+    /// # Errors
+    /// That fault.
+    pub fn unless(fits: bool, key: &str, why: impl Into<String>) -> Result<(), Self> {
+        fits.then_some(()).ok_or_else(|| Self::new(key, why))
+    }
 }
 
-/// The finite number in a TOML value. An integer is also a number.
-pub fn number(value: &Value) -> Option<f64> {
-    let x = match value {
-        Value::Float(x) => *x,
-        #[allow(clippy::cast_precision_loss, reason = "settings are small")]
-        Value::Integer(i) => *i as f64,
-        _ => return None,
-    };
-    x.is_finite().then_some(x)
+/// The number in a TOML value, if it is in a closed range. An integer is also a number.
+pub fn number_in(value: &Value, low: f64, high: f64) -> Option<f64> {
+    let number = value.as_float().or(value.as_integer().map(|i| i as f64));
+    number.filter(|x| (low..=high).contains(x))
 }
 
-fn number_in(value: &Value, low: f64, high: f64) -> Option<f64> {
-    number(value).filter(|x| (low..=high).contains(x))
-}
-
-fn count_in(value: &Value, low: u32, high: u32) -> Option<u32> {
+/// The whole number in a TOML value, if it is in a closed range.
+pub fn count_in(value: &Value, low: u32, high: u32) -> Option<u32> {
     let n = u32::try_from(value.as_integer()?).ok()?;
     (low..=high).contains(&n).then_some(n)
 }
 
 /// Reads an array of `N` values.
-fn array<T: Copy + Default, const N: usize>(
-    value: &Value,
-    read: impl Fn(&Value) -> Option<T>,
-) -> Option<[T; N]> {
-    let list = value.as_array().filter(|a| a.len() == N)?;
-    let mut out = [T::default(); N];
-    for (to, from) in out.iter_mut().zip(list) {
-        *to = read(from)?;
-    }
-    Some(out)
+fn array<T, const N: usize>(value: &Value, read: impl Fn(&Value) -> Option<T>) -> Option<[T; N]> {
+    let all: Option<Vec<T>> = value.as_array()?.iter().map(read).collect();
+    all?.try_into().ok()
 }
 
-/// Reads `"auto"` as `None`, and any other value by `read`.
-fn auto<T>(value: &Value, read: impl Fn(&Value) -> Option<T>) -> Option<Option<T>> {
-    match value.as_str() {
-        Some("auto") => Some(None),
-        _ => read(value).map(Some),
-    }
-}
-
-fn auto_value<T: Into<Value>>(value: Option<T>) -> Value {
-    value.map_or_else(|| "auto".into(), Into::into)
+fn triple_in(value: &Value, low: f64, high: f64) -> Option<DVec3> {
+    array(value, |v| number_in(v, low, high)).map(DVec3::from_array)
 }
 
 /// A number in a sentence. Very small and very large ones get an exponent.
@@ -170,217 +188,119 @@ fn from_to(low: f64, high: f64) -> String {
 }
 
 /// A number in a closed range.
-pub struct Number<'a>(pub &'a mut f64, pub f64, pub f64);
-
-impl Slot for Number<'_> {
-    fn get(&self) -> Value {
-        (*self.0).into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        *self.0 = number_in(value, self.1, self.2)?;
-        Some(())
-    }
-    fn expects(&self) -> String {
-        format!("a number {}", from_to(self.1, self.2))
-    }
+pub fn number(at: &mut f64, low: f64, high: f64) -> impl Slot {
+    let expects = format!("a number {}", from_to(low, high));
+    let read = move |v: &Value| number_in(v, low, high);
+    Place::new(at, expects, |x| (*x).into(), read)
 }
 
 /// A whole number in a closed range.
-pub struct Count<'a>(pub &'a mut u32, pub u32, pub u32);
+pub fn count(at: &mut u32, low: u32, high: u32) -> impl Slot {
+    let expects = format!("a whole number from {low} to {high}");
+    let read = move |v: &Value| count_in(v, low, high);
+    Place::new(at, expects, |n| (*n).into(), read)
+}
 
-impl Slot for Count<'_> {
-    fn get(&self) -> Value {
-        (*self.0).into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        *self.0 = count_in(value, self.1, self.2)?;
-        Some(())
-    }
-    fn expects(&self) -> String {
-        format!("a whole number from {} to {}", self.1, self.2)
-    }
+/// `"auto"`, which is stored as `None`, or a value that `read` reads.
+fn auto<T: Copy + Into<Value>>(
+    at: &mut Option<T>,
+    other: String,
+    read: impl Fn(&Value) -> Option<T>,
+) -> impl Slot {
+    let write = |x: &Option<T>| x.map_or("auto".into(), Into::into);
+    let read = move |v: &Value| match v.as_str() {
+        Some("auto") => Some(None),
+        _ => read(v).map(Some),
+    };
+    Place::new(at, format!("\"auto\" or {other}"), write, read)
 }
 
 /// A whole number in a closed range, or `"auto"`, which is stored as `None`.
-pub struct AutoCount<'a>(pub &'a mut Option<u32>, pub u32, pub u32);
-
-impl Slot for AutoCount<'_> {
-    fn get(&self) -> Value {
-        auto_value(*self.0)
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        *self.0 = auto(value, |v| count_in(v, self.1, self.2))?;
-        Some(())
-    }
-    fn expects(&self) -> String {
-        format!("\"auto\" or a whole number from {} to {}", self.1, self.2)
-    }
+pub fn auto_count(at: &mut Option<u32>, low: u32, high: u32) -> impl Slot {
+    let other = format!("a whole number from {low} to {high}");
+    auto(at, other, move |v| count_in(v, low, high))
 }
 
 /// A number in a closed range, or `"auto"`, which is stored as `None`.
-pub struct AutoNumber<'a>(pub &'a mut Option<f64>, pub f64, pub f64);
-
-impl Slot for AutoNumber<'_> {
-    fn get(&self) -> Value {
-        auto_value(*self.0)
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        *self.0 = auto(value, |v| number_in(v, self.1, self.2))?;
-        Some(())
-    }
-    fn expects(&self) -> String {
-        format!("\"auto\" or a number {}", from_to(self.1, self.2))
-    }
+pub fn auto_number(at: &mut Option<f64>, low: f64, high: f64) -> impl Slot {
+    let other = format!("a number {}", from_to(low, high));
+    auto(at, other, move |v| number_in(v, low, high))
 }
 
 /// `true` or `false`.
-pub struct Switch<'a>(pub &'a mut bool);
-
-impl Slot for Switch<'_> {
-    fn get(&self) -> Value {
-        (*self.0).into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        *self.0 = value.as_bool()?;
-        Some(())
-    }
-    fn expects(&self) -> String {
-        "true or false".into()
-    }
+pub fn switch(at: &mut bool) -> impl Slot {
+    Place::new(at, "true or false", |on| (*on).into(), Value::as_bool)
 }
 
 /// Three numbers, each in a closed range.
-pub struct Triple<'a>(pub &'a mut DVec3, pub f64, pub f64);
-
-impl Slot for Triple<'_> {
-    fn get(&self) -> Value {
-        self.0.to_array().to_vec().into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        *self.0 = array(value, |v| number_in(v, self.1, self.2))?.into();
-        Some(())
-    }
-    fn expects(&self) -> String {
-        let range = from_to(self.1, self.2);
-        format!("three numbers like [1, 2, 3], each {range}")
-    }
+pub fn triple(at: &mut DVec3, low: f64, high: f64) -> impl Slot {
+    let range = from_to(low, high);
+    let expects = format!("three numbers like [1, 2, 3], each {range}");
+    let read = move |v: &Value| triple_in(v, low, high);
+    Place::new(at, expects, |p| p.to_array().to_vec().into(), read)
 }
 
-/// A list of numbers or of triples. The range limits the length of the list, the two numbers
-/// limit each number in it.
-pub struct List<'a, T>(
-    pub &'a mut Vec<T>,
-    pub std::ops::RangeInclusive<usize>,
-    pub f64,
-    pub f64,
-);
-
-impl<T> List<'_, T> {
-    /// Reads all values of a list whose length fits.
-    fn all(&self, value: &Value, read: impl Fn(&Value) -> Option<T>) -> Option<Vec<T>> {
-        let list = value.as_array().filter(|a| self.1.contains(&a.len()))?;
-        list.iter().map(read).collect()
-    }
-
-    fn count(&self) -> String {
-        format!("a list of {} to {}", self.1.start(), self.1.end())
-    }
+/// The values of a list of 1 to `most`.
+fn list<T>(value: &Value, most: usize, read: impl Fn(&Value) -> Option<T>) -> Option<Vec<T>> {
+    let list = value.as_array().filter(|a| (1..=most).contains(&a.len()));
+    list?.iter().map(read).collect()
 }
 
-impl Slot for List<'_, f64> {
-    fn get(&self) -> Value {
-        self.0.clone().into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        *self.0 = self.all(value, |v| number_in(v, self.2, self.3))?;
-        Some(())
-    }
-    fn expects(&self) -> String {
-        format!("{} numbers, each {}", self.count(), from_to(self.2, self.3))
-    }
+/// A list of 1 to `most` numbers, each in a closed range.
+pub fn numbers(at: &mut Vec<f64>, most: usize, low: f64, high: f64) -> impl Slot {
+    let range = from_to(low, high);
+    let expects = format!("a list of 1 to {most} numbers, each {range}");
+    let read = move |v: &Value| list(v, most, |x| number_in(x, low, high));
+    Place::new(at, expects, |all| all.clone().into(), read)
 }
 
-impl Slot for List<'_, DVec3> {
-    fn get(&self) -> Value {
-        let triples = self.0.iter().map(|v| v.to_array().to_vec());
+/// A list of 1 to `most` triples of numbers, each number in a closed range.
+pub fn triples(at: &mut Vec<DVec3>, most: usize, low: f64, high: f64) -> impl Slot {
+    let range = from_to(low, high);
+    let expects =
+        format!("a list of 1 to {most} triples like [0.9, 0.5, 0.2], each number {range}");
+    let write = |all: &Vec<DVec3>| {
+        let triples = all.iter().map(|v| v.to_array().to_vec());
         triples.collect::<Vec<_>>().into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        let one = |v: &Value| Some(array(v, |x| number_in(x, self.2, self.3))?.into());
-        *self.0 = self.all(value, one)?;
-        Some(())
-    }
-    fn expects(&self) -> String {
-        let range = from_to(self.2, self.3);
-        let count = self.count();
-        format!("{count} triples like [0.9, 0.5, 0.2], each number {range}")
-    }
-}
-
-/// Width and height of an image in pixels, each from 1 to a limit.
-pub struct Size<'a>(pub &'a mut [u32; 2], pub u32);
-
-impl Slot for Size<'_> {
-    fn get(&self) -> Value {
-        self.0.to_vec().into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        Counts(self.0, 1, self.1).put(value)
-    }
-    fn expects(&self) -> String {
-        format!("[width, height] in pixels, each from 1 to {}", self.1)
-    }
+    };
+    let read = move |v: &Value| list(v, most, |x| triple_in(x, low, high));
+    Place::new(at, expects, write, read)
 }
 
 /// Two whole numbers, for x and y, each in a closed range.
-pub struct Counts<'a>(pub &'a mut [u32; 2], pub u32, pub u32);
+pub fn counts(at: &mut [u32; 2], low: u32, high: u32) -> impl Slot {
+    let expects = format!("two whole numbers like [2, 2], each from {low} to {high}");
+    let read = move |v: &Value| array(v, |n| count_in(n, low, high));
+    Place::new(at, expects, |pair| pair.to_vec().into(), read)
+}
 
-impl Slot for Counts<'_> {
-    fn get(&self) -> Value {
-        self.0.to_vec().into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        *self.0 = array(value, |v| count_in(v, self.1, self.2))?;
-        Some(())
-    }
-    fn expects(&self) -> String {
-        let (low, high) = (self.1, self.2);
-        format!("two whole numbers like [2, 2], each from {low} to {high}")
-    }
+/// Width and height of an image in pixels, each from 1 to a limit.
+pub fn size(at: &mut [u32; 2], most: u32) -> impl Slot {
+    let expects = format!("[width, height] in pixels, each from 1 to {most}");
+    let read = move |v: &Value| array(v, |n| count_in(n, 1, most));
+    Place::new(at, expects, |pair| pair.to_vec().into(), read)
 }
 
 /// One word of a list. Each word stands for a value.
-pub struct Word<'a, T: 'static>(pub &'a mut T, pub &'static [(&'static str, T)]);
-
-impl<T: Copy + PartialEq> Slot for Word<'_, T> {
-    fn get(&self) -> Value {
-        let word = self.1.iter().find(|(_, v)| v == self.0);
+pub fn word<T: Copy + PartialEq>(at: &mut T, words: &'static [(&str, T)]) -> impl Slot {
+    let quoted: Vec<String> = words.iter().map(|(w, _)| format!("\"{w}\"")).collect();
+    let write = move |value: &T| {
+        let word = words.iter().find(|(_, v)| v == value);
         word.map_or("", |(w, _)| w).into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        let mut words = self.1.iter();
-        *self.0 = words.find(|(w, _)| value.as_str() == Some(w))?.1;
-        Some(())
-    }
-    fn expects(&self) -> String {
-        let words: Vec<String> = self.1.iter().map(|(w, _)| format!("\"{w}\"")).collect();
-        format!("one of {}", words.join(", "))
-    }
+    };
+    let read = move |v: &Value| {
+        let word = words.iter().find(|(w, _)| v.as_str() == Some(w));
+        word.map(|(_, value)| *value)
+    };
+    Place::new(at, format!("one of {}", quoted.join(", ")), write, read)
 }
 
 /// One line of text.
-pub struct Text<'a>(pub &'a mut String);
-
-impl Slot for Text<'_> {
-    fn get(&self) -> Value {
-        self.0.clone().into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
+pub fn text(at: &mut String) -> impl Slot {
+    let expects = "a line of text of at most 200 bytes, without control characters";
+    let read = |v: &Value| {
         let fits = |t: &&str| t.len() <= 200 && !t.contains(char::is_control);
-        *self.0 = value.as_str().filter(fits)?.into();
-        Some(())
-    }
-    fn expects(&self) -> String {
-        "a line of text of at most 200 bytes, without control characters".into()
-    }
+        v.as_str().filter(fits).map(str::to_string)
+    };
+    Place::new(at, expects, |line| line.clone().into(), read)
 }

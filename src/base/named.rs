@@ -1,6 +1,7 @@
 //! Enums whose variants are chosen by a word, each listed once.
 
-/// Declares an enum from one list of variants and their words, with `ALL`, `name` and `named`.
+/// Declares an enum from one list of variants and their words, with `ALL`, `WORDS`, `name` and
+/// `named`.
 ///
 /// If a type follows the enum's name, each variant also has a value of that type, which
 /// `facts` returns.
@@ -38,6 +39,10 @@ macro_rules! named_enum {
         impl $type {
             /// Every variant, in the order of the list.
             pub const ALL: [Self; [$($name),*].len()] = [$(Self::$variant),*];
+
+            /// Every variant with the word that chooses it.
+            pub const WORDS: [(&'static str, Self); [$($name),*].len()] =
+                [$(($name, Self::$variant)),*];
 
             /// The word that chooses the variant.
             pub const fn name(self) -> &'static str {

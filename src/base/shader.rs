@@ -78,14 +78,8 @@ impl Program {
 
     /// The joined text. Each module ends with a line break.
     pub fn source(&self) -> String {
-        let mut text = String::new();
-        for module in &self.modules {
-            text.push_str(module.source);
-            if !module.source.ends_with('\n') {
-                text.push('\n');
-            }
-        }
-        text
+        let lines = self.modules.iter().flat_map(|m| m.source.lines());
+        lines.flat_map(|line| [line, "\n"]).collect()
     }
 
     /// All override constants with their values.
@@ -158,17 +152,6 @@ impl Program {
                 fault,
             })
         })
-    }
-
-    /// The same program with f64 in the place of f32 wherever it uses `wgsl/base/real.wgsl`.
-    pub fn in_f64(&self) -> Self {
-        let mut program = self.clone();
-        for module in &mut program.modules {
-            if module.path == "wgsl/base/real.wgsl" {
-                *module = wgsl!("base/real64.wgsl");
-            }
-        }
-        program
     }
 
     /// A listing of modules and constants, for `--explain`.

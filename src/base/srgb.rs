@@ -3,6 +3,12 @@
 use glam::DVec3;
 
 /// sRGB to linear.
+///
+/// ```
+/// # use conemarch::base::srgb::linear;
+/// # use glam::DVec3;
+/// assert!((linear(DVec3::splat(0.5)).x - 0.214_041_14).abs() < 1e-7);
+/// ```
 pub fn linear(c: DVec3) -> DVec3 {
     c.map(|x| {
         if x <= 0.040_45 {
@@ -13,7 +19,16 @@ pub fn linear(c: DVec3) -> DVec3 {
     })
 }
 
-/// Linear to sRGB.
+/// Linear to sRGB: the inverse of [`linear`].
+///
+/// ```
+/// # use conemarch::base::srgb::{linear, srgb};
+/// # use glam::DVec3;
+/// for i in 0..=100 {
+///     let x = f64::from(i) / 100.0;
+///     assert!((srgb(linear(DVec3::splat(x))).x - x).abs() < 1e-9);
+/// }
+/// ```
 pub fn srgb(c: DVec3) -> DVec3 {
     c.map(|x| {
         if x <= 0.003_130_8 {
@@ -22,18 +37,4 @@ pub fn srgb(c: DVec3) -> DVec3 {
             1.055 * x.powf(1.0 / 2.4) - 0.055
         }
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn srgb_and_linear_are_inverse_and_hit_known_values() {
-        for i in 0..=100 {
-            let x = f64::from(i) / 100.0;
-            assert!((srgb(linear(DVec3::splat(x))).x - x).abs() < 1e-9);
-        }
-        assert!((linear(DVec3::splat(0.5)).x - 0.214_041_14).abs() < 1e-7);
-    }
 }

@@ -15,25 +15,24 @@ fn in_units(bytes: u64, round: fn(f64) -> f64) -> String {
     }
 }
 
-/// Bytes that something needs, rounded up: `1.5 GiB`.
+/// Bytes that something needs, rounded up.
+///
+/// ```
+/// # use conemarch::base::units::bytes_needed;
+/// assert_eq!(bytes_needed((1 << 30) + 1), "1.1 GiB");
+/// assert_eq!(bytes_needed(1 << 20), "1 MiB");
+/// ```
 pub fn bytes_needed(bytes: u64) -> String {
     in_units(bytes, f64::ceil)
 }
 
 /// Bytes that are available, rounded down.
+///
+/// ```
+/// # use conemarch::base::units::bytes_available;
+/// assert_eq!(bytes_available((3 << 29) - 1), "1.4 GiB");
+/// assert_eq!(bytes_available(1000), "1000 bytes");
+/// ```
 pub fn bytes_available(bytes: u64) -> String {
     in_units(bytes, f64::floor)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn amounts_are_rounded_to_the_safe_side() {
-        assert_eq!(bytes_needed((1 << 30) + 1), "1.1 GiB");
-        assert_eq!(bytes_available((3 << 29) - 1), "1.4 GiB");
-        assert_eq!(bytes_needed(1 << 20), "1 MiB");
-        assert_eq!(bytes_available(1000), "1000 bytes");
-    }
 }

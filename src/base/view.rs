@@ -10,9 +10,6 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
-use crate::base::shader::Module;
-use crate::wgsl;
-
 /// The view as WGSL reads it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -38,11 +35,6 @@ pub struct ViewUniform {
 /// More than the rounding error of a chord in f32: two unit vectors are each off by up to
 /// about 1.5 * 2^-24 along a component.
 pub const CHORD_SLACK: f64 = 4e-7;
-
-/// The WGSL module of the view.
-pub fn module() -> Module {
-    wgsl!("base/view.wgsl")
-}
 
 /// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint
 /// is `grain0 + grain t`.
@@ -120,14 +112,12 @@ impl View {
     pub fn uniform(&self) -> ViewUniform {
         ViewUniform {
             right: self.right.as_vec3(),
-            #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
             pixel: self.pixel as f32,
             up: self.up.as_vec3(),
             slack: CHORD_SLACK as f32,
             forward: self.forward.as_vec3(),
-            pad: 0.0,
             size: self.size,
-            pad2: [0; 2],
+            ..Zeroable::zeroed()
         }
     }
 

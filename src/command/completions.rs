@@ -9,7 +9,7 @@ use anyhow::Result;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Command};
 use clap_complete::engine::{
-    ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter,
+    ArgValueCandidates, ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter,
 };
 use clap_complete::env::{CompleteEnv, Shells};
 
@@ -48,30 +48,19 @@ pub fn answer(line: fn() -> Command) {
 /// Completes the argument PRESET: built-in names and files.
 pub fn presets() -> ArgValueCompleter {
     ArgValueCompleter::new(|current: &OsStr| {
-        let names = BUILTIN
-            .iter()
-            .map(|(name, _)| CompletionCandidate::new(name));
-        let mut found = starting_with(current, names);
+        let start = current.as_encoded_bytes();
+        let names = BUILTIN.iter().map(|(name, _)| *name);
+        let names = names.filter(|name| name.as_bytes().starts_with(start));
+        let mut found: Vec<_> = names.map(CompletionCandidate::new).collect();
         found.extend(PathCompleter::any().complete(current));
         found
     })
 }
 
 /// Completes the keys of `--set`.
-pub fn settings() -> ArgValueCompleter {
-    ArgValueCompleter::new(|current: &OsStr| {
-        let key = |(key, help): (String, &str)| {
-            CompletionCandidate::new(format!("{key}=")).help(Some(help.to_string().into()))
-        };
-        starting_with(current, keys().into_iter().map(key))
-    })
-}
-
-fn starting_with(
-    current: &OsStr,
-    all: impl Iterator<Item = CompletionCandidate>,
-) -> Vec<CompletionCandidate> {
-    let start = current.as_encoded_bytes();
-    all.filter(|c| c.get_value().as_encoded_bytes().starts_with(start))
-        .collect()
+pub fn settings() -> ArgValueCandidates {
+    let key = |(key, help): (String, &str)| {
+        CompletionCandidate::new(format!("{key}=")).help(Some(help.to_string().into()))
+    };
+    ArgValueCandidates::new(move || keys().into_iter().map(key).collect())
 }

@@ -45,40 +45,34 @@ impl Executor {
     /// # Errors
     /// No adapter matches, or it does not open. `auto` then takes the CPU executor.
     pub fn open(choice: &Choice) -> Result<(Self, String), DeviceError> {
-        Self::open_with(choice, STORAGE_BUFFERS)
+        Self::open_with(choice, STORAGE_BUFFERS, true)
     }
 
     /// As [`Executor::open`], for programs that bind up to so many storage buffers: cone maps
-    /// need fewer than pictures.
+    /// need fewer than pictures. `auto` takes a software adapter only if `software` is set.
     ///
     /// # Errors
     /// As [`Executor::open`].
-    pub fn open_with(choice: &Choice, storage_buffers: u32) -> Result<(Self, String), DeviceError> {
-        if *choice == Choice::Cpu {
-            return Ok(Self::cpu("as asked"));
-        }
-        let adapters = Adapters::find();
-        if *choice == Choice::Auto {
-            return Ok(match adapters.open_first(storage_buffers, true) {
-                Ok((device, why)) => Self::gpu(device, &why),
-                Err(why) => Self::cpu(&why),
-            });
-        }
-        let Some((adapter, why)) = adapters.choose(choice)? else {
-            return Ok(Self::cpu("as there is no adapter"));
+    pub fn open_with(
+        choice: &Choice,
+        storage_buffers: u32,
+        software: bool,
+    ) -> Result<(Self, String), DeviceError> {
+        let (device, why) = match choice {
+            Choice::Cpu => (None, "as asked".into()),
+            Choice::Auto => match Adapters::find().open_first(storage_buffers, software) {
+                Ok((device, why)) => (Some(device), why),
+                Err(why) => (None, why),
+            },
+            choice => match Adapters::find().choose(choice)? {
+                Some((adapter, why)) => (Some(Device::open(adapter, storage_buffers)?), why),
+                None => (None, "as there is no adapter".into()),
+            },
         };
-        let device = Device::open(adapter, storage_buffers)?;
-        Ok(Self::gpu(device, &why))
-    }
-
-    fn gpu(device: Device, why: &str) -> (Self, String) {
-        let who = format!("{} ({why})", device.info.name);
-        (Self::Gpu(Box::new(Renderer::new(device))), who)
-    }
-
-    fn cpu(why: &str) -> (Self, String) {
-        let who = format!("{} ({why})", Self::Cpu.name());
-        (Self::Cpu, who)
+        let gpu = |device| Self::Gpu(Box::new(Renderer::new(device)));
+        let executor = device.map_or(Self::Cpu, gpu);
+        let who = format!("{} ({why})", executor.name());
+        Ok((executor, who))
     }
 
     /// Renders a plan that passes [`Plan::check`].
@@ -98,36 +92,36 @@ impl Executor {
         }
     }
 
+    /// The device; `None` for the CPU.
+    pub fn device(&self) -> Option<&Device> {
+        match self {
+            Self::Gpu(renderer) => Some(&renderer.device),
+            Self::Cpu => None,
+        }
+    }
+
     /// Whether only the clock tells the time: on the CPU, and on devices without timestamps.
     pub fn is_untimed(&self) -> bool {
-        match self {
-            Self::Gpu(renderer) => renderer.device.tick_ns.is_none(),
-            Self::Cpu => true,
-        }
+        self.device().is_none_or(|device| device.tick_ns.is_none())
     }
 
     /// A warning if the executor's numbers are not precise enough for a plan. The f64 of the
     /// CPU always are.
     pub fn precision_warning(&self, plan: &Plan) -> Option<String> {
-        match self {
-            Self::Gpu(_) => plan.precision_warning(),
-            Self::Cpu => None,
-        }
+        self.device().and_then(|_| plan.precision_warning())
     }
 
     /// The device's name.
     pub fn name(&self) -> String {
-        match self {
-            Self::Gpu(renderer) => renderer.device.info.name.clone(),
-            Self::Cpu => format!("the CPU, f64 on {} threads", rayon::current_num_threads()),
+        match self.device() {
+            Some(device) => device.info.name.clone(),
+            None => format!("the CPU, f64 on {} threads", rayon::current_num_threads()),
         }
     }
 
     /// `vulkan`, `metal`, `dx12` or `cpu`.
     pub fn backend(&self) -> String {
-        match self {
-            Self::Gpu(renderer) => format!("{:?}", renderer.device.info.backend).to_lowercase(),
-            Self::Cpu => "cpu".into(),
-        }
+        let backend = |device: &Device| format!("{:?}", device.info.backend).to_lowercase();
+        self.device().map_or("cpu".into(), backend)
     }
 }

@@ -4,7 +4,9 @@ use clap::error::ErrorKind;
 use thiserror::Error;
 
 use crate::command::interrupt;
-use crate::gpu::render::RenderError;
+use crate::gpu::RenderError;
+use crate::heightfield::conemap::generate::generator::GenerateError;
+use crate::heightfield::file_error::FileError;
 use crate::preset::PresetError;
 
 /// The command line is wrong.
@@ -24,14 +26,14 @@ pub fn code(error: &anyhow::Error) -> u8 {
         return interrupt::code();
     }
     let wrong = error.is::<Usage>()
-        || error
-            .downcast_ref::<PresetError>()
-            .is_some_and(PresetError::is_usage);
+        || error.downcast_ref().is_some_and(PresetError::is_usage)
+        || error.downcast_ref().is_some_and(FileError::is_usage);
     if wrong { 2 } else { 1 }
 }
 
 fn is_cancelled(error: &anyhow::Error) -> bool {
     matches!(error.downcast_ref(), Some(RenderError::Cancelled))
+        || matches!(error.downcast_ref(), Some(GenerateError::Cancelled))
 }
 
 /// An error as one line.
@@ -45,17 +47,20 @@ pub fn sentence(error: &anyhow::Error) -> String {
 /// The sentence after an interrupt.
 pub const CANCELLED: &str = "cancelled; nothing was written";
 
-fn one_line(text: &str) -> String {
-    let words: Vec<&str> = text.split_whitespace().collect();
-    words.join(" ")
+/// A text on one line.
+pub fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// An error of the parser, which has several paragraphs, as one line without the usage block.
 pub fn flatten(error: &clap::Error) -> String {
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return "a command is missing; `conemarch --help` lists the commands".into();
+    }
     if error.kind() == ErrorKind::InvalidUtf8 {
         // The parser does not say which; paths are no reason for it.
-        let wrong = std::env::args_os().find(|a| a.to_str().is_none());
-        let wrong = wrong.unwrap_or_default();
+        let mut given = std::env::args_os();
+        let wrong = given.find(|a| a.to_str().is_none()).unwrap_or_default();
         return format!(
             "the argument `{}` is not UTF-8; only the names of files may be something else",
             wrong.to_string_lossy()

@@ -12,6 +12,7 @@ use signal_hook::flag;
 
 use crate::command::failure::CANCELLED;
 use crate::command::print::say;
+use crate::gpu::RenderError;
 use crate::picture;
 
 /// The signals that ask to end. A closed terminal sends a hang-up.
@@ -57,6 +58,17 @@ pub fn listen() {
 /// Whether to stop.
 pub fn asked() -> bool {
     code() != 0
+}
+
+/// Ends work that must not go on.
+///
+/// # Errors
+/// An interrupt came.
+pub fn check() -> Result<(), RenderError> {
+    match asked() {
+        true => Err(RenderError::Cancelled),
+        false => Ok(()),
+    }
 }
 
 /// The exit code that the signal asks for; 0 where none came.

@@ -8,6 +8,8 @@ use anyhow::Result;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 
+use crate::command::bench::Bench;
+use crate::command::conemap::ConeMapVerb;
 use crate::command::print::say;
 use crate::command::{bench, completions, conemap, devices, failure, presets, render};
 
@@ -27,10 +29,10 @@ enum Verb {
     Render(Box<render::Render>),
     /// Measure run time against error
     #[command(subcommand)]
-    Bench(bench::verb::Bench),
+    Bench(Bench),
     /// Make, inspect and convert cone maps of heights
     #[command(name = "conemap", subcommand)]
-    ConeMap(conemap::verb::ConeMapVerb),
+    ConeMap(ConeMapVerb),
     /// List the built-in presets, or print one
     Presets(presets::Presets),
     /// List the devices that can render
@@ -53,9 +55,7 @@ pub fn run() -> ExitCode {
     // that stays.
     set_hook(Box::new(|info| {
         if let Ok(mut said) = PANIC.lock() {
-            let text = info.to_string();
-            let words: Vec<&str> = text.split_whitespace().collect();
-            said.get_or_insert(words.join(" "));
+            said.get_or_insert(failure::one_line(&info.to_string()));
         }
     }));
     match catch_unwind(AssertUnwindSafe(|| line.run())) {
@@ -65,11 +65,8 @@ pub fn run() -> ExitCode {
             ExitCode::from(failure::code(&e))
         }
         Err(_) => {
-            let said = PANIC
-                .lock()
-                .ok()
-                .and_then(|s| s.clone())
-                .unwrap_or_default();
+            let said = PANIC.lock().ok().and_then(|said| said.clone());
+            let said = said.unwrap_or_default();
             say(&format!(
                 "error: a fault in conemarch itself, please report it: {said}"
             ));
@@ -86,10 +83,6 @@ fn refuse(error: &clap::Error) -> ExitCode {
             let _ = error.print();
             ExitCode::SUCCESS
         }
-        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            say("error: a command is missing; `conemarch --help` lists the commands");
-            ExitCode::from(2)
-        }
         _ => {
             say(&format!("error: {}", failure::flatten(error)));
             ExitCode::from(2)
@@ -101,8 +94,13 @@ impl Line {
     fn run(&self) -> Result<()> {
         match &self.verb {
             Verb::Render(args) => render::run(args),
-            Verb::Bench(bench) => bench::verb::run(bench),
-            Verb::ConeMap(verb) => conemap::verb::run(verb),
+            Verb::Bench(Bench::Error(args)) => bench::error::run(args),
+            Verb::Bench(Bench::Steps(args)) => bench::steps::run(args),
+            Verb::Bench(Bench::Cones(args)) => bench::cones::run(args),
+            Verb::Bench(Bench::Calibrate(args)) => bench::calibrate::run(args),
+            Verb::ConeMap(ConeMapVerb::Make(args)) => conemap::make::run(args),
+            Verb::ConeMap(ConeMapVerb::Inspect(args)) => conemap::inspect::run(args),
+            Verb::ConeMap(ConeMapVerb::Convert(args)) => conemap::convert::run(args),
             Verb::Presets(args) => presets::run(args),
             Verb::Devices => devices::run(),
             Verb::Completions(args) => completions::run(args),

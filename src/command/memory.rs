@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use anyhow::{Result, anyhow};
 use indicatif::BinaryBytes;
 
 use crate::heightfield::assets::Preparation;
@@ -13,18 +14,12 @@ const UNKNOWN: u64 = 16 << 30;
 
 /// Bytes that are available now: what the system says, within the limit of the control group
 /// if there is one.
-pub fn available() -> u64 {
-    let free = fs::read_to_string("/proc/meminfo")
-        .ok()
-        .and_then(|text| meminfo(&text));
-    let group = |file: &str| {
-        let text = fs::read_to_string(format!("/sys/fs/cgroup/{file}")).ok()?;
-        text.trim().parse::<u64>().ok()
-    };
-    let rest = group("memory.max").map(|most| {
-        let used = group("memory.current").unwrap_or(0);
-        most.saturating_sub(used)
-    });
+fn available() -> u64 {
+    let read = |file: &str| fs::read_to_string(file).ok();
+    let free = read("/proc/meminfo").and_then(|text| meminfo(&text));
+    let group = |file| -> Option<u64> { read(file)?.trim().parse().ok() };
+    let used = group("/sys/fs/cgroup/memory.current").unwrap_or(0);
+    let rest = group("/sys/fs/cgroup/memory.max").map(|most| most.saturating_sub(used));
     free.unwrap_or(UNKNOWN).min(rest.unwrap_or(u64::MAX))
 }
 
@@ -35,12 +30,34 @@ fn meminfo(text: &str) -> Option<u64> {
     kib.checked_mul(1024)
 }
 
+/// Checks that a render fits into memory: its pixels, and the cone maps that it needs.
+///
+/// # Errors
+/// It does not fit.
+pub fn check(plan: &Plan, bytes_per_pixel: u64, assets: &Assets) -> Result<()> {
+    let available = available();
+    let lacking = lacking(plan.size, bytes_per_pixel, available);
+    fits(lacking.or_else(|| lacking_for(plan, assets, available)))
+}
+
+/// Checks that making a cone map with so many ratios fits into memory.
+///
+/// # Errors
+/// It does not fit.
+pub fn check_map(ratios: u64) -> Result<()> {
+    fits(lacking_maps(ratios, available()))
+}
+
+fn fits(lacking: Option<String>) -> Result<()> {
+    lacking.map_or(Ok(()), |why| Err(anyhow!(why)))
+}
+
 /// Share of the available memory that an advised size may take: other programs may take some
 /// before it is tried.
 const ADVISED: f64 = 0.9;
 
 /// A sentence if a picture does not fit, with a size of the same shape that does.
-pub fn lacking([w, h]: [u32; 2], bytes_per_pixel: u64, available: u64) -> Option<String> {
+fn lacking([w, h]: [u32; 2], bytes_per_pixel: u64, available: u64) -> Option<String> {
     let pixels = u64::from(w) * u64::from(h);
     let needed = pixels * bytes_per_pixel;
     if needed <= available {
@@ -73,7 +90,7 @@ fn there_is(needed: u64, available: u64) -> String {
 const BYTES_PER_RATIO: u64 = 64;
 
 /// A sentence if cone maps with so many ratios do not fit.
-pub fn lacking_maps(ratios: u64, available: u64) -> Option<String> {
+fn lacking_maps(ratios: u64, available: u64) -> Option<String> {
     let needed = ratios.saturating_mul(BYTES_PER_RATIO);
     (needed > available).then(|| {
         format!(
@@ -84,21 +101,20 @@ pub fn lacking_maps(ratios: u64, available: u64) -> Option<String> {
 }
 
 /// A sentence if the cone maps that a plan needs do not fit.
-pub fn lacking_for(plan: &Plan, assets: &Assets, available: u64) -> Option<String> {
+fn lacking_for(plan: &Plan, assets: &Assets, available: u64) -> Option<String> {
     let ratios = |made: &Preparation| {
         let places: u64 = made.places.map(u64::from).iter().product();
         places * made.generator.channels() as u64
     };
-    lacking_maps(
-        plan.scene.preparations(assets).iter().map(ratios).sum(),
-        available,
-    )
+    let made = plan.scene.preparations(assets);
+    lacking_maps(made.iter().map(ratios).sum(), available)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::heightfield::settings::{HeightfieldSettings, Wrap};
+    use crate::command::arguments::size;
+    use crate::heightfield::settings::HeightfieldSettings;
     use crate::heightfield::tracer::TracerKind;
 
     #[test]
@@ -106,16 +122,15 @@ mod tests {
         assert_eq!(lacking([100, 100], 60, 600_000), None);
         let why = lacking([65_536, 65_536], 60, 1 << 30).unwrap_or_default();
         assert!(why.contains("240.00 GiB of memory, and 1.00 GiB"), "{why}");
-        for size in [[65_536, 65_536], [65_536, 1], [2, 65_536], [9, 9]] {
+        for asked in [[65_536, 65_536], [65_536, 1], [2, 65_536], [9, 9]] {
             for available in [60, 67, 600, 1201, 131_072, 1 << 20] {
-                let Some(why) = lacking(size, 60, available) else {
+                let Some(why) = lacking(asked, 60, available) else {
                     continue;
                 };
-                let advised = why.rsplit("--size ").next().unwrap_or_default();
-                let advised = advised.split(' ').next().unwrap_or_default();
-                match crate::command::size::read(advised) {
-                    Ok(advised) => assert_eq!(lacking(advised, 60, available), None),
-                    Err(_) => assert!(available < 67 && why.ends_with("free some memory")),
+                let advised = why.split("--size ").nth(1);
+                match advised.and_then(|rest| size(rest.split(' ').next()?).ok()) {
+                    Some(advised) => assert_eq!(lacking(advised, 60, available), None),
+                    None => assert!(available < 67 && why.ends_with("free some memory")),
                 }
             }
         }
@@ -132,7 +147,7 @@ mod tests {
     fn maps_are_weighed_by_their_ratios_before_heights_are_made() {
         let mut shape = HeightfieldSettings::default();
         shape.source.field = "fbm:8192x8192".into();
-        shape.source.wrap = Wrap::Both;
+        shape.source.options.wrap = [true; 2];
         shape.tracing.tracer = TracerKind::Quad;
         let lacking = |shape: &HeightfieldSettings, available| {
             let plan = Plan::new(shape.clone());

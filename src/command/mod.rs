@@ -1,5 +1,6 @@
 //! The command line: one verb in each file.
 
+pub mod arguments;
 pub mod bench;
 pub mod completions;
 pub mod conemap;
@@ -15,6 +16,5 @@ pub mod print;
 pub mod progress;
 pub mod render;
 pub mod sink;
-pub mod size;
 pub mod stats;
 pub mod table;

@@ -7,7 +7,7 @@ use anyhow::Result;
 
 use crate::command::failure::usage;
 use crate::command::render::Render;
-use crate::command::sink::is_stdout;
+use crate::command::sink::{ending, is_stdout};
 use crate::picture::frame::Frame;
 use crate::picture::{Layer, OutputError, Shades, write_exr, write_jpeg, write_png, write_webp};
 use crate::plan::Plan;
@@ -44,8 +44,7 @@ impl Format {
     /// # Errors
     /// The extension is unknown, or an option or the size does not fit the format.
     pub fn of(output: &Path, args: &Render, size: [u32; 2]) -> Result<Self> {
-        let extension = output.extension().and_then(|e| e.to_str());
-        let extension = extension.unwrap_or_default().to_lowercase();
+        let extension = ending(output);
         let known = FORMATS.iter().find(|(known, _)| *known == extension);
         let format = match known {
             _ if is_stdout(output) => Self::Png,
@@ -125,7 +124,7 @@ pub fn default_name(name: &str, args: &Render, plan: &Plan, own_size: [u32; 2]) 
         file += &format!("-{}x{}", plan.size[0], plan.size[1]);
     }
     if args.layer != Layer::Color {
-        file += &format!(".{}", args.layer.word());
+        file += &format!(".{}", args.layer.name());
     }
     let file = PathBuf::from(file + ".png");
     let same = || preset::find(&file).is_ok_and(|found| found.text == preset::write(plan));

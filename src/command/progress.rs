@@ -54,17 +54,14 @@ impl Progress {
         }
     }
 
-    /// What an executor calls while it renders: reports each pass, and stops at an interrupt.
+    /// What an executor calls while it renders.
     pub fn watch(&mut self) -> impl FnMut(&progress::Progress) -> bool + '_ {
-        |now| {
-            self.report(now.done, &now.pass);
-            !interrupt::asked()
-        }
+        |now| self.report(now.done, &now.pass)
     }
 
     /// Shows that a share of the work, 0..1, is done. `detail` says what is done now, like
-    /// the name of a pass; it may be empty.
-    pub fn report(&mut self, share: f64, detail: &str) {
+    /// the name of a pass; it may be empty. Returns whether to go on: no interrupt came.
+    pub fn report(&mut self, share: f64, detail: &str) -> bool {
         // Some work is done again in finer steps. What the round before took says nothing
         // about the time that is left.
         if share < self.share {
@@ -74,13 +71,11 @@ impl Progress {
         if let Some(bar) = &self.bar {
             bar.set_position((share * BAR_STEPS) as u64);
             bar.set_message(detail.to_string());
-            return;
-        }
-        let elapsed = self.start.elapsed();
-        if elapsed >= self.next_line {
-            self.next_line = elapsed + BETWEEN_LINES;
+        } else if self.start.elapsed() >= self.next_line {
+            self.next_line = self.start.elapsed() + BETWEEN_LINES;
             say(&line(&self.what, share, detail, self.round.elapsed()));
         }
+        !interrupt::asked()
     }
 }
 
@@ -114,14 +109,10 @@ mod tests {
 
     #[test]
     fn a_line_says_what_is_done_and_what_is_left() {
-        let line =
-            |share, detail, seconds| line("rendering", share, detail, Duration::from_secs(seconds));
-        assert_eq!(line(0.25, "", 4), "rendering: 25 %, about 12 s left");
-        assert_eq!(
-            line(0.5, "trace", 600),
-            "rendering: 50 % (trace), about 10 min left"
-        );
-        assert_eq!(line(0.0, "cones 43 %", 9), "rendering: 0 % (cones 43 %)");
+        let of = |share, detail, s| line("making", share, detail, Duration::from_secs(s));
+        assert_eq!(of(0.25, "", 4), "making: 25 %, about 12 s left");
+        assert_eq!(of(0.5, "a", 600), "making: 50 % (a), about 10 min left");
+        assert_eq!(of(0.0, "cones 43 %", 9), "making: 0 % (cones 43 %)");
     }
 
     #[test]

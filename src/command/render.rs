@@ -2,23 +2,22 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Result, bail};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use anyhow::Result;
+use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint, value_parser};
 
+use crate::command::arguments::{size, words};
 use crate::command::executor::{Executor, device};
 use crate::command::output::{Format, default_name};
 use crate::command::print::{print, say};
 use crate::command::progress::Progress;
 use crate::command::sink::{Parcel, Sink, apart, spared};
 use crate::command::stats::{Stats, summary};
-use crate::command::{completions, interrupt, memory, size};
-use crate::gpu::RenderError;
+use crate::command::{completions, interrupt, memory};
 use crate::gpu::device::Choice;
 use crate::measure::truth::{self, Cache};
 use crate::pass;
-use crate::picture::frame::Frame;
-use crate::picture::frame::errors;
+use crate::picture::frame::{Frame, errors};
 use crate::picture::{BitDepth, Layer};
 use crate::plan::{Extras, Plan};
 use crate::preset::{self, Override, Preset};
@@ -46,7 +45,7 @@ pub struct Render {
     output: Option<PathBuf>,
 
     /// Width and height in pixels, in place of the preset's
-    #[arg(long, value_name = "WxH", value_parser = size::read)]
+    #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
 
     /// Set one value of the preset; may be given again
@@ -84,19 +83,11 @@ pub struct Render {
 }
 
 fn layers() -> impl TypedValueParser<Value = Layer> {
-    let values = Layer::ALL.iter();
-    let values = values.map(|(word, _, help)| PossibleValue::new(word).help(help));
-    PossibleValuesParser::new(values).map(|word| {
-        let found = Layer::ALL.iter().find(|(known, _, _)| *known == word);
-        found.map_or(Layer::Color, |(_, layer, _)| *layer)
-    })
+    words(Layer::ALL.map(|layer| (layer, layer.name(), layer.facts())))
 }
 
 fn depths() -> impl TypedValueParser<Value = BitDepth> {
-    PossibleValuesParser::new(["8", "16"]).map(|bits| match bits.as_str() {
-        "16" => BitDepth::Sixteen,
-        _ => BitDepth::Eight,
-    })
+    words([(BitDepth::Eight, "8", ""), (BitDepth::Sixteen, "16", "")])
 }
 
 /// Renders a preset.
@@ -125,13 +116,7 @@ pub fn run(args: &Render) -> Result<()> {
     spared(&outputs[1..], preset.as_slice())?;
     let extras = extras(args, format);
     let per_pixel = format.bytes_per_pixel(args.device == Choice::Cpu);
-    let available = memory::available();
-    let lacking = memory::lacking(plan.size, per_pixel, available);
-    if let Some(why) =
-        lacking.or_else(|| memory::lacking_for(&plan.lean(extras), &assets, available))
-    {
-        bail!(why);
-    }
+    memory::check(&plan.lean(extras), per_pixel, &assets)?;
     for note in plan.scene.notes(&assets) {
         say(&format!("note: {note}"));
     }
@@ -151,7 +136,9 @@ pub fn run(args: &Render) -> Result<()> {
     if let Some(warning) = executor.precision_warning(&plan) {
         say(&format!("warning: {warning}"));
     }
-    let frame = march(&mut executor, &plan, &assets, extras)?;
+    let mut progress = Progress::start("rendering");
+    let frame = executor.render(&plan, &assets, extras, &mut progress.watch())?;
+    drop(progress);
     let errors = match args.layer {
         Layer::Error => {
             let mut progress = Progress::start("rendering the truth");
@@ -167,13 +154,9 @@ pub fn run(args: &Render) -> Result<()> {
         let mut frame = frame.clone();
         warm_times(&mut executor, &plan, &assets, &mut frame)?;
         let stats = Stats::new(&name, &plan, &executor, &frame);
-        let mut text = serde_json::to_vec_pretty(&stats)?;
-        text.push(b'\n');
-        parcel.put(figures, &text)?;
+        parcel.put_json(figures, &stats)?;
     }
-    if interrupt::asked() {
-        return Err(RenderError::Cancelled.into());
-    }
+    interrupt::check()?;
     parcel.hand_over()?;
     say(&summary(&output, &frame));
     if ends_at_the_eye(&frame, &plan) {
@@ -217,17 +200,6 @@ fn extras(args: &Render, format: Format) -> Extras {
     extras
 }
 
-/// Renders until done or interrupted, with progress.
-fn march(
-    executor: &mut Executor,
-    plan: &Plan,
-    assets: &Assets,
-    extras: Extras,
-) -> Result<Frame, RenderError> {
-    let mut progress = Progress::start("rendering");
-    executor.render(plan, assets, extras, &mut progress.watch())
-}
-
 /// Longest march that is done again for its time, in milliseconds.
 const MOST_AGAIN: f64 = 5_000.0;
 /// Warm runs that a median is taken of.
@@ -250,17 +222,14 @@ fn warm_times(
         ..Extras::default()
     };
     let watch = &mut |_: &_| !interrupt::asked();
-    let mut runs = Vec::new();
-    for _ in 0..AGAIN {
-        runs.push(executor.render(plan, assets, extras, watch)?);
-    }
+    let runs = (0..AGAIN).map(|_| executor.render(plan, assets, extras, watch));
+    let mut runs: Vec<Frame> = runs.collect::<Result<_, _>>()?;
     runs.sort_by(|a, b| a.march_ms.total_cmp(&b.march_ms));
     let middle = &runs[AGAIN / 2];
     frame.march_ms = middle.march_ms;
     // What was prepared is kept: only the first time tells what it takes.
     let passes = frame.passes.iter_mut().filter(|p| p.pass.marches());
-    let warm = middle.marched();
-    for (pass, warm) in passes.zip(warm) {
+    for (pass, warm) in passes.zip(middle.marched()) {
         pass.gpu_ms = warm.gpu_ms;
         pass.wall_ms = warm.wall_ms;
     }

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Context, Result};
+use serde::Serialize;
 
 use crate::command::failure::usage;
 use crate::command::print::deliver;
@@ -52,11 +53,9 @@ pub fn is_stdout(path: &Path) -> bool {
 /// # Errors
 /// Two options name the same file.
 pub fn apart(outputs: &[(&str, Option<&Path>)]) -> Result<()> {
-    let given = outputs
-        .iter()
-        .filter_map(|(option, path)| Some((option, (*path)?)));
     let mut seen: Vec<(&str, PathBuf)> = Vec::new();
-    for (option, path) in given {
+    for (option, path) in outputs {
+        let Some(path) = path else { continue };
         let file = file_of(path);
         if let Some((other, _)) = seen.iter().find(|(_, f)| *f == file) {
             return Err(usage(format!(
@@ -89,6 +88,20 @@ pub fn spared(outputs: &[(&str, Option<&Path>)], inputs: &[(&str, PathBuf)]) -> 
         }
     }
     Ok(())
+}
+
+/// The ending of a name, in small letters.
+pub fn ending(path: &Path) -> String {
+    let ending = path.extension().and_then(|e| e.to_str());
+    ending.unwrap_or_default().to_lowercase()
+}
+
+/// A name in messages.
+pub fn shown(path: &Path) -> String {
+    match is_stdout(path) {
+        true => "standard output".into(),
+        false => path.display().to_string(),
+    }
 }
 
 /// The file behind a name, with links and `..` resolved. It need not exist.
@@ -126,6 +139,16 @@ impl Parcel {
             }
         }
         Ok(())
+    }
+
+    /// Adds a result as JSON.
+    ///
+    /// # Errors
+    /// The disk is full.
+    pub fn put_json(&mut self, sink: Sink, content: &(impl Serialize + ?Sized)) -> Result<()> {
+        let mut text = serde_json::to_vec_pretty(content).context("JSON cannot be written")?;
+        text.push(b'\n');
+        Ok(self.put(sink, &text)?)
     }
 
     /// Adds a file that is written already.

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::command::executor::Executor;
-use crate::command::sink::is_stdout;
+use crate::command::sink::shown;
 use crate::picture::frame::{Frame, PassFigures};
 use crate::plan::{Pass, Plan};
 
@@ -93,12 +93,9 @@ pub fn summary(output: &Path, frame: &Frame) -> String {
         share if share < 0.05 => String::new(),
         share => format!(", shadows cut short {share:.1} %"),
     };
-    let name = match is_stdout(output) {
-        true => "standard output".into(),
-        false => output.display().to_string(),
-    };
     format!(
-        "{name}  {w} x {h}  {cones}march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %{shadows}",
+        "{}  {w} x {h}  {cones}march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %{shadows}",
+        shown(output),
         frame.march_ms
     )
 }

@@ -26,22 +26,17 @@ fn pad(rows: &mut [Vec<String>], numbers: bool) -> Vec<bool> {
 
 /// A Markdown table of rows. Columns that hold a number are aligned to the right.
 pub fn table<R>(rows: &[R], columns: &[Column<'_, R>]) -> String {
-    let mut cells = vec![
-        columns
-            .iter()
-            .map(|(head, _)| (*head).to_string())
-            .collect(),
-    ];
+    let heads = columns.iter().map(|(head, _)| (*head).to_string());
+    let mut cells = vec![heads.collect()];
     for row in rows {
         cells.push(columns.iter().map(|(_, cell)| cell(row)).collect());
     }
     let right = pad(&mut cells, true);
     let rule = cells[0].iter().zip(right).map(|(head, right)| {
         let dashes = "-".repeat(head.chars().count() + 1);
-        if right {
-            format!("{dashes}:")
-        } else {
-            format!(":{dashes}")
+        match right {
+            true => dashes + ":",
+            false => format!(":{dashes}"),
         }
     });
     let rule = format!("|{}|\n", rule.collect::<Vec<_>>().join("|"));

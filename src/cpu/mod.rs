@@ -49,27 +49,24 @@ pub fn render(
 ) -> Result<Frame, FrameError> {
     let plan = &*plan.lean(extras);
     let prepared = prepare(plan, assets, &mut generate, watch)?;
-    let job = Job {
+    let render = Render {
         plan,
-        light: Light::of(plan, assets),
+        light: &Light::of(plan, assets),
         ray_steps: plan.ray_steps(assets),
         extras,
+        watch,
     };
-    let mut frame = plan.solid(assets)?.run(Render { job: &job, watch })?;
+    let mut frame = plan.solid(assets)?.run(render)?;
     frame.finish(prepared);
     Ok(frame)
 }
 
 /// What is rendered.
-struct Job<'a> {
+struct Render<'a> {
     plan: &'a Plan,
-    light: Light,
+    light: &'a Light,
     ray_steps: u32,
     extras: Extras,
-}
-
-struct Render<'a> {
-    job: &'a Job<'a>,
     watch: Watch<'a>,
 }
 
@@ -77,11 +74,10 @@ impl Task for Render<'_> {
     type Output = Result<Frame, FrameError>;
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
-        let Job { plan, extras, .. } = *self.job;
+        let Self { plan, extras, .. } = self;
         let passes = plan.passes(extras);
         let mut run = Run {
             solid,
-            job: self.job,
             view: plan.view(),
             frame: Frame::blank(plan, extras),
             parents: None,
@@ -97,8 +93,8 @@ impl Task for Render<'_> {
             };
             let work = match pass {
                 Pass::March(level) => run.march(at, level, &mut bands)?,
-                Pass::Trace => run.trace(&mut bands)?,
-                Pass::Color => run.color(&mut bands)?,
+                Pass::Trace => run.trace(self.ray_steps, &mut bands)?,
+                Pass::Color => run.color(self.light, &mut bands)?,
                 // Done before all others.
                 Pass::Prepare(_) => continue,
             };
@@ -116,7 +112,6 @@ impl Task for Render<'_> {
 /// A render under way.
 struct Run<'a, S> {
     solid: &'a S,
-    job: &'a Job<'a>,
     view: View,
     frame: Frame,
     parents: Option<Proofs>,
@@ -129,7 +124,7 @@ type Sum = (u64, u64);
 
 impl<S: Solid> Run<'_, S> {
     fn march(&mut self, at: usize, level: Level, bands: &mut Bands) -> Result<Sum, FrameError> {
-        let cells = level.cells(self.job.plan.size);
+        let cells = level.cells(self.frame.size);
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
         let one = |cell| {
             let parent = parent_of(parents, cell);
@@ -159,9 +154,8 @@ impl<S: Solid> Run<'_, S> {
         Ok(sum)
     }
 
-    fn trace(&mut self, bands: &mut Bands) -> Result<Sum, FrameError> {
+    fn trace(&mut self, limit: u32, bands: &mut Bands) -> Result<Sum, FrameError> {
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
-        let limit = self.job.ray_steps;
         let one = |pixel| {
             let parent = parent_of(parents, pixel);
             let mut work = Work::default();
@@ -174,10 +168,9 @@ impl<S: Solid> Run<'_, S> {
         };
         let mut sum = (0, 0);
         let (frame, hits) = (&mut self.frame, &mut self.hits);
-        if !self.job.extras.depth_only {
-            hits.resize(frame.state.len(), Hit::default());
-        }
-        bands.over(self.job.plan.size, one, |i, (hit, state, work)| {
+        // As the colours, they are kept only if somebody asks for colours.
+        hits.resize(frame.radiance.len(), Hit::default());
+        bands.over(frame.size, one, |i, (hit, state, work)| {
             add(&mut sum, work);
             frame.state[i] = state as u8;
             if state != State::Sky {
@@ -190,19 +183,17 @@ impl<S: Solid> Run<'_, S> {
         Ok(sum)
     }
 
-    fn color(&mut self, bands: &mut Bands) -> Result<Sum, FrameError> {
+    fn color(&mut self, light: &Light, bands: &mut Bands) -> Result<Sum, FrameError> {
         let (solid, view, hits) = (self.solid, &self.view, &self.hits);
-        let light = &self.job.light;
-        let width = self.job.plan.size[0] as usize;
+        let size = self.frame.size;
         let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
-        let states = &self.frame.state;
+        let (states, undecided) = (&self.frame.state, &mut self.frame.undecided);
         let one = |pixel: [u32; 2]| {
-            let at = pixel[1] as usize * width + pixel[0] as usize;
+            let at = pixel[1] as usize * size[0] as usize + pixel[0] as usize;
             let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
             color::color(solid, light, &view.view_ray(pixel), &hits[at], state)
         };
-        let undecided = &mut self.frame.undecided;
-        bands.over(self.job.plan.size, one, |i, pixel| {
+        bands.over(size, one, |i, pixel| {
             set(radiance, i, pixel.radiance.as_vec3().to_array());
             set(normals, i, pixel.normal.as_vec3().to_array());
             *undecided += usize::from(!pixel.decided);

@@ -7,7 +7,7 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, DVec4, Vec4};
 
-use crate::base::key::{Fault, Key, Number};
+use crate::base::key::{Key, number};
 use crate::base::shader::Module;
 use crate::formula::contract::{Bounds, DistanceEstimate};
 use crate::{settings, wgsl};
@@ -33,9 +33,9 @@ pub struct BallsUniform {
 settings! {
     /// Three balls, two boxes and a vertical rod.
     pub struct Balls {
-        rod_radius: f64 = 0.05, Number(1e-6, 0.5), "radius of the rod";
-        box_size: f64 = 0.7, Number(1e-3, 1.2), "half edge of the larger box";
-        ball_radius: f64 = 1.0, Number(1e-3, 2.5), "radius of the largest ball";
+        rod_radius: f64 = 0.05, number(1e-6, 0.5), "radius of the rod";
+        box_size: f64 = 0.7, number(1e-3, 1.2), "half edge of the larger box";
+        ball_radius: f64 = 1.0, number(1e-3, 2.5), "radius of the largest ball";
     }
 }
 
@@ -43,23 +43,17 @@ settings! {
 const EXTENT: f64 = 3.0;
 
 impl Balls {
-    fn balls(&self) -> [DVec4; 3] {
+    /// Centre and radius of each ball, centre and half edge of each box, and x, y, half height
+    /// and radius of the rod.
+    fn solids(&self) -> [DVec4; 6] {
         [
             DVec4::new(0.0, 0.0, 0.0, self.ball_radius),
             DVec4::new(1.6, 0.4, -0.3, 0.45),
             DVec4::new(-0.9, -1.3, 0.9, 0.25),
-        ]
-    }
-
-    fn boxes(&self) -> [DVec4; 2] {
-        [
             DVec4::new(-1.6, 1.0, -0.4, self.box_size),
             DVec4::new(1.2, -1.5, -0.7, 0.35),
+            DVec4::new(0.4, -2.0, 1.8, self.rod_radius),
         ]
-    }
-
-    fn rod(&self) -> DVec4 {
-        DVec4::new(0.4, -2.0, 1.8, self.rod_radius)
     }
 }
 
@@ -72,40 +66,35 @@ impl DistanceEstimate for Balls {
         self.keys()
     }
 
-    fn check(&self) -> Result<(), Fault> {
-        Ok(())
-    }
-
     fn modules(&self) -> Vec<Module> {
         vec![wgsl!("formula/balls.wgsl")]
     }
 
     fn uniforms(&self, _iterations: u32) -> Vec<(&'static str, Vec<u8>)> {
-        let [ball0, ball1, ball2] = self.balls().map(|b| b.as_vec4());
-        let [box0, box1] = self.boxes().map(|b| b.as_vec4());
+        let [ball0, ball1, ball2, box0, box1, rod] = self.solids().map(|s| s.as_vec4());
         let solids = BallsUniform {
             ball0,
             ball1,
             ball2,
             box0,
             box1,
-            rod: self.rod().as_vec4(),
+            rod,
         };
         vec![("balls_parameters", bytes_of(&solids).to_vec())]
     }
 
     fn estimate(&self, p: DVec3, _most: u32) -> (f64, u32) {
+        let [balls @ .., box0, box1, rod] = self.solids();
         let mut d = f64::INFINITY;
-        for s in self.balls() {
+        for s in balls {
             d = d.min((p - s.truncate()).length() - s.w);
         }
-        for s in self.boxes() {
+        for s in [box0, box1] {
             let q = (p - s.truncate()).abs() - DVec3::splat(s.w);
             d = d.min(q.max(DVec3::ZERO).length() + q.max_element().min(0.0));
         }
-        let s = self.rod();
-        let nearest = DVec3::new(s.x, s.y, p.z.clamp(-s.z, s.z));
-        (d.min((p - nearest).length() - s.w), 1)
+        let nearest = DVec3::new(rod.x, rod.y, p.z.clamp(-rod.z, rod.z));
+        (d.min((p - nearest).length() - rod.w), 1)
     }
 
     fn trap(&self, p: DVec3, _most: u32) -> DVec3 {

@@ -28,17 +28,16 @@ impl Bounds {
 
     /// A lower bound of the distance to the region; 0 inside.
     pub fn distance(&self, p: DVec3) -> f64 {
-        let o = ((p - self.centre).abs() - self.half).max(DVec3::ZERO);
-        o.length()
-            .max(((p - self.centre).length() - self.radius).max(0.0))
+        let off = p - self.centre;
+        let beside = (off.abs() - self.half).max(DVec3::ZERO);
+        beside.length().max(off.length() - self.radius)
     }
 
     /// An upper bound of the distance from a point to any point of the region.
     pub fn farthest(&self, p: DVec3) -> f64 {
-        let corner = (p - self.centre).abs() + self.half;
-        corner
-            .length()
-            .min((p - self.centre).length() + self.radius)
+        let off = p - self.centre;
+        let corner = off.abs() + self.half;
+        corner.length().min(off.length() + self.radius)
     }
 }
 
@@ -52,7 +51,9 @@ pub trait DistanceEstimate {
     fn keys(&mut self) -> Vec<Key<'_>>;
 
     /// Checks that the parameters fit together.
-    fn check(&self) -> Result<(), Fault>;
+    fn check(&self) -> Result<(), Fault> {
+        Ok(())
+    }
 
     /// The WGSL modules with their constants.
     fn modules(&self) -> Vec<Module>;

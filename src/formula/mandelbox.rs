@@ -9,7 +9,8 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3};
 
-use crate::base::key::{AutoNumber, Fault, Key, Number, Switch, Triple, Word};
+use crate::base::key::{Fault, Key, auto_number, number, switch, triple, word};
+use crate::base::named::named_enum;
 use crate::base::shader::Module;
 use crate::formula::contract::{Bounds, DistanceEstimate};
 use crate::formula::rotation::Rotation;
@@ -48,33 +49,30 @@ pub struct MandelboxUniform {
     pub classic_skin: f32,
 }
 
-/// A distance estimate.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Estimate {
-    /// `(|z| - K) / (w + 1/(|s| - 1))`: a lower bound of the limit of `|z|/w`.
-    #[default]
-    Proven,
-    /// `(|z| - |s - 1|)/w - |s|^(1 - N)`: the form of other programs, for comparison. It
-    /// is too large at up to 8 % of points.
-    Classic,
+named_enum! {
+    /// A distance estimate.
+    pub enum Estimate {
+        /// `(|z| - K) / (w + 1/(|s| - 1))`: a lower bound of the limit of `|z|/w`.
+        Proven = "proven",
+        /// `(|z| - |s - 1|)/w - |s|^(1 - N)`: the form of other programs, for comparison. It
+        /// is too large at up to 8 % of points.
+        Classic = "classic",
+    }
 }
-
-const ESTIMATES: &[(&str, Estimate)] =
-    &[("proven", Estimate::Proven), ("classic", Estimate::Classic)];
 
 settings! {
     /// The Mandelbox and its parameters.
     pub struct Mandelbox {
-        scale: f64 = 2.0, Number(-100.0, 100.0), "factor after the folds; its size must be at least 1.001";
-        min_radius: f64 = 0.5, Number(1e-6, 1e3), "inner radius of the ball fold";
-        fixed_radius: f64 = 1.0, Number(1e-6, 1e3), "outer radius of the ball fold";
-        fold_limit: f64 = 1.0, Number(1e-3, 1e3), "half edge of the box fold";
-        rotation: DVec3 = DVec3::ZERO, Triple(-360.0, 360.0),
+        scale: f64 = 2.0, number(-100.0, 100.0), "factor after the folds; its size must be at least 1.001";
+        min_radius: f64 = 0.5, number(1e-6, 1e3), "inner radius of the ball fold";
+        fixed_radius: f64 = 1.0, number(1e-6, 1e3), "outer radius of the ball fold";
+        fold_limit: f64 = 1.0, number(1e-3, 1e3), "half edge of the box fold";
+        rotation: DVec3 = DVec3::ZERO, triple(-360.0, 360.0),
             "degrees about x, y, z between folds and scale";
-        julia: bool = false, Switch(), "add a constant instead of the starting point";
-        julia_constant: DVec3 = DVec3::ZERO, Triple(-1e3, 1e3), "that constant";
-        estimate: Estimate = Estimate::Proven, Word(ESTIMATES), "which distance estimate";
-        lipschitz: Option<f64> = None, AutoNumber(0.05, 100.0),
+        julia: bool = false, switch(), "add a constant instead of the starting point";
+        julia_constant: DVec3 = DVec3::ZERO, triple(-1e3, 1e3), "that constant";
+        estimate: Estimate = Estimate::Proven, word(&Estimate::WORDS), "which distance estimate";
+        lipschitz: Option<f64> = None, auto_number(0.05, 100.0),
             "steps divide by it; auto is the formula's own";
     }
 }
@@ -138,20 +136,17 @@ impl DistanceEstimate for Mandelbox {
     }
 
     fn check(&self) -> Result<(), Fault> {
-        // Below this the bounds exceed 4000 fold limits: too large for f32.
-        if self.scale.abs() < 1.001 {
-            return Err(Fault::new(
-                "scene.scale",
-                "the size of a Mandelbox's scale must be at least 1.001; 2 and -1.5 are classics",
-            ));
-        }
-        if self.min_radius > self.fixed_radius {
-            return Err(Fault::new(
-                "scene.min_radius",
-                format!("it must not exceed fixed_radius, {}", self.fixed_radius),
-            ));
-        }
-        Ok(())
+        Fault::unless(
+            // Below this the bounds exceed 4000 fold limits: too large for f32.
+            self.scale.abs() >= 1.001,
+            "scene.scale",
+            "the size of a Mandelbox's scale must be at least 1.001; 2 and -1.5 are classics",
+        )?;
+        Fault::unless(
+            self.min_radius <= self.fixed_radius,
+            "scene.min_radius",
+            format!("it must not exceed fixed_radius, {}", self.fixed_radius),
+        )
     }
 
     fn modules(&self) -> Vec<Module> {
@@ -166,7 +161,6 @@ impl DistanceEstimate for Mandelbox {
         ]
     }
 
-    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     fn uniforms(&self, iterations: u32) -> Vec<(&'static str, Vec<u8>)> {
         let (min2, fixed2) = self.radii2();
         let folds = MandelboxUniform {
@@ -257,39 +251,33 @@ impl DistanceEstimate for Mandelbox {
             let c = self.julia_constant.abs();
             let k = self.k(c.length());
             let unturned = (DVec3::splat(2.0 * l * s.abs()) + c) * self.tail();
-            let half = if rotated { DVec3::splat(k) } else { unturned };
-            (half, half.length().min(k))
+            (if rotated { DVec3::splat(k) } else { unturned }, k)
         } else if rotated {
             let radius = TWO_SQRT_3 * l * (s.abs() + 1.0) * self.tail();
             (DVec3::splat(radius), radius)
         } else if s > 0.0 {
-            return Bounds::cuboid(DVec3::splat(2.0 * l * (s + 1.0) * self.tail()));
+            let edge = 2.0 * l * (s + 1.0) * self.tail();
+            (DVec3::splat(edge), f64::INFINITY)
         } else {
-            return Bounds::cuboid(DVec3::splat(2.0 * l));
+            (DVec3::splat(2.0 * l), f64::INFINITY)
         };
         Bounds {
             centre: DVec3::ZERO,
             half,
-            radius,
+            radius: half.length().min(radius),
         }
     }
 
     fn iterations(&self, eps: f64) -> u32 {
         let s = self.scale.abs();
         let c = self.largest_c();
+        let skin = TWO_SQRT_3 * self.fold_limit * s + 2.0 * c;
         let n = if self.julia {
-            let skin = (TWO_SQRT_3 * self.fold_limit * s + 2.0 * c) * self.tail();
-            (skin / eps).ln() / s.ln()
+            (skin * self.tail() / eps).ln() / s.ln()
         } else {
-            (1.0 + (TWO_SQRT_3 * self.fold_limit * s + 2.0 * c) / eps).ln() / s.ln() - 1.0
+            (1.0 + skin / eps).ln() / s.ln() - 1.0
         };
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "clamped"
-        )]
-        let n = n.ceil().clamp(2.0, 1e6) as u32;
-        n
+        n.ceil().clamp(2.0, 1e6) as u32
     }
 }
 
@@ -312,56 +300,37 @@ fn slope(scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::iter;
 
-    /// A linear congruential generator of numbers from 0 to 1.
-    struct Random(u64);
-
-    impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005);
-            self.0 = self.0.wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-        }
-        fn point(&mut self) -> DVec3 {
-            DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0
-        }
+    /// A point of the cube from -1 to 1: they fill it evenly.
+    fn point(i: u32) -> DVec3 {
+        let steps = DVec3::new(0.819_172_513, 0.671_043_607, 0.549_700_478);
+        (f64::from(i) * steps).fract() * 2.0 - 1.0
     }
 
     /// The largest share of a ball's radius by which a ray from its centre meets the surface
-    /// inside the ball, over random points and rays.
+    /// inside the ball, over many points and rays.
     fn worst_ball(shape: &Mandelbox, lipschitz: f64) -> f64 {
-        let mut random = Random(7);
         let size = shape.bounds().half.x;
         let skin = 1e-4 * size;
         let most = shape.iterations(skin);
+        let estimate = |p: DVec3| shape.estimate(p, most).0;
         let mut worst = 0.0_f64;
-        for _ in 0..4000 {
-            let mut p = random.point() * size;
-            let mut d = shape.estimate(p, most).0 / lipschitz;
-            // Come closer to the surface, where folds are dense, in a random direction.
-            let towards = random.point().normalize_or_zero();
-            for _ in 0..8 {
-                let q = p + 0.9 * d * towards;
-                let e = shape.estimate(q, most).0 / lipschitz;
-                if e < 10.0 * skin {
-                    break;
-                }
-                (p, d) = (q, e);
-            }
-            if d < 10.0 * skin {
+        for i in 0..4000 {
+            // Come closer to the surface, where folds are dense, in some direction.
+            let towards = point(7919 * i).normalize_or_zero();
+            let closer = |p: &DVec3| Some(p + 0.9 * estimate(*p) / lipschitz * towards);
+            let path = iter::successors(Some(point(i) * size), closer).take(9);
+            let balls = path.map(|p| (p, estimate(p) / lipschitz));
+            let Some((p, d)) = balls.take_while(|(_, d)| *d > 10.0 * skin).last() else {
                 continue;
-            }
-            for _ in 0..4 {
-                let u = random.point().normalize_or_zero();
-                let mut t = 0.0;
-                while t < d {
-                    let e = shape.estimate(p + t * u, most).0;
-                    if e < skin {
-                        worst = worst.max((d - t) / d);
-                        break;
-                    }
-                    t += 0.1 * e;
-                }
+            };
+            for j in 0..4 {
+                let u = point(104_729 * (4 * i + j)).normalize_or_zero();
+                let along = |t: &f64| Some(t + 0.1 * estimate(p + t * u));
+                let mut way = iter::successors(Some(0.0), along).take_while(|t| *t < d);
+                let met = way.find(|t| estimate(p + t * u) < skin);
+                worst = worst.max(met.map_or(0.0, |t| (d - t) / d));
             }
         }
         worst

@@ -46,10 +46,3 @@ macro_rules! formulas {
 }
 
 formulas![mandelbox::Mandelbox, balls::Balls];
-
-impl Formula {
-    /// The formula with a name, with its default parameters.
-    pub fn named(name: &str) -> Option<Formula> {
-        Self::all().into_iter().find(|f| f.name() == name)
-    }
-}

@@ -111,7 +111,7 @@ impl Renderer {
         let prepared = prepare(plan, assets, maker, watch)?;
         let scene = plan.solid(assets)?;
         let passes = plan.passes(extras);
-        let coarsest = plan.pyramid().coarsest();
+        let coarsest = plan.coarsest();
         let layout =
             |block| turn::Layout::new(block, coarsest, extras.count, scene.twin().marks_hits());
         let blocks = Block::cut(plan.size, self.cutting.block, coarsest);

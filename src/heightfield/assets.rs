@@ -9,18 +9,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 use bytemuck::cast_slice;
 use glam::DVec2;
 
-use super::conemap::generate::generator::Generator;
-use super::height_surface::{HeightSurface, HeightSurfaceError};
-use super::heights::{Patches, cells};
-use super::load::PatternSpec;
-use super::paint::{Colors, Paint};
-use super::placement::Placement;
-use super::settings::HeightfieldSettings;
-use super::source::Source;
-use super::texture::Texture;
-use super::tracer::settings::{Make, PrepareError, Supply, on_cpu, without_cones};
-use super::tracer::{Tracer, TracerKind};
 use crate::base::key::Fault;
+use crate::heightfield::conemap::generate::Generator;
+use crate::heightfield::load::PatternSpec;
+use crate::heightfield::paint::{Colors, Paint};
+use crate::heightfield::tracer::settings::{Make, PrepareError, Supply, on_cpu, without_cones};
+use crate::heightfield::tracer::{Tracer, TracerKind};
+use crate::heightfield::{
+    HeightSurface, Patches, height_surface::HeightSurfaceError, placement::Placement,
+    settings::HeightfieldSettings, source::Source, texture::Texture,
+};
 
 /// What decides a surface.
 type SurfaceKey = (Source, Patches, [u32; 2]);
@@ -60,7 +58,7 @@ pub struct Ready {
     /// Heights, and the pyramid of their maxima.
     pub surface: Arc<HeightSurface>,
     /// The tracer of rays, with its cones.
-    pub tracer: Arc<dyn Tracer>,
+    pub tracer: Arc<Tracer>,
     /// What picks the colours.
     pub colors: Colors,
     /// The place in the world.
@@ -114,10 +112,7 @@ impl Assets {
     /// # Errors
     /// As [`Assets::prepare`].
     pub fn ready(&self, settings: &HeightfieldSettings, grain: f64) -> Result<Ready, PrepareError> {
-        let surface = self.surface(settings)?;
-        let cones = self.cones(settings, &surface, &mut on_cpu)?;
-        let paint = self.paint(settings, &surface, &mut on_cpu)?;
-        self.assembled(settings, surface, (*cones).as_ref(), paint, grain)
+        self.assembled(settings, grain, &mut on_cpu)
     }
 
     /// As [`Assets::ready`], with empty maps in place of maps that a generator makes. The
@@ -130,15 +125,12 @@ impl Assets {
         settings: &HeightfieldSettings,
         grain: f64,
     ) -> Result<Ready, PrepareError> {
-        let surface = self.surface(settings)?;
-        let tracing = &settings.tracing;
-        let cones = tracing.cones(&surface, &settings.source.folder, &mut without_cones)?;
-        let paint = |by| -> Result<_, PrepareError> {
-            let map = tracing.made(by, &surface, &mut without_cones)?;
-            Ok(Arc::new(Paint::new(&map)))
+        let without_maps = Self {
+            cones: Last::default(),
+            paints: Last::default(),
+            ..self.clone()
         };
-        let paint = settings.paint.map(paint).transpose()?;
-        self.assembled(settings, surface, cones.as_ref(), paint, grain)
+        without_maps.assembled(settings, grain, &mut without_cones)
     }
 
     /// The cone maps that a generator makes; none if the heights cannot be loaded.
@@ -153,7 +145,11 @@ impl Assets {
     /// The largest number of steps that a ray can take; `None` if the heights cannot be loaded.
     pub fn most_steps(&self, settings: &HeightfieldSettings) -> Option<u32> {
         let surface = self.surface(settings).ok()?;
-        Some(settings.most_steps(surface.domain().map(i32::unsigned_abs)))
+        Some(
+            settings
+                .tracing
+                .most_steps(surface.domain().map(i32::unsigned_abs)),
+        )
     }
 
     /// Notes about the named files: what was ignored in them, and what could not be checked.
@@ -196,11 +192,12 @@ impl Assets {
     fn assembled(
         &self,
         settings: &HeightfieldSettings,
-        surface: Arc<HeightSurface>,
-        cones: Option<&Supply>,
-        paint: Option<Arc<Paint>>,
         grain: f64,
+        make: Make<'_>,
     ) -> Result<Ready, PrepareError> {
+        let surface = self.surface(settings)?;
+        let cones = self.cones(settings, &surface, &mut *make)?;
+        let paint = self.paint(settings, &surface, make)?;
         let [w, h] = surface.domain().map(f64::from);
         let placement = settings.placement(DVec2::new(w, h));
         let pixel = placement.texel / (2.0 * grain);
@@ -210,7 +207,9 @@ impl Assets {
             (None, None) => Colors::Height,
         };
         Ok(Ready {
-            tracer: settings.tracing.tracer(&surface, cones, pixel)?,
+            tracer: settings
+                .tracing
+                .tracer(&surface, (*cones).as_ref(), pixel)?,
             colors,
             placement,
             surface,
@@ -225,11 +224,8 @@ impl Assets {
             Some(pattern) => pattern.ok()?.size,
             None => self.surface(settings).ok()?.heights().size(),
         };
-        Some(if generator.over_cells() {
-            cells(size, settings.source.wrap.axes(), settings.patches)
-        } else {
-            size
-        })
+        let kind = generator.kind();
+        Some(kind.places(size, settings.source.options.wrap, settings.patches))
     }
 
     fn surface(&self, settings: &HeightfieldSettings) -> Result<Arc<HeightSurface>, Fault> {
@@ -241,11 +237,11 @@ impl Assets {
             let loaded = source.load()?;
             let made = HeightSurface::new(loaded.heights, *patches, *tiles);
             Ok(Ground {
-                surface: Arc::new(made.map_err(|e| tiles_fault(&e))?),
+                surface: Arc::new(made.map_err(tiles_fault)?),
                 note: loaded.note,
             })
         };
-        self.surfaces.get(surface_key(settings), make)
+        kept(&self.surfaces, surface_key(settings), make)
     }
 
     fn texture(&self, settings: &HeightfieldSettings) -> Result<Option<Arc<Texture>>, Fault> {
@@ -253,7 +249,7 @@ impl Assets {
             return Ok(None);
         }
         let path = settings.source.folder.join(&settings.texture);
-        let read = self.textures.get(path, |path| Texture::read(path));
+        let read = kept(&self.textures, path, |path| Texture::read(path));
         read.map(Some)
             .map_err(|why| Fault::new("scene.texture", why))
     }
@@ -266,8 +262,9 @@ impl Assets {
     ) -> Result<Arc<Option<Supply>>, PrepareError> {
         let t = &settings.tracing;
         let key = (surface_key(settings), t.tracer, t.map.clone(), t.offset);
-        self.cones
-            .get(key, |_| t.cones(surface, &settings.source.folder, make))
+        kept(&self.cones, key, |_| {
+            t.cones(surface, &settings.source.folder, make)
+        })
     }
 
     fn paint(
@@ -281,7 +278,7 @@ impl Assets {
         };
         let tracing = &settings.tracing;
         let key = (surface_key(settings), by, tracing.offset);
-        let made = self.paints.get(key, |_| -> Result<_, PrepareError> {
+        let made = kept(&self.paints, key, |_| -> Result<_, PrepareError> {
             if tracing.generator() == Some(by)
                 && let Some(supply) = &*self.cones(settings, surface, make)?
             {
@@ -298,42 +295,29 @@ fn surface_key(settings: &HeightfieldSettings) -> SurfaceKey {
 }
 
 /// A fault of `scene.tiles`.
-pub(super) fn tiles_fault(e: &HeightSurfaceError) -> Fault {
+pub(super) fn tiles_fault(e: HeightSurfaceError) -> Fault {
     Fault::new("scene.tiles", e.to_string())
 }
 
-/// The last value that was made, with its key.
-#[derive(Debug)]
-struct Last<K, V>(Arc<Mutex<Kept<K, V>>>);
+/// The last value that was made, with its key. Clones share it.
+type Last<K, V> = Arc<Mutex<Option<(K, Arc<V>)>>>;
 
-type Kept<K, V> = Option<(K, Arc<V>)>;
-
-impl<K: PartialEq, V> Last<K, V> {
-    /// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.
-    fn get<E>(&self, key: K, make: impl FnOnce(&K) -> Result<V, E>) -> Result<Arc<V>, E> {
-        // After a panic in `make` the old value is still there.
-        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((of, value)) = &*last
-            && *of == key
-        {
-            return Ok(value.clone());
-        }
-        let value = Arc::new(make(&key)?);
-        *last = Some((key, value.clone()));
-        Ok(value)
+/// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.
+fn kept<K: PartialEq, V, E>(
+    last: &Last<K, V>,
+    key: K,
+    make: impl FnOnce(&K) -> Result<V, E>,
+) -> Result<Arc<V>, E> {
+    // After a panic in `make` the old value is still there.
+    let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((of, value)) = &*last
+        && *of == key
+    {
+        return Ok(value.clone());
     }
-}
-
-impl<K, V> Default for Last<K, V> {
-    fn default() -> Self {
-        Self(Arc::default())
-    }
-}
-
-impl<K, V> Clone for Last<K, V> {
-    fn clone(&self) -> Self {
-        Self(self.0.clone())
-    }
+    let value = Arc::new(make(&key)?);
+    *last = Some((key, value.clone()));
+    Ok(value)
 }
 
 #[cfg(test)]
@@ -345,14 +329,14 @@ mod tests {
         let last = Last::<u32, u32>::default();
         let mut made = 0;
         for (key, times) in [(1, 1), (1, 1), (2, 2), (1, 3)] {
-            let value = last.clone().get(key, |k| {
+            let value = kept(&last.clone(), key, |k| {
                 made += 1;
                 Ok::<u32, ()>(10 * k)
             });
             assert_eq!(value, Ok(Arc::new(10 * key)));
             assert_eq!(made, times);
         }
-        assert_eq!(last.get(3, |_| Err("no")), Err("no"));
-        assert_eq!(last.get(1, |_| Err("no")), Ok(Arc::new(10)));
+        assert_eq!(kept(&last, 3, |_| Err("no")), Err("no"));
+        assert_eq!(kept(&last, 1, |_| Err("no")), Ok(Arc::new(10)));
     }
 }

@@ -10,10 +10,7 @@ use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
 use thiserror::Error;
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::mips::rounded_down;
-use crate::heightfield::heights::{Heights, Patches, bilinear};
-use crate::heightfield::max_mip::MaxMip;
+use crate::heightfield::{ConeMap, Heights, MaxMip, Patches, heights::bilinear};
 use crate::wgsl;
 
 /// Most cells along an axis of the domain. Up to there f32 resolves 1/256 of a texel.
@@ -124,6 +121,19 @@ pub struct HeightSurface {
     maxima: MaxMip,
 }
 
+/// Checks that tiles of so many cells are not too many.
+///
+/// # Errors
+/// No tiles, or too many.
+pub fn check_tiles(cells: [u32; 2], tiles: [u32; 2]) -> Result<(), HeightSurfaceError> {
+    for (axis, (cells, tiles)) in cells.into_iter().zip(tiles).enumerate() {
+        if tiles == 0 || u64::from(cells) * u64::from(tiles) > u64::from(MOST_CELLS) {
+            return Err(HeightSurfaceError::Tiles { axis, cells, tiles });
+        }
+    }
+    Ok(())
+}
+
 impl HeightSurface {
     /// A surface of `tiles` repetitions along each axis.
     ///
@@ -135,14 +145,9 @@ impl HeightSurface {
         tiles: [u32; 2],
     ) -> Result<Self, HeightSurfaceError> {
         let cells = heights.cells(patches);
-        for axis in 0..2 {
-            let (cells, tiles) = (cells[axis], tiles[axis]);
-            if tiles == 0 || u64::from(cells) * u64::from(tiles) > u64::from(MOST_CELLS) {
-                return Err(HeightSurfaceError::Tiles { axis, cells, tiles });
-            }
-            if tiles > 1 && !heights.wrap()[axis] {
-                return Err(HeightSurfaceError::Unwrapped(axis));
-            }
+        check_tiles(cells, tiles)?;
+        if let Some(axis) = (0..2).find(|a| tiles[*a] > 1 && !heights.wrap()[*a]) {
+            return Err(HeightSurfaceError::Unwrapped(axis));
         }
         Ok(Self {
             domain: [0, 1].map(|a| (cells[a] * tiles[a]) as i32),
@@ -235,12 +240,8 @@ impl HeightSurface {
         ]
     }
 
-    /// Bytes to bind, by the names of the WGSL variables, for a tracer with or without a map.
-    pub fn buffers(
-        &self,
-        map: Option<&ConeMap>,
-        tracer: TracerParameters,
-    ) -> Vec<(&'static str, Vec<u8>)> {
+    /// Bytes to bind, by the names of the WGSL variables, for a tracer; its ratios are bound apart.
+    pub fn buffers(&self, map: &ConeMap, tracer: TracerParameters) -> Vec<(&'static str, Vec<u8>)> {
         let mut starts = [0; MOST_LEVELS];
         let mut maxima: Vec<f32> = Vec::new();
         for (start, level) in starts.iter_mut().zip(&self.maxima.levels) {
@@ -252,8 +253,8 @@ impl HeightSurface {
             cells: self.cells.map(|n| n as i32),
             domain: self.domain,
             wrap: self.heights.wrap().map(u32::from),
-            places: map.map_or([1, 1], |m| m.size.map(|n| n as i32)),
-            offset: map.map_or(0.0, |m| m.offset as f32),
+            places: map.size.map(|n| n as i32),
+            offset: map.offset as f32,
             scale: tracer.scale as f32,
             levels: self.maxima.levels.len() as u32,
             steps: tracer.steps,
@@ -261,13 +262,9 @@ impl HeightSurface {
             rounds: tracer.rounds,
             starts,
         };
-        let ratios: Vec<f32> = map.map_or(vec![0.0], |m| {
-            m.ratios.iter().map(|r| rounded_down(*r)).collect()
-        });
         vec![
             ("relief_parameters", bytes_of(&uniform).to_vec()),
             ("heights", cast_slice(self.heights.data()).to_vec()),
-            ("ratios", cast_slice(&ratios).to_vec()),
             ("maxima", cast_slice(&maxima).to_vec()),
         ]
     }

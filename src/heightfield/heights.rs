@@ -165,10 +165,9 @@ impl Heights {
 
     /// Apexes of all cells, row by row.
     pub fn apexes(&self, patches: Patches) -> Vec<f32> {
-        let [w, h] = self.cells(patches);
-        let cells = (0..h).flat_map(|y| (0..w).map(move |x| (i64::from(x), i64::from(y))));
+        let cells = grid(self.cells(patches)).map(|cell| cell.map(i64::from));
         cells
-            .map(|(x, y)| self.apex(patches, x, y) as f32)
+            .map(|[x, y]| self.apex(patches, x, y) as f32)
             .collect()
     }
 
@@ -216,15 +215,28 @@ pub fn cells(size: [u32; 2], wrap: [bool; 2], patches: Patches) -> [u32; 2] {
     })
 }
 
-/// Which axes wrap as a word: `none`, `x`, `y` or `xy`.
+/// Words for the axes that wrap.
+pub const WRAPS: [(&str, [bool; 2]); 4] = [
+    ("none", [false, false]),
+    ("x", [true, false]),
+    ("y", [false, true]),
+    ("xy", [true, true]),
+];
+
+/// Which axes wrap as a word.
 pub fn wrap_name(wrap: [bool; 2]) -> &'static str {
-    ["none", "x", "y", "xy"][usize::from(wrap[0]) + 2 * usize::from(wrap[1])]
+    WRAPS[usize::from(wrap[0]) + 2 * usize::from(wrap[1])].0
 }
 
-/// The axes that a word of [`wrap_name`] means.
+/// The axes that a word of [`WRAPS`] means.
 pub fn wrap_named(word: &str) -> Option<[bool; 2]> {
-    let all = [[false, false], [true, false], [false, true], [true, true]];
-    all.into_iter().find(|wrap| wrap_name(*wrap) == word)
+    let found = WRAPS.into_iter().find(|(name, _)| *name == word);
+    found.map(|(_, wrap)| wrap)
+}
+
+/// The places of a grid, row by row.
+pub fn grid([w, h]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+    (0..h).flat_map(move |y| (0..w).map(move |x| [x, y]))
 }
 
 /// One axis of a grid of places.

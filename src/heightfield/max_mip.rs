@@ -2,6 +2,17 @@
 //! any size: each level halves the one below rounding up, so that no row or column is
 //! lost. Twin: `wgsl/heightfield/max_mip.wgsl`.
 
+use crate::heightfield::heights::grid;
+
+/// A rectangle of places: the lowest and the highest along each axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Places {
+    /// Lowest.
+    pub low: [u32; 2],
+    /// Highest.
+    pub high: [u32; 2],
+}
+
 /// Values of one level, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MipLevel {
@@ -43,24 +54,26 @@ impl MaxMip {
     fn halved(below: &MipLevel) -> MipLevel {
         let size = below.size.map(|n| n.div_ceil(2));
         let last = below.size.map(|n| n - 1);
-        let over = |x: u32, y: u32| {
+        let over = |[x, y]: [u32; 2]| {
             let (right, down) = ((2 * x + 1).min(last[0]), (2 * y + 1).min(last[1]));
             let top = below.at(2 * x, 2 * y).max(below.at(right, 2 * y));
             top.max(below.at(2 * x, down)).max(below.at(right, down))
         };
-        let max = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| over(x, y)));
-        MipLevel {
-            size,
-            max: max.collect(),
-        }
+        let max = grid(size).map(over).collect();
+        MipLevel { size, max }
     }
 
     /// The places `low..=high` of the grid under a node.
-    pub fn places(&self, level: usize, x: u32, y: u32) -> ([u32; 2], [u32; 2]) {
+    pub fn places(&self, level: usize, node: [u32; 2]) -> Places {
         let grid = self.levels[0].size;
-        let low = [x << level, y << level];
+        let low = node.map(|i| i << level);
         let high = [0, 1].map(|a| (low[a] + (1 << level) - 1).min(grid[a] - 1));
-        (low, high)
+        Places { low, high }
+    }
+
+    /// The level of the single node.
+    pub fn coarsest(&self) -> u32 {
+        self.levels.len() as u32 - 1
     }
 
     /// The largest value of all.

@@ -4,6 +4,7 @@
 //! - [`assets`]: loads and makes what the settings name, and keeps it
 //! - [`pattern`]: heights made from numbers; [`load`]: heights read from files
 //! - [`raster`]: numbers of PNG, EXR, TIFF and other files
+//! - [`file_error`]: why a file of heights or cones cannot be used
 //! - [`heights`], [`patch`]: samples, and the surface between them
 //! - [`height_surface`]: heights with their pyramid of maxima ([`max_mip`]); [`region_max`]:
 //!   the maximum over a rectangle
@@ -14,6 +15,7 @@
 
 pub mod assets;
 pub mod conemap;
+pub mod file_error;
 pub mod height_surface;
 pub mod heights;
 pub mod load;
@@ -28,3 +30,9 @@ pub mod settings;
 pub mod source;
 pub mod texture;
 pub mod tracer;
+
+pub use conemap::{ConeMap, MapKind};
+pub use file_error::FileError;
+pub use height_surface::HeightSurface;
+pub use heights::{Heights, Patches};
+pub use max_mip::MaxMip;

@@ -4,11 +4,8 @@
 use std::sync::Arc;
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::generator::Generator;
-use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::heights::Patches;
-use crate::heightfield::texture::Texture;
+use crate::heightfield::conemap::generate::Generator;
+use crate::heightfield::{ConeMap, HeightSurface, Patches, texture::Texture};
 use crate::wgsl;
 
 /// What may pick the hue. `brute` is missing because its map is that of `exact`.
@@ -17,7 +14,8 @@ pub const PAINTS: &[(&str, Option<Generator>)] = &{
     let mut paints = [("height", None); Generator::ALL.len()];
     let mut i = 1;
     while i < paints.len() {
-        paints[i] = (Generator::ALL[i].name(), Some(Generator::ALL[i]));
+        let (name, generator) = Generator::WORDS[i];
+        paints[i] = (name, Some(generator));
         i += 1;
     }
     paints

@@ -38,7 +38,8 @@ impl Placement {
         }
     }
 
-    fn units(&self) -> DVec3 {
+    /// World lengths of the local units.
+    pub fn units(&self) -> DVec3 {
         DVec3::new(self.texel, self.texel, self.depth)
     }
 

@@ -4,22 +4,18 @@ use std::path::PathBuf;
 
 use glam::{DVec2, DVec3};
 
-use super::assets::tiles_fault;
-use super::conemap::generate::generator::Generator;
-use super::height_surface::{HeightSurfaceError, MOST_CELLS};
-use super::heights::{Patches, cells};
-use super::load::PatternSpec;
-use super::paint::PAINTS;
-use super::placement::Placement;
-use super::tracer::TracerKind;
-use super::tracer::settings::TracerSettings;
-use crate::base::key::{Counts, Fault, Key, Number, Text, Triple, Word};
+use crate::base::key::{Fault, Key, counts, number, text, triple, word};
+use crate::heightfield::conemap::generate::Generator;
+use crate::heightfield::load::PatternSpec;
+use crate::heightfield::tracer::{TracerKind, settings::TracerSettings};
+use crate::heightfield::{
+    Patches, assets::tiles_fault, height_surface::check_tiles, heights::cells, paint::PAINTS,
+    placement::Placement,
+};
 use crate::keys;
 
-pub use super::source::{Source, Wrap};
+pub use super::source::Source;
 
-/// The words of the key `surface`.
-const PATCHES: &[(&str, Patches)] = &[("bilinear", Patches::Bilinear), ("boxes", Patches::Boxes)];
 /// The value of `texture` for none.
 const NO_TEXTURE: &str = "none";
 
@@ -70,21 +66,21 @@ impl HeightfieldSettings {
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         let mut keys = self.source.keys();
         keys.extend(keys![
-            "surface" = Word(&mut self.patches, PATCHES),
+            "surface" = word(&mut self.patches, &Patches::WORDS),
                 "what lies between the samples";
-            "tiles" = Counts(&mut self.tiles, 1, 256),
+            "tiles" = counts(&mut self.tiles, 1, 256),
                 "number of copies of the map along x and y";
-            "width" = Number(&mut self.width, 1e-6, 1e6),
+            "width" = number(&mut self.width, 1e-6, 1e6),
                 "world length of the block's longer side";
-            "depth" = Number(&mut self.depth, 1e-6, 1e6),
+            "depth" = number(&mut self.depth, 1e-6, 1e6),
                 "world length of the height 1";
-            "centre" = Triple(&mut self.centre, -1e6, 1e6),
+            "centre" = triple(&mut self.centre, -1e6, 1e6),
                 "the middle of the block's base";
-            "turn" = Triple(&mut self.turn, -360.0, 360.0),
+            "turn" = triple(&mut self.turn, -360.0, 360.0),
                 "rotation in degrees about x, then y, then z";
-            "paint" = Word(&mut self.paint, PAINTS),
+            "paint" = word(&mut self.paint, PAINTS),
                 "what picks the colour: the height, or the width of the cones in a generator's map";
-            "texture" = Text(&mut self.texture),
+            "texture" = text(&mut self.texture),
                 "a PNG, JPEG or WebP that colours each tile in place of the palette; \"none\" for none";
         ]);
         keys.extend(self.tracing.keys());
@@ -95,7 +91,7 @@ impl HeightfieldSettings {
     pub fn check(&self) -> Result<(), Fault> {
         self.tracing.check()?;
         for (axis, name) in [(0, "x"), (1, "y")] {
-            if self.tiles[axis] > 1 && !self.source.wrap.axes()[axis] {
+            if self.tiles[axis] > 1 && !self.source.options.wrap[axis] {
                 return Err(Fault::new(
                     "scene.tiles",
                     format!(
@@ -106,7 +102,11 @@ impl HeightfieldSettings {
         }
         match PatternSpec::read(&self.source.field) {
             Some(Err(why)) => return Err(Fault::new("scene.field", why)),
-            Some(Ok(pattern)) => self.check_tiles(pattern.size)?,
+            // Before its heights are made.
+            Some(Ok(pattern)) => {
+                let cells = cells(pattern.size, self.source.options.wrap, self.patches);
+                check_tiles(cells, self.tiles).map_err(tiles_fault)?;
+            }
             None => {}
         }
         if self.is_textured() && self.paint.is_some() {
@@ -114,22 +114,6 @@ impl HeightfieldSettings {
                 "scene.texture",
                 "scene.paint colours the surface already; set paint = \"height\"",
             ));
-        }
-        Ok(())
-    }
-
-    /// Checks that the tiles of a pattern are not too many cells, before its heights are made.
-    fn check_tiles(&self, samples: [u32; 2]) -> Result<(), Fault> {
-        let cells = cells(samples, self.source.wrap.axes(), self.patches);
-        for axis in 0..2 {
-            let (cells, tiles) = (cells[axis], self.tiles[axis]);
-            if u64::from(cells) * u64::from(tiles) > u64::from(MOST_CELLS) {
-                return Err(tiles_fault(&HeightSurfaceError::Tiles {
-                    axis,
-                    cells,
-                    tiles,
-                }));
-            }
         }
         Ok(())
     }
@@ -166,11 +150,6 @@ impl HeightfieldSettings {
         let traced = self.tracing.generator();
         let painted = self.paint.filter(|by| traced != Some(*by));
         traced.into_iter().chain(painted).collect()
-    }
-
-    /// The largest number of steps that a ray can take over so many cells along each axis.
-    pub fn most_steps(&self, domain: [u32; 2]) -> u32 {
-        self.tracing.most_steps(domain)
     }
 
     /// The place of a block of so many texels.

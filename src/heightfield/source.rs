@@ -2,43 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::base::key::{Fault, Key, Switch, Text, Word};
+use crate::base::key::{Fault, Key, switch, text, word};
+use crate::heightfield::heights::WRAPS;
 use crate::heightfield::load::{LoadOptions, Loaded, PatternSpec, load};
 use crate::keys;
-
-/// The axes along which a height map wraps: its last sample is next to its first.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Wrap {
-    /// Neither.
-    #[default]
-    None,
-    /// x alone.
-    X,
-    /// y alone.
-    Y,
-    /// Both.
-    Both,
-}
-
-impl Wrap {
-    /// The words of presets and the command line.
-    pub const WORDS: &[(&str, Self)] = &[
-        ("none", Self::None),
-        ("x", Self::X),
-        ("y", Self::Y),
-        ("xy", Self::Both),
-    ];
-
-    /// Whether x and y wrap.
-    pub fn axes(self) -> [bool; 2] {
-        match self {
-            Self::None => [false, false],
-            Self::X => [true, false],
-            Self::Y => [false, true],
-            Self::Both => [true, true],
-        }
-    }
-}
 
 /// The source of heights.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,12 +14,8 @@ pub struct Source {
     pub field: String,
     /// The folder that a path is relative to.
     pub folder: PathBuf,
-    /// Whether the numbers are depths.
-    pub invert: bool,
-    /// Whether the heights are stretched to the range from 0 to 1.
-    pub normalize: bool,
-    /// Which axes wrap.
-    pub wrap: Wrap,
+    /// How it is read.
+    pub options: LoadOptions,
 }
 
 impl Default for Source {
@@ -60,9 +23,7 @@ impl Default for Source {
         Self {
             field: "fbm".into(),
             folder: PathBuf::new(),
-            invert: false,
-            normalize: false,
-            wrap: Wrap::None,
+            options: LoadOptions::default(),
         }
     }
 }
@@ -80,13 +41,13 @@ impl Source {
     /// Its keys in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
-            "field" = Text(&mut self.field),
+            "field" = text(&mut self.field),
                 "a pattern like fbm:512x512,seed=7,power=2.6, or a file of heights";
-            "invert" = Switch(&mut self.invert),
+            "invert" = switch(&mut self.options.invert),
                 "whether the numbers are depths";
-            "normalize" = Switch(&mut self.normalize),
+            "normalize" = switch(&mut self.options.normalize),
                 "whether to stretch the heights to the range from 0 to 1";
-            "wrap" = Word(&mut self.wrap, Wrap::WORDS),
+            "wrap" = word(&mut self.options.wrap, &WRAPS),
                 "axes along which the map repeats";
         ]
     }
@@ -96,12 +57,6 @@ impl Source {
     /// # Errors
     /// There is no such pattern, or the file holds no heights.
     pub fn load(&self) -> Result<Loaded, Fault> {
-        let options = LoadOptions {
-            wrap: self.wrap.axes(),
-            invert: self.invert,
-            normalize: self.normalize,
-            size: None,
-        };
-        load(self.argument(), &options).map_err(|e| Fault::new("scene.field", e.to_string()))
+        load(self.argument(), &self.options).map_err(|e| Fault::new("scene.field", e.to_string()))
     }
 }

@@ -12,11 +12,10 @@ use std::path::Path;
 use glam::DVec3;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 
-use crate::base::shader::Module;
-use crate::base::srgb::linear;
-use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::heights::{MOST_SAMPLES, Patches, brought_in};
+use crate::base::{shader::Module, srgb::linear};
+use crate::heightfield::heights::{MOST_SAMPLES, brought_in};
 use crate::heightfield::raster::open::{check_size, open};
+use crate::heightfield::{HeightSurface, Patches};
 use crate::wgsl;
 
 /// A picture over a height surface.

@@ -109,12 +109,9 @@ pub fn calibrate(
     let view = plan.view();
     let mut probes = Vec::new();
     let pixels = spread(plan.size, 2 * rays);
-    let mut check = |share: f64| {
-        if going(share) {
-            Ok(())
-        } else {
-            Err(RenderError::Cancelled)
-        }
+    let mut check = |share: f64| match going(share) {
+        true => Ok(()),
+        false => Err(RenderError::Cancelled),
     };
     // In parts, so that it can stop between them.
     for part in pixels.chunks(256) {
@@ -127,19 +124,19 @@ pub fn calibrate(
         check(PROBING * probes.len() as f64 / pixels.len() as f64)?;
     }
     let others = probes.split_off(rays.min(probes.len()));
-    let slopes = Slopes {
+    let known = &probes;
+    let (slope, slack) = plan.solid(assets)?.run(Slopes {
         plan,
-        probes: &probes,
-    };
-    let (slope, slack) = plan.solid(assets)?.run(slopes);
+        probes: known,
+    });
     let count = |plan: &Plan, probes: &[Probe]| {
         let limit = plan.ray_steps(assets);
-        let lost = Lost {
+        let solid = plan.solid(assets)?;
+        Ok::<_, RenderError>(solid.run(Lost {
             plan,
             limit,
             probes,
-        };
-        Ok::<_, RenderError>(plan.solid(assets)?.run(lost))
+        }))
     };
     let mut lost = |plan: &Plan, share: f64| {
         check(share)?;
@@ -155,7 +152,7 @@ pub fn calibrate(
             break;
         }
     }
-    let levels = best.pyramid().levels.len();
+    let levels = best.levels().len();
     let mut fudge = vec![1.0; levels];
     let exact = lost(&best, PROBING)?;
     for level in 0..levels {
@@ -222,8 +219,7 @@ impl Task for Slopes<'_> {
             }
             Some(ratios)
         };
-        let found: Vec<Vec<f64>> = self.probes.par_iter().filter_map(one).collect();
-        let mut all: Vec<f64> = found.into_iter().flatten().collect();
+        let mut all: Vec<f64> = self.probes.par_iter().filter_map(one).flatten().collect();
         all.sort_by(f64::total_cmp);
         let slope = all.last().copied().unwrap_or(1.0);
         let middle = all.get(all.len() / 2).copied().unwrap_or(1.0);
@@ -243,15 +239,14 @@ impl Task for Lost<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
-        let levels = self.plan.pyramid().levels;
-        let limit = self.limit;
+        let levels = self.plan.levels();
         let one = |probe: &&Probe| {
             let Some(hit) = probe.hit else { return false };
             let Some(front) = front(solid, &view, &levels, probe.pixel) else {
                 return true;
             };
             let ray = view.view_ray(probe.pixel);
-            let (met, state) = trace(solid, &ray, front, limit, &mut Work::default());
+            let (met, state) = trace(solid, &ray, front, self.limit, &mut Work::default());
             state != State::Hit || met.t > hit + BEHIND * probe.grain
         };
         let lost = self.probes.par_iter().filter(one).count();
@@ -290,13 +285,10 @@ mod tests {
     #[test]
     fn an_exact_field_has_slope_one_and_takes_full_cones() {
         let plan = plan(Formula::Balls(Balls::default()));
-        let found =
-            calibrate(&plan, &Assets::default(), 0.0, 2000, &mut |_| true).expect("not stopped");
-        assert!(
-            found.slope <= 1.0 + 1e-9 && found.slope > 0.9,
-            "{}",
-            found.slope
-        );
+        let assets = Assets::default();
+        let found = calibrate(&plan, &assets, 0.0, 2000, &mut |_| true).expect("not stopped");
+        let slope = found.slope;
+        assert!(slope <= 1.0 + 1e-9 && slope > 0.9, "{slope}");
         assert!((found.lipschitz - 1.0).abs() < 1e-12);
         // It loses none of the probes and hardly one of the others.
         assert!(found.lost < 0.005, "{}", found.lost);
@@ -304,18 +296,18 @@ mod tests {
         // Narrow cones lose pixels of an exact field. Only the finest cones may be narrow, as
         // a cone through pixel centres is wider than its four rays.
         assert!(found.fudge[0] > 0.5, "{:?}", found.fudge);
-        assert!(calibrate(&plan, &Assets::default(), 0.0, 2000, &mut |_| false).is_err());
+        assert!(calibrate(&plan, &assets, 0.0, 2000, &mut |_| false).is_err());
     }
 
     #[test]
     fn a_slack_estimate_affords_narrower_cones_than_an_exact_one() {
         let of = |scale| {
-            let shape = Formula::Mandelbox(Mandelbox {
+            let shape = Mandelbox {
                 scale,
                 ..Mandelbox::default()
-            });
-            calibrate(&plan(shape), &Assets::default(), 0.01, 1500, &mut |_| true)
-                .expect("not stopped")
+            };
+            let (plan, assets) = (plan(Formula::Mandelbox(shape)), Assets::default());
+            calibrate(&plan, &assets, 0.01, 1500, &mut |_| true).expect("not stopped")
         };
         // The estimate understates the distance at scale 2, and hardly at -1.5.
         let (slack, tight) = (of(2.0), of(-1.5));

@@ -12,6 +12,7 @@
 //! may come, before it reaches the front.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::base::view::{Beam, footprint};
 use crate::base::work::State;
@@ -20,11 +21,24 @@ use crate::plan::Plan;
 use crate::scene::AnySolid;
 use crate::scene::{Solid, Task};
 
-/// The errors of a frame. Shares are of all pixels.
-#[derive(Clone, Debug, Default)]
+/// Quantiles of |e| in footprints, over pixels that hit in both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DepthError {
+    /// 50 % of the pixels are closer.
+    pub median: f64,
+    /// 95 % are.
+    pub p95: f64,
+    /// 99 % are.
+    pub p99: f64,
+    /// All are.
+    pub max: f64,
+}
+
+/// The errors of a frame. Shares are of all pixels, 0..1.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Report {
-    /// |e| over pixels that are hits in both frames: median, 95 %, 99 %, largest.
-    pub depth_error: [f64; 4],
+    /// Quantiles of the depth error.
+    pub depth_error: DepthError,
     /// Share of hits in both frames with e > 2.
     pub behind: f64,
     /// Share of hits in both frames with e < -2.
@@ -37,12 +51,20 @@ pub struct Report {
     pub holes: f64,
     /// Share of sky in the reference that is a hit in the frame.
     pub false_hits: f64,
+    /// The pixels of each cone level, coarse to fine, that are start violations.
+    pub start_violations: Vec<u64>,
     /// Share that reached a limit.
     pub unconverged: f64,
     /// Share that is a hit in one frame only.
+    #[serde(skip)]
     pub mask: f64,
-    /// The start violations of each cone level: divisor and number of pixels.
-    pub start_violations: Vec<(u32, u64)>,
+}
+
+impl Report {
+    /// Share of pixels that are wrong: too deep, lost, or not finished.
+    pub fn wrong(&self) -> f64 {
+        self.behind + self.holes + self.unconverged
+    }
 }
 
 /// Compares a frame with a reference of the same plan; mode and steps may differ. `solid` is
@@ -56,36 +78,37 @@ pub fn compare(frame: &Frame, reference: &Frame, plan: &Plan, solid: &AnySolid) 
         let count = (0..errors.len()).filter(|i| counts(*i)).count();
         count as f64 / errors.len().max(1) as f64
     };
-    let mut depths: Vec<f64> = (0..errors.len())
-        .filter(|i| both(*i))
-        .map(|i| errors[i].abs())
-        .collect();
+    let hits = (0..errors.len()).filter(|i| both(*i));
+    let mut depths: Vec<f64> = hits.map(|i| errors[i].abs()).collect();
     depths.sort_by(f64::total_cmp);
     Report {
-        depth_error: [0.5, 0.95, 0.99, 1.0].map(|q| quantile(&depths, q)),
+        depth_error: DepthError {
+            median: quantile(&depths, 0.5),
+            p95: quantile(&depths, 0.95),
+            p99: quantile(&depths, 0.99),
+            max: quantile(&depths, 1.0),
+        },
         behind: share(&|i| both(i) && errors[i] > 2.0),
         front: share(&|i| both(i) && errors[i] < -2.0),
         behind8: share(&|i| both(i) && errors[i] > 8.0),
         front8: share(&|i| both(i) && errors[i] < -8.0),
         holes: share(&|i| hit(reference, i) && sky(frame, i)),
         false_hits: share(&|i| sky(reference, i) && hit(frame, i)),
-        unconverged: share(&|i| frame.state[i] == State::Unconverged as u8),
-        mask: share(&|i| hit(frame, i) != hit(reference, i)),
         start_violations: solid.run(Violations {
             frame,
             reference,
             plan,
         }),
+        unconverged: share(&|i| frame.state[i] == State::Unconverged as u8),
+        mask: share(&|i| hit(frame, i) != hit(reference, i)),
     }
 }
 
 /// The q-quantile of sorted values; 0 if there are none.
-pub fn quantile(sorted: &[f64], q: f64) -> f64 {
+pub fn quantile<T: Copy + Default>(sorted: &[T], q: f64) -> T {
     let last = sorted.len().saturating_sub(1) as f64;
-    sorted
-        .get((q * last).round() as usize)
-        .copied()
-        .unwrap_or(0.0)
+    let found = sorted.get((q * last).round() as usize);
+    found.copied().unwrap_or_default()
 }
 
 /// Factor on the share of the skin that cones keep clear of. The rest is left to the rounding
@@ -110,7 +133,7 @@ struct Violations<'a> {
 }
 
 impl Task for Violations<'_> {
-    type Output = Vec<(u32, u64)>;
+    type Output = Vec<u64>;
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let (plan, reference) = (self.plan, self.reference);
@@ -149,7 +172,7 @@ impl Task for Violations<'_> {
                 front > hit + plan.march.detail * footprint(&ray, hit) && met(&ray, hit, front)
             };
             let all = (0..reference.depth.len()).into_par_iter();
-            (level.divisor, all.filter(wrong).count() as u64)
+            all.filter(wrong).count() as u64
         });
         levels.collect()
     }
@@ -171,13 +194,6 @@ mod tests {
     fn rendered(plan: &Plan) -> Frame {
         let assets = Assets::default();
         crate::cpu::render(plan, &assets, Default::default(), &mut |_| true).expect("rendered")
-    }
-
-    /// A plan of so many pixels in a row.
-    fn row(pixels: u32) -> Plan {
-        let mut plan = Plan::new(SlabSettings::default());
-        plan.size = [pixels, 1];
-        plan
     }
 
     /// A frame with one level of single pixels and given fronts.
@@ -238,11 +254,7 @@ mod tests {
             });
             let frame = with_fronts(&reference, front.collect());
             let report = compare(&frame, &reference, &plan, &solid(&plan));
-            assert_eq!(
-                report.start_violations,
-                [(1, 3)],
-                "{mode:?} {detail} {shell}"
-            );
+            assert_eq!(report.start_violations, [3], "{mode:?} {detail} {shell}");
         }
     }
 
@@ -283,13 +295,14 @@ mod tests {
             compared.march.mode = mode;
             let frame = with_fronts(&reference, front);
             let report = compare(&frame, &reference, &compared, &solid(&compared));
-            assert_eq!(report.start_violations, [(1, wrong)], "{share} {mode:?}");
+            assert_eq!(report.start_violations, [wrong], "{share} {mode:?}");
         }
     }
 
     #[test]
     fn errors_are_counted_on_their_side_of_the_thresholds() {
-        let plan = row(11);
+        let mut plan = Plan::new(SlabSettings::default());
+        plan.size = [11, 1];
         let view = plan.view();
         let grain = |x: u32| view.view_ray([x, 0]).grain;
         let frame = |pixels: &[(State, f64)]| Frame {
@@ -299,12 +312,9 @@ mod tests {
             ..Frame::default()
         };
         let offsets = [0.0, 1.9, 2.1, 8.1, -1.9, -2.1, -8.1];
-        let mut one = Vec::new();
-        let mut two = Vec::new();
-        for (x, e) in (0..).zip(offsets) {
-            one.push((State::Hit, 5.0));
-            two.push((State::Hit, 5.0 * (1.0 + e * grain(x))));
-        }
+        let mut one = vec![(State::Hit, 5.0); offsets.len()];
+        let moved = (0..).zip(offsets).map(|(x, e)| 5.0 * (1.0 + e * grain(x)));
+        let mut two: Vec<_> = moved.map(|t| (State::Hit, t)).collect();
         one.extend([State::Hit, State::Sky, State::Sky, State::Hit].map(|s| (s, 5.0)));
         two.extend([State::Sky, State::Hit, State::Sky, State::Unconverged].map(|s| (s, 5.0)));
         let report = compare(&frame(&two), &frame(&one), &plan, &solid(&plan));
@@ -313,8 +323,8 @@ mod tests {
         assert_eq!([report.front, report.front8].map(pixels), [2, 1]);
         assert_eq!([report.holes, report.false_hits].map(pixels), [1, 1]);
         assert_eq!([report.unconverged, report.mask].map(pixels), [1, 3]);
-        let [median, .., largest] = report.depth_error;
+        let DepthError { median, max, .. } = report.depth_error;
         assert!((median - 2.1).abs() < 0.01, "{median}");
-        assert!((largest - 8.1).abs() < 0.01, "{largest}");
+        assert!((max - 8.1).abs() < 0.01, "{max}");
     }
 }

@@ -11,31 +11,23 @@ use rayon::prelude::*;
 use crate::base::srgb::linear;
 
 /// Pixels per degree of visual angle: a screen of 3840 pixels and 0.7 m, seen from 0.7 m.
-pub const PIXELS_PER_DEGREE: f64 = 67.0;
+const PIXELS_PER_DEGREE: f64 = 67.0;
 
-/// A picture in sRGB, row by row.
-#[derive(Clone, Copy, Debug)]
-pub struct Picture<'a> {
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    /// sRGB colours from 0 to 1.
-    pub pixels: &'a [DVec3],
-}
-
-/// The mean FLIP difference of two pictures of one size, from 0 to 1; 0 for equal ones.
-pub fn flip(reference: Picture<'_>, test: Picture<'_>) -> f64 {
-    let [one, two] = [reference, test].map(Seen::new);
+/// The mean FLIP difference of two pictures of one size, from 0 to 1; 0 for equal ones. Their
+/// pixels are sRGB colours from 0 to 1, row by row.
+pub fn flip(size: [u32; 2], reference: &[DVec3], test: &[DVec3]) -> f64 {
+    let size = size.map(|n| n as usize);
+    let [one, two] = [reference, test].map(|pixels| Seen::new(size, pixels));
     let most = hyab(hunt(DVec3::Y), hunt(DVec3::Z)).powf(COLOR_POWER);
     let pairs = (0..one.color.len()).into_par_iter();
-    let errors: Vec<f64> = pairs
-        .map(|i| {
-            let color = redistribute(hyab(one.color[i], two.color[i]).powf(COLOR_POWER), most);
-            let edges = (one.edges[i] - two.edges[i]).abs();
-            let points = (one.points[i] - two.points[i]).abs();
-            let feature = (edges.max(points) / std::f64::consts::SQRT_2).powf(FEATURE_POWER);
-            color.powf(1.0 - feature)
-        })
-        .collect();
+    let error = |i: usize| {
+        let color = redistribute(hyab(one.color[i], two.color[i]).powf(COLOR_POWER), most);
+        let edges = (one.edges[i] - two.edges[i]).abs();
+        let points = (one.points[i] - two.points[i]).abs();
+        let feature = (edges.max(points) / std::f64::consts::SQRT_2).powf(FEATURE_POWER);
+        color.powf(1.0 - feature)
+    };
+    let errors: Vec<f64> = pairs.map(error).collect();
     // In order, so that the number of threads does not change the sum.
     errors.iter().sum::<f64>() / errors.len().max(1) as f64
 }
@@ -62,26 +54,20 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(picture: Picture<'_>) -> Self {
-        let size = picture.size.map(|n| n as usize);
-        let opponent: Vec<DVec3> = picture
-            .pixels
-            .iter()
-            .map(|c| opponent(linear(*c)))
-            .collect();
+    fn new(size: [usize; 2], pixels: &[DVec3]) -> Self {
+        let opponent: Vec<DVec3> = pixels.iter().map(|c| opponent(linear(*c))).collect();
         let channel = |i: usize| opponent.iter().map(|c| c[i]).collect::<Vec<f64>>();
         let blurred = [0, 1, 2].map(|i| sensed(&channel(i), size, SENSITIVITY[i]));
-        let color = (0..opponent.len())
-            .map(|i| {
-                let c = DVec3::new(blurred[0][i], blurred[1][i], blurred[2][i]);
-                hunt(from_opponent(c).clamp(DVec3::ZERO, DVec3::ONE))
-            })
-            .collect();
+        let shown = |i: usize| {
+            let c = DVec3::from_array(blurred.each_ref().map(|channel| channel[i]));
+            hunt(from_opponent(c).clamp(DVec3::ZERO, DVec3::ONE))
+        };
+        let color = (0..opponent.len()).map(shown).collect();
         let light: Vec<f64> = channel(0).iter().map(|y| (y + 16.0) / 116.0).collect();
         let sd = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
         let radius = (3.0 * sd).ceil() as i32;
         let bell = |x: f64| (-x * x / (2.0 * sd * sd)).exp();
-        let blur = even(&taps(radius, bell));
+        let blur = signed(&taps(radius, bell));
         let slope = signed(&taps(radius, |x| -x * bell(x)));
         let bend = signed(&taps(radius, |x| (x * x / (sd * sd) - 1.0) * bell(x)));
         let size_of = |kernel: &[f64]| -> Vec<f64> {
@@ -121,12 +107,6 @@ fn taps(radius: i32, f: impl Fn(f64) -> f64) -> Vec<f64> {
     (-radius..=radius).map(|x| f(f64::from(x))).collect()
 }
 
-/// Scales a kernel to the sum 1.
-fn even(kernel: &[f64]) -> Vec<f64> {
-    let sum: f64 = kernel.iter().sum();
-    kernel.iter().map(|k| k / sum).collect()
-}
-
 /// Scales a kernel so that its positive taps sum to 1 and its negative ones to -1.
 fn signed(kernel: &[f64]) -> Vec<f64> {
     let up: f64 = kernel.iter().filter(|k| **k > 0.0).sum();
@@ -143,10 +123,9 @@ fn convolve(image: &[f64], [width, height]: [usize; 2], x: &[f64], y: &[f64]) ->
         let taps = x.iter().enumerate();
         taps.map(|(tap, k)| k * from[at(i, tap, width - 1)]).sum()
     };
-    let rows: Vec<f64> = image
-        .par_chunks(width)
-        .flat_map_iter(|from| (0..width).map(move |i| row(from, i)))
-        .collect();
+    let rows = image.par_chunks(width);
+    let rows = rows.flat_map_iter(|from| (0..width).map(move |i| row(from, i)));
+    let rows: Vec<f64> = rows.collect();
     let mut all = vec![0.0; image.len()];
     all.par_chunks_mut(width).enumerate().for_each(|(j, to)| {
         for (tap, k) in y.iter().enumerate() {
@@ -178,10 +157,9 @@ fn hyab(a: DVec3, b: DVec3) -> f64 {
 fn hunt(rgb: DVec3) -> DVec3 {
     let f = |t: f64| {
         let d = 6.0_f64 / 29.0;
-        if t > d.powi(3) {
-            t.cbrt()
-        } else {
-            t / (3.0 * d * d) + 4.0 / 29.0
+        match t > d.powi(3) {
+            true => t.cbrt(),
+            false => t / (3.0 * d * d) + 4.0 / 29.0,
         }
     };
     let n = to_xyz(rgb) / white();
@@ -250,8 +228,8 @@ mod tests {
         [g, b, r]
     }
 
-    fn edge(x: u32, at: u32) -> [u8; 3] {
-        [[20, 30, 60], [200, 180, 90]][usize::from(x < at)]
+    fn edge<const AT: u32>(x: u32, _: u32) -> [u8; 3] {
+        [[20, 30, 60], [200, 180, 90]][usize::from(x < AT)]
     }
 
     fn point(x: u32, y: u32) -> [u8; 3] {
@@ -264,12 +242,7 @@ mod tests {
         ("black and white", |_, _| [0; 3], |_, _| [255; 3], 0.967_399),
         ("a brighter ramp", ramp, brighter, 0.343_887),
         ("other colours", ramp, turned, 0.817_031),
-        (
-            "a moved edge",
-            |x, _| edge(x, 24),
-            |x, _| edge(x, 26),
-            0.128_674,
-        ),
+        ("a moved edge", edge::<24>, edge::<26>, 0.128_674),
         ("one pixel", |_, _| point(0, 0), point, 0.003_247),
         (
             "green and blue",
@@ -283,18 +256,14 @@ mod tests {
     fn agrees_with_the_authors_program() {
         for (name, one, two, want) in KNOWN {
             let [one, two] = [one, two].map(|paint| {
-                let all = (0..32).flat_map(|y| (0..48).map(move |x| (x, y)));
-                all.map(|(x, y)| DVec3::from_array(paint(x, y).map(|c| f64::from(c) / 255.0)))
-                    .collect::<Vec<_>>()
+                let all = (0..32).flat_map(|y| (0..48).map(move |x| paint(x, y)));
+                let all = all.map(|c| DVec3::from_array(c.map(f64::from)) / 255.0);
+                all.collect::<Vec<_>>()
             });
-            let picture = |pixels| Picture {
-                size: [48, 32],
-                pixels,
-            };
-            let got = flip(picture(&one), picture(&two));
+            let got = flip([48, 32], &one, &two);
             // The authors' program computes in f32.
             assert!((got - want).abs() < 2e-4, "{name}: {got}, {want}");
-            assert_eq!(flip(picture(&one), picture(&one)), 0.0, "{name}");
+            assert_eq!(flip([48, 32], &one, &one), 0.0, "{name}");
         }
     }
 }

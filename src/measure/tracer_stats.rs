@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::base::work::{Step, Work};
 use crate::heightfield::height_surface::HeightSurface;
@@ -28,7 +29,7 @@ pub const SKIPPED_BY: f64 = 1.0;
 const EVEN: f64 = 1.220_744_084_605_759_6;
 
 /// The figures of one tracer over one view. Shares are of all rays, 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TracerStats {
     /// Mean steps of a ray; rounds of refinement are not counted.
     pub steps_mean: f64,
@@ -59,7 +60,7 @@ pub fn view_rays(surface: &HeightSurface, degrees: f64, count: u32) -> Vec<Local
 }
 
 /// How a ray ends: its state, its parameter, and its steps.
-fn trace(tracer: &dyn Tracer, ray: &LocalRay) -> (Step, f64, u32) {
+fn trace(tracer: &Tracer, ray: &LocalRay) -> (Step, f64, u32) {
     let mut work = Work::default();
     let mut trace = tracer.begin(ray, 0.0, f64::MAX);
     for _ in 0..MOST_STEPS {
@@ -71,7 +72,7 @@ fn trace(tracer: &dyn Tracer, ray: &LocalRay) -> (Step, f64, u32) {
 }
 
 /// The parameter of each ray's first hit, as an exact tracer finds it.
-pub fn first_hits(exact: &dyn Tracer, rays: &[LocalRay]) -> Vec<Option<f64>> {
+pub fn first_hits(exact: &Tracer, rays: &[LocalRay]) -> Vec<Option<f64>> {
     let one = |ray: &LocalRay| {
         let (step, s, _) = trace(exact, ray);
         (step == Step::Hit).then_some(s)
@@ -80,7 +81,7 @@ pub fn first_hits(exact: &dyn Tracer, rays: &[LocalRay]) -> Vec<Option<f64>> {
 }
 
 /// Traces all rays and compares them with their true first hits.
-pub fn measure(tracer: &dyn Tracer, rays: &[LocalRay], truths: &[Option<f64>]) -> TracerStats {
+pub fn measure(tracer: &Tracer, rays: &[LocalRay], truths: &[Option<f64>]) -> TracerStats {
     let ends: Vec<_> = rays.par_iter().map(|ray| trace(tracer, ray)).collect();
     let mut steps: Vec<u32> = ends.iter().map(|e| e.2).collect();
     steps.sort_unstable();

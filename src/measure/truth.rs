@@ -4,10 +4,11 @@
 //! hash of everything that decides the truth: the plan's text, the contents of the files that
 //! it names, and this program itself. A cut or changed file is ignored.
 
-use std::fs;
+use std::fs::{self, DirEntry};
 use std::path::{Path, PathBuf};
 
 use bytemuck::{cast_slice, pod_collect_to_vec};
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::base::work::State;
@@ -26,7 +27,14 @@ use crate::scene::{Assets, Hit};
 pub struct Truth {
     /// Depth and states.
     pub frame: Frame,
-    /// Factor on the steps.
+    /// How converged it is.
+    pub note: TruthNote,
+}
+
+/// How converged a truth is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TruthNote {
+    /// Factor on the steps: their length over the estimate.
     pub stride: f64,
     /// Share of sampled pixels that move by more than 2 footprints or change state when the
     /// stride is halved.
@@ -66,10 +74,9 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
     let mut plan = asked(plan);
     let view = plan.view();
     let [width, height] = plan.size.map(|n| n as usize);
-    let pixels = (0..width * height).step_by(SAMPLE);
-    let pixels: Vec<_> = pixels
-        .map(|i| [(i % width) as u32, (i / width) as u32])
-        .collect();
+    let sampled = (0..width * height).step_by(SAMPLE);
+    let sampled = sampled.map(|i| [(i % width) as u32, (i / width) as u32]);
+    let pixels: Vec<_> = sampled.collect();
     let mut stride = 0.1;
     loop {
         plan.march.stride = Some(stride);
@@ -87,11 +94,8 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
         let moved = sample.iter().enumerate().filter(|s| changed(*s)).count();
         let moved = moved as f64 / sample.len().max(1) as f64;
         if moved < CONVERGED || stride <= LEAST_STRIDE {
-            return Ok(Truth {
-                frame,
-                stride,
-                moved,
-            });
+            let note = TruthNote { stride, moved };
+            return Ok(Truth { frame, note });
         }
         stride *= 0.5;
     }
@@ -111,10 +115,9 @@ impl Cache {
     /// The user's cache; `None` if there is none, or if this program cannot read itself.
     pub fn user() -> Option<Self> {
         let set = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
-        let base = set("XDG_CACHE_HOME")
-            .or_else(|| set("LOCALAPPDATA"))
-            .map(PathBuf::from)
-            .or_else(|| set("HOME").map(|home| Path::new(&home).join(".cache")))?;
+        let named = set("XDG_CACHE_HOME").or_else(|| set("LOCALAPPDATA"));
+        let hidden = || Some(Path::new(&set("HOME")?).join(".cache"));
+        let base = named.map(PathBuf::from).or_else(hidden)?;
         Self::at(base.join("conemarch"))
     }
 
@@ -158,11 +161,10 @@ impl Cache {
         let Ok(entries) = fs::read_dir(&self.folder) else {
             return;
         };
-        let mut all: Vec<_> = entries
-            .flatten()
-            .filter(|e| e.file_name().to_string_lossy().starts_with("truth-"))
-            .filter_map(|e| Some((e.metadata().ok()?.modified().ok()?, e.path())))
-            .collect();
+        let is_truth = |e: &DirEntry| e.file_name().to_string_lossy().starts_with("truth-");
+        let dated = |e: DirEntry| Some((e.metadata().ok()?.modified().ok()?, e.path()));
+        let truths = entries.flatten().filter(is_truth);
+        let mut all: Vec<_> = truths.filter_map(dated).collect();
         all.sort();
         for (_, path) in all.iter().rev().skip(MOST_KEPT) {
             let _ = fs::remove_file(path);
@@ -193,8 +195,8 @@ pub fn cached(
 /// The bytes of a truth's file: numbers, depth, colours, states, and a hash of all before it.
 fn pack(truth: &Truth) -> Vec<u8> {
     let mut bytes = Vec::new();
-    bytes.extend(truth.stride.to_le_bytes());
-    bytes.extend(truth.moved.to_le_bytes());
+    bytes.extend(truth.note.stride.to_le_bytes());
+    bytes.extend(truth.note.moved.to_le_bytes());
     bytes.extend(cast_slice::<f32, u8>(&truth.frame.depth));
     bytes.extend(cast_slice::<[f32; 3], u8>(&truth.frame.radiance));
     bytes.extend(&truth.frame.state);
@@ -215,22 +217,18 @@ fn unpack(bytes: &[u8], size: [u32; 2]) -> Option<Truth> {
         rest = after;
         Some(part)
     };
-    let stride = f64::from_le_bytes(take(8)?.try_into().ok()?);
-    let moved = f64::from_le_bytes(take(8)?.try_into().ok()?);
-    let depth = pod_collect_to_vec(take(4 * pixels)?);
-    let radiance = pod_collect_to_vec(take(12 * pixels)?);
-    let state = take(pixels)?.to_vec();
-    Some(Truth {
-        frame: Frame {
-            size,
-            depth,
-            radiance,
-            state,
-            ..Frame::default()
-        },
-        stride,
-        moved,
-    })
+    let note = TruthNote {
+        stride: f64::from_le_bytes(take(8)?.try_into().ok()?),
+        moved: f64::from_le_bytes(take(8)?.try_into().ok()?),
+    };
+    let frame = Frame {
+        size,
+        depth: pod_collect_to_vec(take(4 * pixels)?),
+        radiance: pod_collect_to_vec(take(12 * pixels)?),
+        state: take(pixels)?.to_vec(),
+        ..Frame::default()
+    };
+    Some(Truth { frame, note })
 }
 
 #[cfg(test)]
@@ -241,73 +239,67 @@ mod tests {
     use crate::heightfield::tracer::TracerKind;
     use crate::scene::Scene;
 
-    fn no_assets() -> Assets {
-        Assets::default()
-    }
-
     /// The truth of a plan, and whether the cache had it.
     fn truth_of(cache: &Cache, plan: &Plan) -> (Truth, bool) {
-        cached(Some(cache), plan, &no_assets(), &mut |_| true).expect("nothing fails")
+        cached(Some(cache), plan, &Assets::default(), &mut |_| true).expect("nothing fails")
     }
 
     fn finds(cache: &Cache, plan: &Plan) -> bool {
-        cache.find(plan, &no_assets()).is_some()
+        cache.find(plan, &Assets::default()).is_some()
     }
 
-    fn plan() -> Plan {
-        let mut plan = Plan::new(Formula::Balls(Balls::default()));
+    fn plan(scene: impl Into<Scene>) -> Plan {
+        let mut plan = Plan::new(scene);
         plan.size = [20, 15];
         plan
     }
 
+    fn balls() -> Plan {
+        plan(Formula::Balls(Balls::default()))
+    }
+
     #[test]
     fn a_truth_of_heights_is_found_while_its_file_is_the_same() {
-        let name = format!("conemarch-heights-{}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
-        let cache = Cache::at(folder.join("kept")).expect("this program can be read");
-        fs::create_dir_all(&folder).expect("a folder");
-        let file = folder.join("slope-4x3.raw");
-        let plan = |heights: [f32; 12]| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let cache = Cache::at(folder.path().join("kept")).expect("this program can be read");
+        let file = folder.path().join("slope-4x3.raw");
+        let of = |heights: [f32; 12]| {
             fs::write(&file, cast_slice::<f32, u8>(&heights)).expect("can be written");
             let mut shape = HeightfieldSettings::default();
             shape.source.field = file.to_string_lossy().into_owned();
-            let mut plan = Plan::new(shape);
-            plan.size = [20, 15];
-            plan
+            plan(shape)
         };
         let slope: [f32; 12] = std::array::from_fn(|i| i as f32 / 12.0);
-        let first = plan(slope);
-        assert!(!truth_of(&cache, &first).1 && finds(&cache, &plan(slope)));
+        let first = of(slope);
+        assert!(!truth_of(&cache, &first).1 && finds(&cache, &of(slope)));
         // The tracer does not matter.
-        let mut other = plan(slope);
-        let Scene::Heightfield(shape) = &mut other.scene else {
-            unreachable!("made above");
-        };
-        shape.tracing.tracer = TracerKind::CsmFixed;
-        assert!(finds(&cache, &other));
+        let mut other = of(slope);
+        if let Scene::Heightfield(shape) = &mut other.scene {
+            shape.tracing.tracer = TracerKind::CsmFixed;
+        }
+        assert!(other != first && finds(&cache, &other));
         // One height of the file does, with the same plan.
         let mut bent = slope;
         bent[5] += 1e-6;
-        let second = plan(bent);
+        let second = of(bent);
         assert_eq!(preset::write(&first), preset::write(&second));
         assert!(!finds(&cache, &second));
-        fs::remove_dir_all(&folder).expect("made above");
     }
 
     #[test]
     fn a_kept_truth_is_found_for_its_own_plan_only() {
-        let folder = std::env::temp_dir().join(format!("conemarch-truths-{}", std::process::id()));
-        let cache = Cache::at(folder.clone()).expect("this program can be read");
-        let (made, before) = truth_of(&cache, &plan());
-        let (found, after) = truth_of(&cache, &plan());
+        let folder = tempfile::tempdir().expect("a folder");
+        let cache = Cache::at(folder.path().into()).expect("this program can be read");
+        let (made, before) = truth_of(&cache, &balls());
+        let (found, after) = truth_of(&cache, &balls());
         assert!(!before && after);
-        assert!(made.stride <= 0.1 && made.moved < CONVERGED);
+        assert!(made.note.stride <= 0.1 && made.note.moved < CONVERGED);
         assert_eq!(found.frame.depth, made.frame.depth);
         assert_eq!(found.frame.state, made.frame.state);
         assert_eq!(found.frame.radiance, made.frame.radiance);
-        assert_eq!((found.stride, found.moved), (made.stride, made.moved));
+        assert_eq!(found.note, made.note);
         // The shell does not decide a truth, these settings do.
-        let mut other = plan();
+        let mut other = balls();
         other.march.shell = 0.7;
         assert!(finds(&cache, &other));
         let changes: [fn(&mut Plan); 4] = [
@@ -317,22 +309,21 @@ mod tests {
             |p| p.look.key += 0.1,
         ];
         for change in changes {
-            let mut other = plan();
+            let mut other = balls();
             change(&mut other);
             assert!(!finds(&cache, &other));
         }
         let mut rebuilt = cache.clone();
         rebuilt.program[7] ^= 1;
-        assert!(!finds(&rebuilt, &plan()));
+        assert!(!finds(&rebuilt, &balls()));
         // A file that was cut or changed by one bit is ignored.
-        let file = cache.file(&plan(), &no_assets());
+        let file = cache.file(&balls(), &Assets::default());
         let whole = fs::read(&file).expect("kept");
         let mut changed = whole.clone();
         changed[40] ^= 1;
         for wrong in [&whole[..whole.len() - 1], &changed[..], &[]] {
             fs::write(&file, wrong).expect("can be written");
-            assert!(!finds(&cache, &plan()));
+            assert!(!finds(&cache, &balls()));
         }
-        fs::remove_dir_all(folder).expect("can be removed");
     }
 }

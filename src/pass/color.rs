@@ -3,35 +3,22 @@
 
 use glam::DVec3;
 
-use crate::base::shader::Module;
 use crate::base::view::{Beam, footprint};
 use crate::base::work::State;
 use crate::pass::look::Light;
 use crate::pass::shadow::{self, Shadow};
 use crate::pass::{fog, occlusion};
 use crate::scene::{Hit, Solid, Surface};
-use crate::wgsl;
-
-/// The WGSL module of the pass. `keeps_normals` writes normals out; `colored` takes pigments
-/// as colours instead of looking the palette up.
-pub fn module(keeps_normals: bool, colored: bool) -> Module {
-    wgsl!(
-        "pass/color.wgsl",
-        "COLOR_KEEPS_NORMALS" = f64::from(u8::from(keeps_normals)),
-        "COLOR_IS_PIGMENT" = f64::from(u8::from(colored))
-    )
-}
 
 /// Radiance that leaves a surface towards the eye, and whether the shadow ray reached its end.
-/// `q` is the hit relative to the eye, `grain` half a pixel's width there.
-pub fn shade<S: Solid>(
+fn shade<S: Solid>(
     solid: &S,
     light: &Light,
     ray: &Beam,
-    q: DVec3,
+    t: f64,
     surface: &Surface,
-    grain: f64,
 ) -> (DVec3, bool) {
+    let (q, grain) = (ray.at(t), footprint(ray, t));
     let (n, look) = (surface.normal, &light.look);
     let albedo = if solid.is_colored() {
         surface.pigment
@@ -79,8 +66,7 @@ pub fn color<S: Solid>(solid: &S, light: &Light, ray: &Beam, hit: &Hit, state: S
         };
     }
     let surface = solid.surface(ray, hit);
-    let grain = footprint(ray, hit.t);
-    let (mut c, decided) = shade(solid, light, ray, ray.at(hit.t), &surface, grain);
+    let (mut c, decided) = shade(solid, light, ray, hit.t, &surface);
     c = fog::fog(light, c, ray.axis, hit.t);
     if light.look.flag_unconverged && (state == State::Unconverged || !decided) {
         c = DVec3::new(1.0, 0.0, 1.0);

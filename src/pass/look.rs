@@ -7,13 +7,11 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
 
-use crate::base::shader::Module;
 use crate::base::srgb::linear;
 use crate::pass::LookFeature;
 use crate::plan::Plan;
 use crate::plan::look::{Look, MOST_STOPS, SHADOW_STEPS};
 use crate::scene::{Assets, MOST_SHADOW_STEPS};
-use crate::wgsl;
 
 /// The look as WGSL reads it.
 #[repr(C)]
@@ -55,11 +53,6 @@ pub struct LookUniform {
     pub pad: [u32; 2],
     /// The palette's colours, linear.
     pub palette: [Vec4; MOST_STOPS],
-}
-
-/// The WGSL module of the look.
-pub fn module() -> Module {
-    wgsl!("pass/look.wgsl")
 }
 
 /// A [`Look`] in the numbers that passes use.
@@ -106,7 +99,6 @@ impl Light {
     }
 
     /// The values of the WGSL struct.
-    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     pub fn uniform(&self) -> LookUniform {
         let look = &self.look;
         let mut palette = [Vec4::W; MOST_STOPS];
@@ -164,6 +156,13 @@ impl Light {
 
 /// Radiance as a screen shows it, from 0 to 1 and still linear: a factor of exposure, then a
 /// rational fit of the ACES curve (Narkowicz 2015).
+///
+/// ```
+/// # use conemarch::pass::look::tone;
+/// # use glam::DVec3;
+/// assert_eq!(tone(1.0, DVec3::ZERO), DVec3::ZERO);
+/// assert_eq!(tone(1.0, DVec3::splat(1e9)), DVec3::ONE);
+/// ```
 pub fn tone(exposure: f64, c: DVec3) -> DVec3 {
     let x = c.max(DVec3::ZERO) * exposure;
     let one = x * (x * 2.51 + 0.03) / (x * (x * 2.43 + 0.59) + 0.14);
@@ -174,15 +173,4 @@ pub fn tone(exposure: f64, c: DVec3) -> DVec3 {
 pub fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tone_keeps_black_black_and_never_exceeds_white() {
-        assert_eq!(tone(1.0, DVec3::ZERO), DVec3::ZERO);
-        assert_eq!(tone(1.0, DVec3::splat(1e9)), DVec3::ONE);
-    }
 }

@@ -2,16 +2,9 @@
 //! and 2).
 //! Twin: `wgsl/pass/march.wgsl`.
 
-use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
 use crate::scene::Solid;
-use crate::wgsl;
-
-/// The WGSL module of the pass.
-pub fn module() -> Module {
-    wgsl!("pass/march.wgsl")
-}
 
 /// Why a cone ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -22,8 +22,7 @@ pub mod shadow;
 pub mod trace;
 pub mod turn;
 
-use crate::base::shader::{Module, Program};
-use crate::base::view;
+use crate::base::shader::Program;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::AnySolid;
 use crate::wgsl;
@@ -33,33 +32,32 @@ pub use features::LookFeature;
 /// The program of a pass over cells or pixels.
 pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Program {
     let mut modules = solid.twin().modules();
-    modules.extend([view::module(), wgsl!("pass/shared.wgsl")]);
+    modules.extend([wgsl!("base/view.wgsl"), wgsl!("pass/shared.wgsl")]);
     modules.extend(turn::modules());
-    modules.push(counters(extras.count && pass.marches()));
+    modules.push(match extras.count && pass.marches() {
+        true => wgsl!("pass/counters.wgsl"),
+        false => wgsl!("pass/counters_off.wgsl"),
+    });
     let entry = match pass {
         Pass::Color => {
-            modules.push(look::module());
+            modules.push(wgsl!("pass/look.wgsl"));
             let features = LookFeature::ALL.iter();
             modules.extend(features.map(|f| f.module(f.is_on(&plan.look))));
-            modules.push(color::module(extras.normals, solid.is_colored()));
+            modules.push(wgsl!(
+                "pass/color.wgsl",
+                "COLOR_KEEPS_NORMALS" = f64::from(u8::from(extras.normals)),
+                "COLOR_IS_PIGMENT" = f64::from(u8::from(solid.is_colored()))
+            ));
             "color"
         }
         Pass::Trace => {
-            modules.push(trace::module());
+            modules.push(wgsl!("pass/trace.wgsl"));
             "trace"
         }
         Pass::March(_) | Pass::Prepare(_) => {
-            modules.push(march::module());
+            modules.push(wgsl!("pass/march.wgsl"));
             "march"
         }
     };
     Program::new(entry, modules)
-}
-
-fn counters(on: bool) -> Module {
-    if on {
-        wgsl!("pass/counters.wgsl")
-    } else {
-        wgsl!("pass/counters_off.wgsl")
-    }
 }

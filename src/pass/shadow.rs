@@ -46,19 +46,13 @@ pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain
     let mut open = 1.0_f64;
     let mut decided = false;
     for _ in 0..light.shadow_steps {
-        match solid.walk_step(&ray, &mut walk, work) {
-            Step::Hit => {
-                return Shadow {
-                    open: 0.0,
-                    decided: true,
-                };
-            }
-            Step::Out => {
-                decided = true;
-                break;
-            }
-            Step::Spent => break,
-            Step::Moving => {}
+        let step = solid.walk_step(&ray, &mut walk, work);
+        decided = matches!(step, Step::Hit | Step::Out);
+        if step == Step::Hit {
+            open = 0.0;
+        }
+        if step != Step::Moving {
+            break;
         }
         let t = solid.walk_hit(&walk).t;
         if t > 4.0 * grain {

@@ -1,16 +1,9 @@
 //! The trace pass: one ray per pixel, from the front of its cell to the surface.
 //! Twin: `wgsl/pass/trace.wgsl`.
 
-use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::{State, Work};
 use crate::scene::{Hit, Solid, Step};
-use crate::wgsl;
-
-/// The WGSL module of the pass.
-pub fn module() -> Module {
-    wgsl!("pass/trace.wgsl")
-}
 
 /// Follows one ray from a proven front by at most `limit` steps.
 pub fn trace<S: Solid>(

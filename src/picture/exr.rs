@@ -57,11 +57,10 @@ pub fn write_exr(
     drop(position);
     channel("A", vec![1.0; frame.depth.len()]);
     let forward = (plan.camera.target - plan.camera.eye).normalize();
-    let width = frame.size[0] as usize;
     let depths = frame.depth.iter().enumerate();
     let planar = depths.map(|(i, t)| {
-        let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
-        finite((f64::from(*t) * ray.axis.dot(forward)) as f32)
+        let slant = frame.ray(&view, i).axis.dot(forward);
+        finite((f64::from(*t) * slant) as f32)
     });
     channel("Z", planar.collect());
     channel("depth.Z", frame.depth.iter().copied().map(finite).collect());
@@ -71,29 +70,25 @@ pub fn write_exr(
         channel("steps.Y", frame.steps());
     }
     let size = (frame.size[0] as usize, frame.size[1] as usize);
-    let mut attributes = LayerAttributes {
-        software_name: Some(SOFTWARE.into()),
-        ..LayerAttributes::default()
-    };
-    // The maps of further attributes are written in no certain order: one in each.
-    let text = |text: &str| AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes()));
-    attributes
-        .other
-        .insert("conemarch preset".into(), text(preset));
     // Lines in their order, so that threads that end in any order give the same bytes.
     let encoding = Encoding {
         blocks: Blocks::ScanLines,
         line_order: LineOrder::Increasing,
         ..Encoding::SMALL_FAST_LOSSLESS
     };
+    let text = |text: &str| AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes()));
+    // The maps of further attributes are written in no certain order: one in each.
+    let mut attributes = LayerAttributes {
+        software_name: Some(SOFTWARE.into()),
+        ..LayerAttributes::default()
+    };
+    let other = &mut attributes.other;
+    other.insert("conemarch preset".into(), text(preset));
     let layer = exr::prelude::Layer::new(size, attributes, encoding, AnyChannels::sort(list));
     let mut image = Image::from_layer(layer);
     image.attributes.chromaticities = Some(SRGB);
-    let camera = text(&camera(plan));
-    image
-        .attributes
-        .other
-        .insert("conemarch camera".into(), camera);
+    let other = &mut image.attributes.other;
+    other.insert("conemarch camera".into(), text(&camera(plan)));
     let written = image.write().to_buffered(to);
     written.map_err(|e| OutputError::encode("EXR", e))
 }
@@ -106,8 +101,6 @@ fn finite(t: f32) -> f32 {
 fn camera(plan: &Plan) -> String {
     let mut camera = plan.camera.clone();
     let keys = camera.keys().into_iter();
-    let lines: Vec<String> = keys
-        .map(|k| format!("{} = {}", k.name, k.slot.get()))
-        .collect();
-    lines.join("\n")
+    let lines = keys.map(|k| format!("{} = {}", k.name, k.slot.get()));
+    lines.collect::<Vec<_>>().join("\n")
 }

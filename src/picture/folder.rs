@@ -3,17 +3,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::picture::error::OutputError;
-
-/// All folders that were made and may still be removed, outer ones first.
-static MADE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-
-fn made() -> MutexGuard<'static, Vec<PathBuf>> {
-    // A list of names cannot be half changed.
-    MADE.lock().unwrap_or_else(PoisonError::into_inner)
-}
+use crate::picture::place::unfinished;
 
 /// A folder that exists. Dropping it removes what was made and is still empty.
 #[derive(Debug)]
@@ -33,7 +25,7 @@ impl Folder {
         let missing: Vec<&Path> = path.ancestors().take_while(missing).collect();
         for new in missing.into_iter().rev() {
             // Locked while the folder is made, so that an interrupt misses none.
-            let mut list = made();
+            let mut list = unfinished();
             match fs::create_dir(new) {
                 Ok(()) => {
                     list.push(new.into());
@@ -54,42 +46,11 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        let mut list = made();
+        let mut list = unfinished();
         for folder in self.made.drain(..).rev() {
             list.retain(|f| *f != folder);
             // A folder that holds anything stays: the system removes only empty ones.
             let _ = fs::remove_dir(folder);
         }
-    }
-}
-
-/// Removes all folders that were made and are still empty. Called before an interrupted
-/// process ends.
-pub(crate) fn clear() {
-    for folder in made().drain(..).rev() {
-        let _ = fs::remove_dir(folder);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_was_made_goes_unless_something_lies_in_it() {
-        let base = std::env::temp_dir().join(format!("conemarch-folder-{}", std::process::id()));
-        let inner = base.join("one/two");
-        drop(Folder::prepare(&inner).expect("can be made"));
-        assert!(!base.exists());
-        let folder = Folder::prepare(&inner).expect("can be made");
-        fs::write(base.join("one/file"), "kept").expect("can be written");
-        drop(folder);
-        assert!(!inner.exists() && base.join("one/file").exists());
-        // What was there before stays, though it is empty.
-        fs::create_dir(&inner).expect("can be made");
-        drop(Folder::prepare(&inner).expect("is there"));
-        assert!(inner.is_dir());
-        assert!(Folder::prepare(&base.join("one/file")).is_err());
-        fs::remove_dir_all(base).expect("can be removed");
     }
 }

@@ -1,10 +1,9 @@
 //! The result of a render: layers with one value per pixel, and the figures of each pass.
 
-use crate::base::view::View;
+use crate::base::view::{Beam, View};
 use crate::base::work::{State, Work};
 use crate::heightfield::assets::Preparation;
 use crate::plan::{Extras, Pass, Plan};
-use glam::DVec3;
 use serde::{Serialize, Serializer};
 
 /// What one pass did.
@@ -149,7 +148,6 @@ impl Frame {
             sum.1 += pass.iterations?;
         }
         let n = self.state.len().max(1);
-        #[allow(clippy::cast_precision_loss, reason = "a ratio for reading")]
         Some((sum.0 as f64 / n as f64, sum.1 as f64 / n as f64))
     }
 
@@ -163,73 +161,46 @@ impl Frame {
                 let cell = (y / d) * level.cells[0] as usize + x / d;
                 level.work.get(cell).map(|w| w.evaluations)
             });
-            #[allow(clippy::cast_precision_loss, reason = "counts are small")]
-            let sum = (work.evaluations + above.sum::<u32>()) as f32;
-            sum
+            (work.evaluations + above.sum::<u32>()) as f32
         };
         self.work.iter().enumerate().map(of).collect()
     }
 
+    /// The ray of a pixel, counted row by row.
+    pub fn ray(&self, view: &View, i: usize) -> Beam {
+        let width = self.size[0] as usize;
+        view.view_ray([(i % width) as u32, (i / width) as u32])
+    }
+
     /// The world position of each pixel's hit; zero for sky.
     pub fn positions(&self, view: &View) -> Vec<[f32; 3]> {
-        let width = self.size[0] as usize;
         let at = |(i, t): (usize, &f32)| {
             if t.is_infinite() {
                 return [0.0; 3];
             }
-            #[allow(clippy::cast_possible_truncation, reason = "indices of a u32 size")]
-            let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
-            let p: DVec3 = view.eye + ray.at(f64::from(*t));
+            let p = view.eye + self.ray(view, i).at(f64::from(*t));
             p.as_vec3().to_array()
         };
         self.depth.iter().enumerate().map(at).collect()
     }
 }
 
-/// The signed depth error of each pixel, in footprints of the reference. It is infinite where a hit is shown as
-/// sky, minus infinite where sky is shown as a hit, 0 where both are sky, and NaN where either
-/// reached a limit.
+/// The signed depth error of each pixel, in footprints of the reference. It is infinite where a
+/// hit is shown as sky, minus infinite where sky is shown as a hit, 0 where both are sky, and NaN
+/// where either reached a limit.
 pub fn errors(frame: &Frame, reference: &Frame, view: &View) -> Vec<f64> {
-    let width = frame.size[0] as usize;
-    let (sky, hit) = (State::Sky as u8, State::Hit as u8);
-    let states = frame.state.iter().zip(&reference.state).enumerate();
-    let error = |(i, (&s, &r)): (usize, (&u8, &u8))| match (s, r) {
-        _ if s == sky && r == sky => 0.0,
-        _ if s == sky && r == hit => f64::INFINITY,
-        _ if s == hit && r == sky => f64::NEG_INFINITY,
-        _ if s == hit && r == hit => {
+    const SKY: u8 = State::Sky as u8;
+    const HIT: u8 = State::Hit as u8;
+    let error = |i: usize| match (frame.state[i], reference.state[i]) {
+        (SKY, SKY) => 0.0,
+        (SKY, HIT) => f64::INFINITY,
+        (HIT, SKY) => f64::NEG_INFINITY,
+        (HIT, HIT) => {
             let t = f64::from(reference.depth[i]);
-            let ray = view.view_ray([(i % width) as u32, (i / width) as u32]);
-            (f64::from(frame.depth[i]) - t) / (ray.grain * t).max(f64::MIN_POSITIVE)
+            let footprint = frame.ray(view, i).grain * t;
+            (f64::from(frame.depth[i]) - t) / footprint.max(f64::MIN_POSITIVE)
         }
         _ => f64::NAN,
     };
-    states.map(error).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plan::camera::Camera;
-
-    #[test]
-    fn positions_lie_on_the_rays() {
-        let camera = Camera {
-            eye: DVec3::new(1.0, -2.0, 3.0),
-            ..Camera::default()
-        };
-        let view = camera.view([3, 1]);
-        let frame = Frame {
-            size: [3, 1],
-            depth: vec![2.0, 4.0, f32::INFINITY],
-            ..Frame::default()
-        };
-        let found = frame.positions(&view);
-        for (x, t) in [(0, 2.0), (1, 4.0)] {
-            let want = camera.eye + t * view.view_ray([x, 0]).axis;
-            let got = DVec3::from_array(found[x as usize].map(f64::from));
-            assert!((got - want).length() < 1e-6, "{got} {want}");
-        }
-        assert_eq!(found[2], [0.0; 3]);
-    }
+    (0..frame.state.len()).map(error).collect()
 }

@@ -6,47 +6,39 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::base::named::named_enum;
 use crate::base::srgb::srgb;
 use crate::base::work::State;
 use crate::pass::look::tone;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
 
-/// Lists the layers once: word, name and what the picture shows.
-macro_rules! layers {
-    ($($(#[$meta:meta])* $word:literal $name:ident $help:literal,)*) => {
-        /// What a picture can show.
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-        pub enum Layer {
-            $(#[doc = $help] $(#[$meta])* $name,)*
-        }
-
-        impl Layer {
-            /// Every layer with its word on the command line and what its picture shows.
-            pub const ALL: &'static [(&'static str, Self, &'static str)] =
-                &[$(($word, Self::$name, $help)),*];
-        }
-    };
+named_enum! {
+    /// What a picture can show, and its description.
+    #[derive(Default)]
+    pub enum Layer: &'static str {
+        /// Radiance as a screen shows it.
+        #[default]
+        Color = "color" => "light, tone-mapped",
+        /// Distances along the rays.
+        Depth = "depth" => "grey: nearest black, farthest 95 % white, linear between, sky white",
+        /// Normals in the world.
+        Normal = "normal" =>
+            "world normals, x y z as red green blue, -1..1 to 0..1; sky mid grey",
+        /// Positions in the world.
+        Position = "position" =>
+            "world positions, each axis from its least to its greatest in the picture; sky black",
+        /// The work of each pixel.
+        Steps = "steps" => "evaluations: violet none, yellow the 99th percentile and above",
+        /// What each pixel is.
+        State = "state" => "sky dark blue, hit light grey, unconverged magenta",
+        /// Errors of the depth.
+        Error = "error" =>
+            "depth against the truth in footprints (half a pixel's width): grey 0, red 8 too deep or lost, blue 8 too near",
+    }
 }
 
-layers![
-    #[default]
-    "color" Color "light, tone-mapped",
-    "depth" Depth "grey: nearest black, farthest 95 % white, linear between, sky white",
-    "normal" Normal "world normals, x y z as red green blue, -1..1 to 0..1; sky mid grey",
-    "position" Position "world positions, each axis from its least to its greatest in the picture; sky black",
-    "steps" Steps "evaluations: violet none, yellow the 99th percentile and above",
-    "state" State "sky dark blue, hit light grey, unconverged magenta",
-    "error" Error "depth against the truth in footprints (half a pixel's width): grey 0, red 8 too deep or lost, blue 8 too near",
-];
-
 impl Layer {
-    /// The layer's word on the command line.
-    pub fn word(self) -> &'static str {
-        let found = Self::ALL.iter().find(|(_, layer, _)| *layer == self);
-        found.map_or("", |(word, _, _)| *word)
-    }
-
     /// What a render must keep for the layer.
     pub fn extras(self) -> Extras {
         Extras {
@@ -62,14 +54,8 @@ impl Layer {
 /// A layer of a frame, ready to be asked for pixels.
 pub struct Shades<'a> {
     layer: Layer,
-    frame: &'a Frame,
-    exposure: f64,
-    position: Vec<[f32; 3]>,
-    steps: Vec<f32>,
-    error: Vec<f64>,
-    /// What is black and what is white.
-    low: DVec3,
-    high: DVec3,
+    size: [u32; 2],
+    shade: Box<dyn Fn(usize) -> DVec3 + Sync + 'a>,
 }
 
 /// Stops of the heat map: viridis at even distances (van der Walt and Smith 2015),
@@ -98,46 +84,60 @@ const UNCONVERGED: DVec3 = DVec3::new(1.0, 0.0, 1.0);
 impl<'a> Shades<'a> {
     /// A layer of a frame that was rendered with [`Layer::extras`] from a plan.
     pub fn new(layer: Layer, frame: &'a Frame, plan: &Plan) -> Self {
-        let mut shades = Self {
-            layer,
-            frame,
-            exposure: plan.look.exposure.exp2(),
-            position: Vec::new(),
-            steps: Vec::new(),
-            error: Vec::new(),
-            low: DVec3::ZERO,
-            high: DVec3::ONE,
-        };
-        match layer {
-            Layer::Depth => {
-                let there = frame.depth.iter().filter(|t| t.is_finite());
-                let range = there.map(|t| DVec3::splat(f64::from(*t)));
-                shades.between(range);
+        let shade: Box<dyn Fn(usize) -> DVec3 + Sync + 'a> = match layer {
+            Layer::Color => {
+                let exposure = plan.look.exposure.exp2();
+                Box::new(move |i| srgb(tone(exposure, vector(frame.radiance[i]))))
             }
+            Layer::Depth => {
+                let depth = |t: &f32| DVec3::splat(f64::from(*t));
+                let share = shares(&mut frame.depth.iter().map(depth));
+                Box::new(move |i| match frame.depth[i] {
+                    t if t.is_finite() => share(depth(&t)) * FARTHEST,
+                    _ => DVec3::ONE,
+                })
+            }
+            Layer::Normal => Box::new(|i| vector(frame.normal[i]) * 0.5 + 0.5),
             Layer::Position => {
-                shades.position = frame.positions(&plan.view());
-                let there = shades.position.iter().filter(|p| p[0].is_finite());
-                let range: Vec<DVec3> = there.map(|p| vector(*p)).collect();
-                shades.between(range.into_iter());
+                let positions = frame.positions(&plan.view());
+                let share = shares(&mut positions.iter().copied().map(vector));
+                Box::new(move |i| match vector(positions[i]) {
+                    p if p.is_finite() => share(p),
+                    _ => DVec3::ZERO,
+                })
             }
             Layer::Steps => {
-                shades.steps = frame.steps();
-                shades.high = DVec3::splat(percentile_99(&shades.steps));
+                let steps = frame.steps();
+                let most = percentile_99(&steps);
+                Box::new(move |i| heat((f64::from(steps[i]) / most).min(1.0)))
             }
-            Layer::Color | Layer::Normal | Layer::State | Layer::Error => {}
-        }
-        shades
+            Layer::State => Box::new(|i| match State::from_code(frame.state[i].into()) {
+                Some(State::Sky) => SKY,
+                Some(State::Hit) => HIT,
+                _ => UNCONVERGED,
+            }),
+            Layer::Error => Box::new(|_| UNCONVERGED),
+        };
+        let size = frame.size;
+        Self { layer, size, shade }
     }
 
     /// The same with the errors that [`Layer::Error`] shows: of each pixel, in footprints.
     pub fn with_errors(mut self, errors: Vec<f64>) -> Self {
-        self.error = errors;
+        if self.layer == Layer::Error {
+            self.shade = Box::new(move |i| apart(errors[i]));
+        }
         self
+    }
+
+    /// The display value of a pixel, counted row by row.
+    pub fn at(&self, i: usize) -> DVec3 {
+        (self.shade)(i)
     }
 
     /// Pixels along each axis.
     pub fn size(&self) -> [u32; 2] {
-        self.frame.size
+        self.size
     }
 
     /// Whether one number per pixel is enough.
@@ -150,55 +150,6 @@ impl<'a> Shades<'a> {
         self.layer == Layer::Color
     }
 
-    fn between(&mut self, values: impl Iterator<Item = DVec3>) {
-        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let (low, high) = values.fold(start, |(low, high), v| (low.min(v), high.max(v)));
-        if low.is_finite() {
-            (self.low, self.high) = (low, high);
-        }
-    }
-
-    /// The place of a value between black and white, 0..1.
-    fn share(&self, v: DVec3) -> DVec3 {
-        // A picture of one value has no range; any shade will do.
-        let range = (self.high - self.low).max(DVec3::splat(f64::MIN_POSITIVE));
-        ((v - self.low) / range).clamp(DVec3::ZERO, DVec3::ONE)
-    }
-
-    /// The display value of a pixel, counted row by row.
-    pub fn at(&self, i: usize) -> DVec3 {
-        match self.layer {
-            Layer::Color => srgb(tone(self.exposure, vector(self.frame.radiance[i]))),
-            Layer::Depth => {
-                let t = f64::from(self.frame.depth[i]);
-                if t.is_finite() {
-                    self.share(DVec3::splat(t)) * FARTHEST
-                } else {
-                    DVec3::ONE
-                }
-            }
-            Layer::Normal => vector(self.frame.normal[i]) * 0.5 + 0.5,
-            Layer::Position => {
-                let p = vector(self.position[i]);
-                if p.is_finite() {
-                    self.share(p)
-                } else {
-                    DVec3::ZERO
-                }
-            }
-            Layer::Steps => {
-                let x = f64::from(self.steps[i]);
-                heat(self.share(DVec3::splat(x)).x)
-            }
-            Layer::Error => apart(self.error.get(i).copied().unwrap_or(f64::NAN)),
-            Layer::State => match State::from_code(u32::from(self.frame.state[i])) {
-                Some(State::Sky) => SKY,
-                Some(State::Hit) => HIT,
-                _ => UNCONVERGED,
-            },
-        }
-    }
-
     /// All pixels in 8 bits, as [`Shades::samples`].
     pub(crate) fn bytes(&self) -> Vec<u8> {
         let samples = self.samples(u16::from(u8::MAX));
@@ -209,8 +160,8 @@ impl<'a> Shades<'a> {
     /// one where the layer is grey.
     pub(crate) fn samples(&self, most: u16) -> Vec<u16> {
         let channels = if self.is_grey() { 1 } else { 3 };
-        let width = self.frame.size[0] as usize;
-        let mut out = vec![0; self.frame.state.len() * channels];
+        let [width, height] = self.size.map(|n| n as usize);
+        let mut out = vec![0; width * height * channels];
         let rows = out.par_chunks_mut((width * channels).max(1)).enumerate();
         rows.for_each(|(y, row)| {
             for (x, pixel) in row.chunks_mut(channels).enumerate() {
@@ -223,6 +174,16 @@ impl<'a> Shades<'a> {
         });
         out
     }
+}
+
+/// The place of a value between the least and the greatest finite one, 0..1 along each axis.
+fn shares(values: &mut dyn Iterator<Item = DVec3>) -> impl Fn(DVec3) -> DVec3 + use<> {
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let finite = values.filter(|v| v.is_finite());
+    let (low, high) = finite.fold(start, |(low, high), v| (low.min(v), high.max(v)));
+    // Values that are all the same have no range; any shade will do.
+    let range = (high - low).max(DVec3::splat(f64::MIN_POSITIVE));
+    move |v| ((v - low) / range).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
 fn vector(v: [f32; 3]) -> DVec3 {
@@ -266,10 +227,7 @@ mod tests {
     use crate::formula::Formula;
 
     fn plan() -> Plan {
-        let shape = Formula::all().remove(0);
-        let mut plan = Plan::new(shape);
-        plan.size = [3, 1];
-        plan
+        Plan::new(Formula::all().remove(0))
     }
 
     #[test]

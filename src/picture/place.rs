@@ -10,15 +10,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempPath;
 
 use crate::picture::error::OutputError;
-use crate::picture::folder;
 
-/// Names of all temporary files that were made. They are never used twice, so one that is
-/// gone may stay in the list.
-static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// All temporary files and folders that were made, each after the folders that it is in. Names of
+/// files are never used twice, so one that is gone may stay in the list.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-fn temporary() -> MutexGuard<'static, Vec<PathBuf>> {
+pub(super) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     // A list of names cannot be half changed.
-    TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner)
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A file that will appear.
@@ -73,7 +72,7 @@ impl Place {
             return Err(OutputError::file(path, why));
         }
         // Locked while the file is made, so that an interrupt misses none.
-        let mut list = temporary();
+        let mut list = unfinished();
         let made = builder(&format!(".{}.", name.to_string_lossy())).tempfile_in(folder);
         let (file, held) = made.map(tempfile::NamedTempFile::into_parts).map_err(|e| {
             let doing = format!("cannot be written in the folder `{}`", folder.display());
@@ -108,8 +107,10 @@ impl Place {
     /// The disk is full.
     pub fn write_all(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         let shown = self.shown.clone();
-        let fail = |e: io::Error| OutputError::full(&shown, &e);
-        self.write(|to| to.write_all(bytes).map_err(fail))
+        self.write(|to| {
+            to.write_all(bytes)
+                .map_err(|e| OutputError::full(&shown, &e))
+        })
     }
 }
 
@@ -132,7 +133,7 @@ fn builder(prefix: &str) -> tempfile::Builder<'_, 'static> {
 /// # Errors
 /// A rename fails.
 pub fn commit(places: Vec<Place>) -> Result<(), OutputError> {
-    let _no_interrupt = temporary();
+    let _no_interrupt = unfinished();
     for place in places {
         if let Some(held) = place.held {
             drop(place.file);
@@ -146,11 +147,11 @@ pub fn commit(places: Vec<Place>) -> Result<(), OutputError> {
 /// Removes all temporary files, and folders that were made for them and are empty then.
 /// Called at the end of an interrupted process: nothing is renamed while the guard lives.
 pub fn clear() -> MutexGuard<'static, Vec<PathBuf>> {
-    let mut list = temporary();
-    for held in list.drain(..) {
-        let _ = fs::remove_file(held);
+    let mut list = unfinished();
+    for path in list.drain(..).rev() {
+        // A folder that holds anything stays: the system removes only empty ones.
+        let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir(path));
     }
-    folder::clear();
     list
 }
 

@@ -2,17 +2,17 @@
 
 use glam::DVec3;
 
-use crate::base::key::{Fault, Number, Triple};
+use crate::base::key::{Fault, number, triple};
 use crate::base::view::View;
 use crate::settings;
 
 settings! {
     /// Where the camera stands and where it looks.
     pub struct Camera {
-        eye: DVec3 = DVec3::new(10.0, -17.0, 12.0), Triple(-1e9, 1e9), "position";
-        target: DVec3 = DVec3::ZERO, Triple(-1e9, 1e9), "point in the middle of the image";
-        up: DVec3 = DVec3::Z, Triple(-1e9, 1e9), "direction that is up in the image";
-        fov: f64 = 40.0, Number(1.0, 170.0), "vertical field of view, degrees";
+        eye: DVec3 = DVec3::new(10.0, -17.0, 12.0), triple(-1e9, 1e9), "position";
+        target: DVec3 = DVec3::ZERO, triple(-1e9, 1e9), "point in the middle of the image";
+        up: DVec3 = DVec3::Z, triple(-1e9, 1e9), "direction that is up in the image";
+        fov: f64 = 40.0, number(1.0, 170.0), "vertical field of view, degrees";
     }
 }
 
@@ -20,20 +20,17 @@ impl Camera {
     /// Checks that eye and target differ, and that `up` is not along the view.
     pub fn check(&self) -> Result<(), Fault> {
         let forward = self.target - self.eye;
-        if forward.length() <= 1e-12 * self.eye.length() || forward == DVec3::ZERO {
-            return Err(Fault::new(
-                "camera.target",
-                "the eye and the target are the same point; move one of them",
-            ));
-        }
+        Fault::unless(
+            forward.length() > 1e-12 * self.eye.length(),
+            "camera.target",
+            "the eye and the target are the same point; move one of them",
+        )?;
         let side = forward.normalize().cross(self.up.normalize_or_zero());
-        if side.length() < 1e-9 {
-            return Err(Fault::new(
-                "camera.up",
-                "up must not be zero or along the view; choose another direction, like [0, 0, 1] or [0, 1, 0]",
-            ));
-        }
-        Ok(())
+        Fault::unless(
+            side.length() >= 1e-9,
+            "camera.up",
+            "up must not be zero or along the view; choose another direction, like [0, 0, 1] or [0, 1, 0]",
+        )
     }
 
     /// The camera over an image of a size. The camera must pass [`Camera::check`].

@@ -3,13 +3,17 @@
 use toml::Value;
 
 use crate::base::cone::ConeRule;
-use crate::base::key::{AutoCount, AutoNumber, Count, Fault, List, Number, Slot, Word};
-use crate::plan::pyramid::Pyramid;
+use crate::base::key::{
+    Fault, Place, Slot, auto_count, auto_number, count_in, number, number_in, numbers, word,
+};
+use crate::base::named::named_enum;
+use crate::plan::pyramid::{Level, levels};
 use crate::scene::distance::{Relaxation, Stepping};
 use crate::settings;
 
 /// What sets a mode apart.
-struct Facts {
+#[derive(Clone, Copy, Debug)]
+pub struct Facts {
     /// The rule of its cones; `None` for rays alone.
     cones: Option<ConeRule>,
     /// Whether steps keep the shell of `march.shell`.
@@ -43,48 +47,29 @@ const fn slides(budget: fn(u32) -> [u32; 2]) -> Facts {
     }
 }
 
-/// Makes the enum of all modes from one list: name in Rust, name in presets, facts.
-macro_rules! modes {
-    ($($(#[$doc:meta])* $mode:ident: $name:literal, $facts:expr;)*) => {
-        /// A way to spend work on a picture.
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-        pub enum Mode { $($(#[$doc])* $mode),* }
-
-        /// Every mode with its name.
-        pub const MODES: &[(&str, Mode)] = &[$(($name, Mode::$mode)),*];
-
-        impl Mode {
-            /// The mode's name.
-            pub fn name(self) -> &'static str {
-                match self { $(Self::$mode => $name),* }
-            }
-
-            fn facts(self) -> Facts {
-                match self { $(Self::$mode => $facts),* }
-            }
-        }
-    };
+named_enum! {
+    /// A way to spend work on a picture.
+    #[derive(Default)]
+    pub enum Mode: Facts {
+        /// Exact cones at full width, relaxed rays.
+        #[default]
+        Safe = "safe" => SAFE,
+        /// Exact cones, narrowed by the factors that a calibration found.
+        Calibrated = "calibrated" => SAFE,
+        /// The slides' rule. 128 steps are split evenly over all passes.
+        SlidesEven = "slides-even" => slides(|passes| [(128 / passes).max(1); 2]),
+        /// The slides' rule. Each coarse pass has 512 steps, a ray 128.
+        SlidesDeep = "slides-deep" => slides(|_| [512, 128]),
+        /// The slides' rule. Each coarse pass has 512 steps, a ray 32.
+        SlidesFast = "slides-fast" => slides(|_| [512, 32]),
+        /// Classical sphere tracing: no cones, no relaxation, no shell.
+        Ray = "ray" => RAY,
+        /// Sphere tracing with relaxation.
+        RayRelaxed = "ray-relaxed" => Facts { relaxed: true, ..RAY },
+        /// Tiny steps, no cones, no relaxation. The other modes are measured against it.
+        Truth = "truth" => Facts { stride: 0.1, ..RAY },
+    }
 }
-
-modes![
-    /// Exact cones at full width, relaxed rays.
-    #[default]
-    Safe: "safe", SAFE;
-    /// Exact cones, narrowed by the factors that a calibration found.
-    Calibrated: "calibrated", SAFE;
-    /// The slides' rule. 128 steps are split evenly over all passes.
-    SlidesEven: "slides-even", slides(|passes| [(128 / passes).max(1); 2]);
-    /// The slides' rule. Each coarse pass has 512 steps, a ray 128.
-    SlidesDeep: "slides-deep", slides(|_| [512, 128]);
-    /// The slides' rule. Each coarse pass has 512 steps, a ray 32.
-    SlidesFast: "slides-fast", slides(|_| [512, 32]);
-    /// Classical sphere tracing: no cones, no relaxation, no shell.
-    Ray: "ray", RAY;
-    /// Sphere tracing with relaxation.
-    RayRelaxed: "ray-relaxed", Facts { relaxed: true, ..RAY };
-    /// Tiny steps, no cones, no relaxation. The other modes are measured against it.
-    Truth: "truth", Facts { stride: 0.1, ..RAY };
-];
 
 /// Steps of a cone and of a ray where `march.steps` and the scene do not say. The slowest rays
 /// of the presets end well before.
@@ -93,85 +78,58 @@ const STEPS: u32 = 256;
 settings! {
     /// How a picture is marched.
     pub struct Marching {
-        mode: Mode = Mode::Safe, Word(MODES), "how the work is spent";
-        coarsest: u32 = 16, Divisor(), "divisor of the first cone pass";
-        detail: f64 = 1.0, Number(1e-3, 1e3),
+        mode: Mode = Mode::Safe, word(&Mode::WORDS), "how the work is spent";
+        coarsest: u32 = 16, divisor(), "divisor of the first cone pass";
+        detail: f64 = 1.0, number(1e-3, 1e3),
             "a ray hits where the estimate is below this many footprints";
-        shell: f64 = 0.45, Number(0.0, 0.99),
+        shell: f64 = 0.45, number(0.0, 0.99),
             "share of that threshold that steps keep clear of; more costs time and lowers the error";
-        relaxation: Relaxation = Relaxation::Auto, RelaxationSlot(), "how rays stretch their steps";
-        fudge: Vec<f64> = vec![1.0], List(1..=6, 0.01, 1.0),
+        relaxation: Relaxation = Relaxation::Auto, relaxation(), "how rays stretch their steps";
+        fudge: Vec<f64> = vec![1.0], numbers(6, 0.01, 1.0),
             "factors on the cones' width in mode calibrated, coarse to fine; the last one repeats";
-        steps: Option<u32> = None, AutoCount(1, 1_000_000),
+        steps: Option<u32> = None, auto_count(1, 1_000_000),
             "step limit per cone level and of a ray; auto is 256, and for rays over a heightfield as many as they can need";
-        stride: Option<f64> = None, AutoNumber(1e-3, 1.0),
+        stride: Option<f64> = None, auto_number(1e-3, 1.0),
             "factor on ray steps; auto is 1, and 0.1 for the truth";
-        clip: Option<bool> = None, Word(&[("auto", None), ("on", Some(true)), ("off", Some(false))]),
+        clip: Option<bool> = None, word(&[("auto", None), ("on", Some(true)), ("off", Some(false))]),
             "start rays where they enter the bounds; auto is on after cones";
     }
 }
 
 /// `"off"`, `"auto"` or a factor.
-struct RelaxationSlot<'a>(&'a mut Relaxation);
-
-impl Slot for RelaxationSlot<'_> {
-    fn get(&self) -> Value {
-        match &*self.0 {
-            Relaxation::Off => "off".into(),
-            Relaxation::Auto => "auto".into(),
-            Relaxation::Factor(f) => (*f).into(),
-        }
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        *self.0 = match value.as_str() {
-            Some("off") => Relaxation::Off,
-            Some("auto") => Relaxation::Auto,
-            _ => {
-                let mut f = 0.0;
-                Number(&mut f, 1.0, 1.99).put(value)?;
-                Relaxation::Factor(f)
-            }
-        };
-        Some(())
-    }
-    fn expects(&self) -> String {
-        "\"off\", \"auto\" or a factor from 1 to 1.99".into()
-    }
+fn relaxation(at: &mut Relaxation) -> impl Slot {
+    let write = |relaxation: &Relaxation| match relaxation {
+        Relaxation::Off => "off".into(),
+        Relaxation::Auto => "auto".into(),
+        Relaxation::Factor(f) => (*f).into(),
+    };
+    let read = |value: &Value| match value.as_str() {
+        Some("off") => Some(Relaxation::Off),
+        Some("auto") => Some(Relaxation::Auto),
+        _ => number_in(value, 1.0, 1.99).map(Relaxation::Factor),
+    };
+    let expects = "\"off\", \"auto\" or a factor from 1 to 1.99";
+    Place::new(at, expects, write, read)
 }
 
 /// A power of two.
-struct Divisor<'a>(&'a mut u32);
-
-impl Slot for Divisor<'_> {
-    fn get(&self) -> Value {
-        (*self.0).into()
-    }
-    fn put(&mut self, value: &Value) -> Option<()> {
-        let mut n = 0;
-        Count(&mut n, 1, 64).put(value)?;
-        *self.0 = Some(n).filter(|n| n.is_power_of_two())?;
-        Some(())
-    }
-    fn expects(&self) -> String {
-        "a power of two: 1 (no cones), 2, 4, 8, 16, 32 or 64".into()
-    }
+fn divisor(at: &mut u32) -> impl Slot {
+    let expects = "a power of two: 1 (no cones), 2, 4, 8, 16, 32 or 64";
+    let read = |value: &Value| count_in(value, 1, 64).filter(|n| n.is_power_of_two());
+    Place::new(at, expects, |n| (*n).into(), read)
 }
 
 impl Marching {
     /// Checks that the fudge list fits the pyramid.
     pub fn check(&self) -> Result<(), Fault> {
         let levels = self.coarsest.ilog2() as usize;
+        let given = self.fudge.len();
         // The other modes ignore the list.
-        if self.mode == Mode::Calibrated && self.fudge.len() > levels.max(1) {
-            return Err(Fault::new(
-                "march.fudge",
-                format!(
-                    "{} factors for {levels} cone passes; give at most {levels}, or a larger march.coarsest",
-                    self.fudge.len()
-                ),
-            ));
-        }
-        Ok(())
+        let fits = self.mode != Mode::Calibrated || given <= levels.max(1);
+        let why = format!(
+            "{given} factors for {levels} cone passes; give at most {levels}, or a larger march.coarsest"
+        );
+        Fault::unless(fits, "march.fudge", why)
     }
 
     /// The step limits of a cone and of a ray that the mode sets.
@@ -180,10 +138,10 @@ impl Marching {
         Some(self.mode.facts().budget?(passes))
     }
 
-    /// The cone levels that the mode marches.
-    pub fn pyramid(&self) -> Pyramid {
+    /// The cone levels that the mode marches, coarsest first; none without cones.
+    pub fn levels(&self) -> Vec<Level> {
         if self.mode.facts().cones.is_none() {
-            return Pyramid::default();
+            return Vec::new();
         }
         let fudge: &[f64] = match self.mode {
             Mode::Calibrated => &self.fudge,
@@ -191,7 +149,7 @@ impl Marching {
         };
         let set = self.steps.unwrap_or(STEPS);
         let steps = self.budget().map_or(set, |[cone, _]| cone);
-        Pyramid::new(self.coarsest, fudge, steps)
+        levels(self.coarsest, fudge, steps)
     }
 
     /// The step limit of a ray. `crossing` is the largest number of steps that a ray can take
@@ -202,11 +160,6 @@ impl Marching {
         match self.budget() {
             Some([_, ray]) => ray,
             // Shorter steps need more of them to come as far.
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "clamped"
-            )]
             None if self.mode == Mode::Truth => {
                 (f64::from(steps) * 16.0 / self.stride()).min(1e6) as u32
             }
@@ -222,14 +175,11 @@ impl Marching {
     /// What the scene needs to know to take its steps.
     pub fn stepping(&self) -> Stepping {
         let facts = self.mode.facts();
+        let relaxation = facts.relaxed.then_some(self.relaxation);
         Stepping {
             detail: self.detail,
             shell: if facts.shell { self.shell } else { 0.0 },
-            relaxation: if facts.relaxed {
-                self.relaxation
-            } else {
-                Relaxation::Off
-            },
+            relaxation: relaxation.unwrap_or(Relaxation::Off),
             stride: self.stride(),
             clip: self.clip.unwrap_or(facts.cones.is_some()),
             rule: facts.cones.unwrap_or_default(),
@@ -248,7 +198,7 @@ mod tests {
                 mode,
                 ..Marching::default()
             };
-            let levels = march.pyramid().levels;
+            let levels = march.levels();
             let steps: Vec<u32> = levels.iter().map(|l| l.steps).collect();
             (steps, march.ray_steps(None))
         };
@@ -268,19 +218,5 @@ mod tests {
         assert_eq!(steps(&march), [77; 3]);
         march.mode = Mode::SlidesFast;
         assert_eq!(steps(&march), [32; 3]);
-    }
-
-    #[test]
-    fn factors_are_counted_only_where_they_are_read() {
-        let mut march = Marching {
-            coarsest: 8,
-            fudge: vec![1.0; 4],
-            ..Marching::default()
-        };
-        assert!(march.check().is_ok());
-        march.mode = Mode::Calibrated;
-        assert!(march.check().is_err());
-        march.fudge.pop();
-        assert!(march.check().is_ok());
     }
 }

@@ -14,7 +14,7 @@ pub mod pyramid;
 
 use std::borrow::Cow;
 
-use crate::base::key::{Fault, Key, Size};
+use crate::base::key::{Fault, Key, size, text};
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::heightfield::tracer::settings::PrepareError;
@@ -23,7 +23,7 @@ use crate::scene::{AnySolid, Assets, Scene, Viewpoint};
 use camera::Camera;
 use look::Look;
 use march::Marching;
-use pyramid::{Level, Pyramid};
+use pyramid::Level;
 
 /// The largest width and height of an image.
 pub const MOST_PIXELS: u32 = 65_536;
@@ -63,16 +63,18 @@ impl Plan {
         }
     }
 
-    /// The keys of a section; `None` if there is no such section. `scene.kind` and
-    /// `scene.formula` are not among them: they choose the [`Scene`].
+    /// The keys of a section, or with an empty name those above all sections; `None` if there is
+    /// no such section. `scene.kind` and `scene.formula` are not among them: they choose the
+    /// [`Scene`].
     pub fn keys(&mut self, section: &str) -> Option<Vec<Key<'_>>> {
         Some(match section {
+            "" => keys!["title" = text(&mut self.title), "a line for people";],
             "scene" => self.scene.keys(),
             "camera" => self.camera.keys(),
             "march" => self.march.keys(),
             "look" => self.look.keys(),
             "image" => keys![
-                "size" = Size(&mut self.size, MOST_PIXELS), "width and height in pixels";
+                "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
             ],
             _ => return None,
         })
@@ -94,9 +96,14 @@ impl Plan {
         self.camera.view(self.size)
     }
 
-    /// The cone levels.
-    pub fn pyramid(&self) -> Pyramid {
-        self.march.pyramid()
+    /// The cone levels, coarsest first; none in modes without cones.
+    pub fn levels(&self) -> Vec<Level> {
+        self.march.levels()
+    }
+
+    /// The divisor of the first cone level; 1 without levels.
+    pub fn coarsest(&self) -> u32 {
+        self.levels().first().map_or(1, |level| level.divisor)
     }
 
     /// The eye, the finest pixel and the steps of the plan.
@@ -130,7 +137,7 @@ impl Plan {
     /// The passes of a frame, in order. [`Pass::Prepare`] is not among them: it runs once for
     /// many frames.
     pub fn passes(&self, extras: Extras) -> Vec<Pass> {
-        let levels = self.pyramid().levels.into_iter().map(Pass::March);
+        let levels = self.levels().into_iter().map(Pass::March);
         let colours = (!extras.depth_only).then_some(Pass::Color);
         levels.chain([Pass::Trace]).chain(colours).collect()
     }

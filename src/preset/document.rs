@@ -1,10 +1,10 @@
 //! Presets and overrides as flat lists of entries: section, key, value and origin.
 
-use toml::Value;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
+use toml::{Spanned, Value};
 
 use crate::preset::error::PresetError;
-use crate::preset::nearest::nearest;
+use crate::preset::nearest::{nearest, perhaps};
 
 /// The sections of a preset, in the order in which they are written.
 pub(crate) const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
@@ -41,18 +41,15 @@ impl Entry {
 }
 
 fn path(section: &str, key: &str) -> String {
-    if section.is_empty() {
-        key.to_string()
-    } else {
-        format!("{section}.{key}")
+    match section {
+        "" => key.into(),
+        _ => format!("{section}.{key}"),
     }
 }
 
 /// A value that takes precedence over a preset's: `section.key=value`.
 #[derive(Clone, Debug)]
-pub struct Override {
-    pub(crate) entry: Entry,
-}
+pub struct Override(pub(crate) Entry);
 
 impl Override {
     /// Reads `section.key=value`. Values are TOML. Words like `fbm:64x64,seed=3` or
@@ -85,15 +82,13 @@ impl Override {
                 return Err(fail(format!("the value is not TOML: {why}")));
             }
         };
-        Ok(Self {
-            entry: Entry {
-                section: section.into(),
-                key: key.into(),
-                value: read,
-                shown: brief(value),
-                said: Said::Set(given(text)),
-            },
-        })
+        Ok(Self(Entry {
+            section: section.into(),
+            key: key.into(),
+            value: read,
+            shown: brief(value),
+            said: Said::Set(given(text)),
+        }))
     }
 }
 
@@ -112,24 +107,14 @@ fn bare(text: &str) -> bool {
 /// A text on one line, shortened and without control characters, for use in a sentence.
 pub(crate) fn brief(text: &str) -> String {
     const MOST: usize = 60;
-    let words = text.split_whitespace();
-    let mut line = String::new();
-    for word in words {
-        if !line.is_empty() {
-            line.push(' ');
-        }
-        line.extend(word.chars().flat_map(|c| {
-            let escaped: Vec<char> = if c.is_control() {
-                c.escape_default().collect()
-            } else {
-                vec![c]
-            };
-            escaped
-        }));
-        if line.len() > 4 * MOST {
-            break;
-        }
-    }
+    // No more words fit.
+    let words: Vec<&str> = text.split_whitespace().take(MOST).collect();
+    let escaped = |c: char| match c.is_control() {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    };
+    let words = words.join(" ");
+    let mut line: String = words.chars().take(MOST + 1).map(escaped).collect();
     if line.chars().count() > MOST {
         line = line.chars().take(MOST - 3).chain("...".chars()).collect();
     }
@@ -182,42 +167,36 @@ pub(crate) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError>
         let at = e.span().map_or(0, |s| s.start);
         content(at, format!("this is not TOML: {}", sentence(e.message())))
     })?;
+    let shown = |value: &Spanned<DeValue<'_>>| brief(text.get(value.span()).unwrap_or_default());
+    let entry = |section: &str, key: &Spanned<DeString<'_>>, value: &Spanned<DeValue<'_>>| {
+        let (at, shown) = (key.span().start, shown(value));
+        let read = convert(value.get_ref()).map_err(|why| {
+            let path = brief(&path(section, key.get_ref()));
+            content(at, format!("{path} = {shown}: {why}"))
+        })?;
+        Ok(Entry {
+            section: section.into(),
+            key: key.get_ref().to_string(),
+            value: read,
+            shown,
+            said: Said::File(at),
+        })
+    };
     let mut entries = Vec::new();
-    for (name, value) in table.get_ref() {
-        let at = name.span().start;
-        let name: &str = name.get_ref();
-        let shown = brief(text.get(value.span()).unwrap_or_default());
+    for (key, value) in table.get_ref() {
+        let (at, name): (usize, &str) = (key.span().start, key.get_ref());
         if name == "title" {
-            let value = convert(value.get_ref()).map_err(|why| content(at, why))?;
-            entries.push(Entry {
-                section: String::new(),
-                key: name.into(),
-                value,
-                shown,
-                said: Said::File(at),
-            });
-            continue;
-        }
-        if !SECTIONS.contains(&name) {
+            entries.push(entry("", key, value)?);
+        } else if !SECTIONS.contains(&name) {
             return Err(content(at, unknown_section(name)));
-        }
-        let DeValue::Table(section) = value.get_ref() else {
+        } else if let DeValue::Table(section) = value.get_ref() {
+            for (key, value) in section {
+                entries.push(entry(name, key, value)?);
+            }
+        } else {
+            let shown = shown(value);
             let why = format!("{name} = {shown}: must be a section, like [{name}]");
             return Err(content(at, why));
-        };
-        for (key, value) in section {
-            let at = key.span().start;
-            let shown = brief(text.get(value.span()).unwrap_or_default());
-            let path = path(name, &brief(key.get_ref()));
-            let value = convert(value.get_ref())
-                .map_err(|why| content(at, format!("{path} = {shown}: {why}")))?;
-            entries.push(Entry {
-                section: name.into(),
-                key: key.get_ref().to_string(),
-                value,
-                shown,
-                said: Said::File(at),
-            });
         }
     }
     entries.sort_by_key(|e| match e.said {
@@ -233,9 +212,6 @@ pub(crate) fn unknown_section(name: &str) -> String {
         "the sections are {}, and title stands above them",
         SECTIONS.join(", ")
     );
-    let name_shown = brief(name);
-    match nearest(name, SECTIONS.into_iter().chain(["title"])) {
-        Some(near) => format!("unknown section `{name_shown}`, perhaps `{near}`; {there}"),
-        None => format!("unknown section `{name_shown}`; {there}"),
-    }
+    let near = perhaps(nearest(name, SECTIONS.into_iter().chain(["title"])));
+    format!("unknown section `{}`{near}; {there}", brief(name))
 }

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::preset::BUILTIN;
+use crate::preset::nearest::perhaps;
 
 /// An error of a preset, of an override, or of the argument that names a preset.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -28,7 +29,7 @@ pub enum PresetError {
     /// Neither a built-in preset nor a file has this name.
     #[error(
         "no preset is called `{name}`{}; the built-in presets are {}; a path of a .toml file, or of a .png that this program wrote, is a preset too",
-        perhaps(.nearest),
+        perhaps(.nearest.iter().map(String::as_str)),
         built_in()
     )]
     Unknown {
@@ -55,7 +56,7 @@ impl PresetError {
 }
 
 /// `file:line`, or the file alone.
-pub(crate) fn place(origin: &str, line: Option<usize>) -> String {
+fn place(origin: &str, line: Option<usize>) -> String {
     match line {
         Some(line) => format!("{origin}:{line}"),
         None => origin.to_string(),
@@ -66,12 +67,4 @@ pub(crate) fn place(origin: &str, line: Option<usize>) -> String {
 fn built_in() -> String {
     let names: Vec<&str> = BUILTIN.iter().map(|(name, _)| *name).collect();
     names.join(", ")
-}
-
-/// `, perhaps ...` in the middle of a sentence, or nothing.
-fn perhaps(names: &[String]) -> String {
-    match names {
-        [] => String::new(),
-        names => format!(", perhaps `{}`", names.join("`, `")),
-    }
 }

@@ -15,17 +15,11 @@ pub fn nearest<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> Op
         .map(|(_, name)| name)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn misspelt_names_are_found_and_others_are_not() {
-        let names = ["fov", "eye", "target", "mandelbox"];
-        assert_eq!(nearest("mandlebox", names), Some("mandelbox"));
-        assert_eq!(nearest("traget", names), Some("target"));
-        assert_eq!(nearest("Fov", names), Some("fov"));
-        assert_eq!(nearest("palette", names), None);
-        assert_eq!(nearest("", names), None);
+/// `, perhaps ...` in the middle of a sentence, or nothing.
+pub(super) fn perhaps<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.into_iter().collect();
+    match names[..] {
+        [] => String::new(),
+        _ => format!(", perhaps `{}`", names.join("`, `")),
     }
 }

@@ -1,18 +1,18 @@
 //! Reads the text of a preset and its overrides into a plan, and checks every value.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use toml::Value;
 
-use crate::base::key::{Fault, Key, Slot, Text};
-use crate::formula::Formula;
+use crate::base::key::{Fault, Key};
 use crate::plan::Plan;
 use crate::preset::document::{
     Entry, Override, SECTIONS, Said, brief, line_of, parse, unknown_section,
 };
-use crate::preset::error::{PresetError, place};
-use crate::preset::nearest::nearest;
-use crate::scene::Scene;
+use crate::preset::error::PresetError;
+use crate::preset::nearest::{nearest, perhaps};
+use crate::preset::source::Source;
+use crate::scene::{Assets, Scene};
 
 /// Words for `scene.kind`.
 fn kinds() -> Vec<&'static str> {
@@ -22,109 +22,95 @@ fn kinds() -> Vec<&'static str> {
     kinds
 }
 
-/// Reads a preset. `origin` is its name in errors, like the path of a file.
-///
-/// # Errors
-/// Wrong syntax, unknown names, wrong types, impossible values. The error names file, line,
-/// key, value and a valid alternative.
-pub fn read(text: &str, origin: &str) -> Result<Plan, PresetError> {
-    let entries = parse(text, origin)?;
-    let folder = Path::new("");
-    Reader {
-        text,
-        origin,
-        folder,
-    }
-    .plan(&entries)
+/// Words for `scene.formula`.
+fn formulas() -> Vec<&'static str> {
+    let scenes = Scene::all();
+    scenes.iter().filter_map(|s| s.formula()).collect()
 }
 
-/// Reads a preset with overrides. It must also be valid without them.
-///
-/// An override of `scene.kind` or `scene.formula` that changes it drops the preset's
-/// other values of the scene: they belong to another one.
-///
-/// # Errors
-/// As [`read`]. Faults that only the overrides cause are reported at the overrides.
-pub fn read_with(text: &str, origin: &str, overrides: &[Override]) -> Result<Plan, PresetError> {
-    Ok(read_in(Path::new(""), text, origin, overrides)?.plan)
-}
-
-/// A plan, and where each of its values was said.
+/// A preset that was found and read.
 #[derive(Clone, Debug)]
-pub(super) struct Reading {
+pub struct Preset {
+    /// As [`Source::name`].
+    pub name: String,
+    /// The plan.
     pub plan: Plan,
-    text: String,
-    origin: String,
+    source: Source,
     entries: Vec<Entry>,
 }
 
-impl Reading {
-    /// A fault of the plan, at the place where its key was said.
-    pub fn blame(&self, fault: Fault) -> PresetError {
-        let reader = Reader {
-            text: &self.text,
-            origin: &self.origin,
-            folder: Path::new(""),
+impl Preset {
+    /// Reads a preset from its text. Errors name it as `origin`; files that it names are relative
+    /// to the current folder. It must also be valid without the overrides.
+    ///
+    /// An override of `scene.kind` or `scene.formula` that changes it drops the preset's
+    /// other values of the scene: they belong to another one.
+    ///
+    /// # Errors
+    /// Wrong syntax, unknown names, wrong types, impossible values. The error names file, line,
+    /// key, value and a valid alternative. Faults that only the overrides cause are reported at
+    /// the overrides.
+    pub fn read(text: &str, origin: &str, overrides: &[Override]) -> Result<Self, PresetError> {
+        let source = Source {
+            name: origin.into(),
+            text: text.into(),
+            origin: origin.into(),
+            folder: PathBuf::new(),
         };
-        reader.fault(&mut self.plan.clone(), &self.entries, fault)
+        source.read(overrides)
+    }
+
+    /// Reads the files that the preset names, and keeps them in the assets.
+    ///
+    /// # Errors
+    /// A file cannot be read, holds something else or does not fit. The error names the line
+    /// of the preset, or the override.
+    pub fn load_assets(&self, assets: &Assets) -> Result<(), PresetError> {
+        let loaded = self.plan.scene.load(assets);
+        loaded.map_err(|fault| self.source.fault(&self.plan, &self.entries, fault))
     }
 }
 
-/// As [`read_with`]; files that the preset names are relative to a folder.
-pub(super) fn read_in(
-    folder: &Path,
-    text: &str,
-    origin: &str,
-    overrides: &[Override],
-) -> Result<Reading, PresetError> {
-    let reader = Reader {
-        text,
-        origin,
-        folder,
-    };
-    let mut entries = parse(text, origin)?;
-    let alone = reader.plan(&entries)?;
-    let reading = |plan, entries| Reading {
-        plan,
-        text: text.into(),
-        origin: origin.into(),
-        entries,
-    };
-    if overrides.is_empty() {
-        return Ok(reading(alone, entries));
-    }
-    let sets = overrides.iter().map(|o| o.entry.clone());
-    let changed: Vec<Entry> = sets
-        .clone()
-        .filter(|e| e.section == "scene" && matches!(e.key.as_str(), "kind" | "formula"))
-        .filter(|e| {
-            let (kind, formula) = (alone.scene.kind(), alone.scene.formula());
-            let now = if e.key == "kind" { Some(kind) } else { formula };
-            e.value.as_str() != now
+/// The plan of a preset's text; see [`Preset::read`].
+///
+/// # Errors
+/// As [`Preset::read`].
+pub fn read(text: &str, origin: &str) -> Result<Plan, PresetError> {
+    Ok(Preset::read(text, origin, &[])?.plan)
+}
+
+impl Source {
+    pub(super) fn read(self, overrides: &[Override]) -> Result<Preset, PresetError> {
+        let mut entries = parse(&self.text, &self.origin)?;
+        let mut plan = self.plan(&entries)?;
+        if !overrides.is_empty() {
+            let sets: Vec<Entry> = overrides.iter().map(|o| o.0.clone()).collect();
+            let changes = |e: &Entry| match e.path().as_str() {
+                "scene.kind" => e.value.as_str() != Some(plan.scene.kind()),
+                "scene.formula" => e.value.as_str() != plan.scene.formula(),
+                _ => false,
+            };
+            if sets.iter().any(changes) {
+                let kind = last(&sets, "kind");
+                let formula = kind.is_none_or(|e| e.value.as_str() == Some("distance"));
+                let keeps = |e: &Entry| match e.key.as_str() {
+                    "kind" => true,
+                    "formula" | "iterations" => formula,
+                    _ => false,
+                };
+                entries.retain(|e| e.section != "scene" || keeps(e));
+            }
+            entries.extend(sets);
+            plan = self.plan(&entries)?;
+        }
+        Ok(Preset {
+            name: self.name.clone(),
+            plan,
+            source: self,
+            entries,
         })
-        .collect();
-    if !changed.is_empty() {
-        let kind = sets.clone().rfind(|e| e.path() == "scene.kind");
-        let formula = kind.is_none_or(|e| e.value.as_str() == Some("distance"));
-        let keeps = |e: &Entry| match e.key.as_str() {
-            "kind" => true,
-            "formula" | "iterations" => formula,
-            _ => false,
-        };
-        entries.retain(|e| e.section != "scene" || keeps(e));
     }
-    entries.extend(sets);
-    Ok(reading(reader.plan(&entries)?, entries))
-}
 
-/// Turns entries into a plan, and names their places in errors.
-struct Reader<'a> {
-    text: &'a str,
-    origin: &'a str,
-    folder: &'a Path,
-}
-
-impl Reader<'_> {
     fn plan(&self, entries: &[Entry]) -> Result<Plan, PresetError> {
         for entry in entries {
             if !entry.section.is_empty() && !SECTIONS.contains(&entry.section.as_str()) {
@@ -135,39 +121,32 @@ impl Reader<'_> {
         for entry in entries {
             self.put(&mut plan, entry)?;
         }
-        plan.check()
-            .map_err(|fault| self.fault(&mut plan, entries, fault))?;
+        let checked = plan.check();
+        checked.map_err(|fault| self.fault(&plan, entries, fault))?;
         Ok(plan)
     }
 
     /// The scene that `scene.kind` and `scene.formula` choose.
     fn scene(&self, entries: &[Entry]) -> Result<Scene, PresetError> {
         let Some(kind) = last(entries, "kind") else {
-            return Err(self.missing("scene.kind is missing; kind = \"distance\" with a formula would do, or kind = \"heightfield\""));
+            let why = "scene.kind is missing; kind = \"distance\" with a formula would do, or kind = \"heightfield\"";
+            return Err(self.content(None, why.into()));
         };
         let word = self.word(kind, &kinds())?;
-        if word == "distance" {
-            let Some(formula) = last(entries, "formula") else {
-                let names = Formula::all();
-                let names: Vec<&str> = names.iter().map(|s| s.name()).collect();
-                let why = format!("scene.formula is missing; it is one of {}", quoted(&names));
-                return Err(self.missing(&why));
-            };
-            return Ok(self.formula(formula)?.into());
-        }
-        let mut found = Scene::all().into_iter().find(|s| s.kind() == word);
-        if let Some(scene) = &mut found {
-            scene.set_folder(self.folder);
-        }
-        found.ok_or_else(|| self.value(kind, "there is no such kind of scene"))
-    }
-
-    /// The formula that an entry names.
-    fn formula(&self, entry: &Entry) -> Result<Formula, PresetError> {
-        let shapes = Formula::all();
-        let names: Vec<&str> = shapes.iter().map(|s| s.name()).collect();
-        let name = self.word(entry, &names)?;
-        Formula::named(name).ok_or_else(|| self.value(entry, "there is no such formula"))
+        let formula = match last(entries, "formula") {
+            _ if word != "distance" => None,
+            Some(formula) => Some(self.word(formula, &formulas())?),
+            None => {
+                let names = quoted(&formulas());
+                let why = format!("scene.formula is missing; it is one of {names}");
+                return Err(self.content(None, why));
+            }
+        };
+        let mut scenes = Scene::all().into_iter();
+        let found = scenes.find(|s| s.kind() == word && s.formula() == formula);
+        let mut scene = found.ok_or_else(|| self.value(kind, "there is no such kind of scene"))?;
+        scene.set_folder(&self.folder);
+        Ok(scene)
     }
 
     /// The word of a few that an entry's value is.
@@ -184,71 +163,57 @@ impl Reader<'_> {
 
     /// Puts one entry into the plan.
     fn put(&self, plan: &mut Plan, entry: &Entry) -> Result<(), PresetError> {
-        if entry.section.is_empty() {
-            let set = Text(&mut plan.title).set(&entry.value);
-            return set.map_err(|why| self.value(entry, &format!("must be {why}")));
-        }
         let (kind, formula) = (plan.scene.kind(), plan.scene.formula());
-        if entry.section == "scene" {
-            match (entry.key.as_str(), formula) {
-                // The last of each has chosen the scene; the others are checked as well.
-                ("kind", _) => return self.word(entry, &kinds()).map(|_| ()),
-                ("formula", Some(_)) => return self.formula(entry).map(|_| ()),
-                ("formula", None) => {
-                    let why = format!("a {kind} has no formula; leave it out");
-                    return Err(self.value(entry, &why));
-                }
-                _ => {}
+        match (entry.path().as_str(), formula) {
+            // The last of each has chosen the scene; the others are checked as well.
+            ("scene.kind", _) => return self.word(entry, &kinds()).map(|_| ()),
+            ("scene.formula", Some(_)) => return self.word(entry, &formulas()).map(|_| ()),
+            ("scene.formula", None) => {
+                let why = format!("a {kind} has no formula; leave it out");
+                return Err(self.value(entry, &why));
             }
+            _ => {}
         }
         let mut keys = plan.keys(&entry.section).unwrap_or_default();
-        match keys.iter_mut().find(|k| k.name == entry.key) {
-            Some(key) => {
-                let set = key.slot.set(&entry.value);
-                set.map_err(|why| self.value(entry, &format!("must be {why}")))
-            }
-            None => {
-                let of = match entry.section.as_str() {
-                    "scene" => format!(" of {}", formula.unwrap_or(kind)),
-                    _ => String::new(),
-                };
-                Err(self.value(entry, &unknown_key(entry, &keys, &of)))
-            }
-        }
+        let Some(key) = keys.iter_mut().find(|k| k.name == entry.key) else {
+            let of = match entry.section.as_str() {
+                "scene" => format!(" of {}", formula.unwrap_or(kind)),
+                _ => String::new(),
+            };
+            return Err(self.value(entry, &unknown_key(entry, &keys, &of)));
+        };
+        let set = key.slot.set(&entry.value);
+        set.map_err(|why| self.value(entry, &format!("must be {why}")))
     }
 
     /// A fault of the whole plan, reported at its key or at the overrides that cause it.
-    fn fault(&self, plan: &mut Plan, entries: &[Entry], fault: Fault) -> PresetError {
-        let said = entries.iter().rev().find(|e| e.path() == fault.key);
-        if let Some(entry) = said
-            && matches!(entry.said, Said::Set(_))
-        {
-            return self.value(entry, &fault.why);
-        }
-        let now = value_of(plan, &fault.key);
-        let sets = overrides_to_blame(entries, &fault.key);
+    fn fault(&self, plan: &Plan, entries: &[Entry], fault: Fault) -> PresetError {
+        let said = entries.iter().rfind(|e| e.path() == fault.key);
         let what = match said {
+            Some(entry) if matches!(entry.said, Said::Set(_)) => {
+                return self.value(entry, &fault.why);
+            }
             Some(entry) => format!("{} = {}", fault.key, entry.shown),
-            None => format!("{} = {now} (the default)", fault.key),
+            None => format!(
+                "{} = {} (the default)",
+                fault.key,
+                value_of(plan, &fault.key)
+            ),
         };
         let line = said.and_then(|e| self.line(e));
-        if sets.is_empty() {
-            return PresetError::Content {
-                origin: self.origin.to_string(),
-                line,
-                why: format!("{what}: {}", fault.why),
-            };
-        }
-        let place = place(self.origin, line);
-        PresetError::Override {
-            overrides: sets.join(" "),
-            why: format!("{place}: {what}: {}", fault.why),
+        let error = self.content(line, format!("{what}: {}", fault.why));
+        match overrides_to_blame(entries, &fault.key) {
+            sets if sets.is_empty() => error,
+            sets => PresetError::Override {
+                overrides: sets.join(" "),
+                why: error.to_string(),
+            },
         }
     }
 
     fn line(&self, entry: &Entry) -> Option<usize> {
         match entry.said {
-            Said::File(at) => Some(line_of(self.text, at)),
+            Said::File(at) => Some(line_of(&self.text, at)),
             Said::Set(_) => None,
         }
     }
@@ -267,11 +232,7 @@ impl Reader<'_> {
 
     fn at(&self, entry: &Entry, why: String) -> PresetError {
         match &entry.said {
-            Said::File(_) => PresetError::Content {
-                origin: self.origin.to_string(),
-                line: self.line(entry),
-                why,
-            },
+            Said::File(_) => self.content(self.line(entry), why),
             Said::Set(text) => PresetError::Override {
                 overrides: text.clone(),
                 why,
@@ -279,29 +240,28 @@ impl Reader<'_> {
         }
     }
 
-    fn missing(&self, why: &str) -> PresetError {
+    fn content(&self, line: Option<usize>, why: String) -> PresetError {
         PresetError::Content {
-            origin: self.origin.to_string(),
-            line: None,
-            why: why.into(),
+            origin: self.origin.clone(),
+            line,
+            why,
         }
     }
 }
 
 /// The last entry of `[scene]` with a key.
 fn last<'e>(entries: &'e [Entry], key: &str) -> Option<&'e Entry> {
-    let fits = |e: &&Entry| e.section == "scene" && e.key == key;
-    entries.iter().rev().find(fits)
+    let mut entries = entries.iter();
+    entries.rfind(|e| e.section == "scene" && e.key == key)
 }
 
 /// What a plan has at `section.key`.
-fn value_of(plan: &mut Plan, path: &str) -> Value {
-    let found = path.split_once('.').and_then(|(section, key)| {
-        let keys = plan.keys(section)?;
-        let key = keys.into_iter().find(|k| k.name == key)?;
-        Some(key.slot.get())
-    });
-    found.unwrap_or_else(|| Value::String(String::new()))
+fn value_of(plan: &Plan, path: &str) -> Value {
+    let (section, name) = path.split_once('.').unwrap_or(("", path));
+    let mut plan = plan.clone();
+    let mut keys = plan.keys(section).unwrap_or_default().into_iter();
+    let key = keys.find(|k| k.name == name);
+    key.map_or("".into(), |k| k.slot.get())
 }
 
 /// The overrides in the section of a fault, or all overrides if it has none.
@@ -323,8 +283,7 @@ fn unknown_key(entry: &Entry, keys: &[Key<'_>], of: &str) -> String {
         let formula = names.contains(&"iterations").then_some("formula");
         names.splice(0..0, ["kind"].into_iter().chain(formula));
     }
-    let near = nearest(&entry.key, names.iter().copied());
-    let near = near.map_or(String::new(), |n| format!(", perhaps `{n}`"));
+    let near = perhaps(nearest(&entry.key, names.iter().copied()));
     let list = names.join(", ");
     format!("unknown key{near}; [{}]{of} has {list}", entry.section)
 }

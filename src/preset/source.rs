@@ -7,13 +7,11 @@ use std::path::{Path, PathBuf};
 
 use png::DecodingError;
 
-use crate::plan::Plan;
 use crate::preset::builtin::{BUILTIN, builtin};
 use crate::preset::document::{Override, brief};
 use crate::preset::error::PresetError;
 use crate::preset::nearest::nearest;
-use crate::preset::read::{Reading, read_in};
-use crate::scene::Assets;
+use crate::preset::read::Preset;
 
 /// Largest preset that is read: far more than any preset needs, so that a wrong file is
 /// rejected at once.
@@ -38,57 +36,9 @@ pub struct Source {
     /// TOML.
     pub text: String,
     /// What errors call the preset.
-    origin: String,
+    pub(super) origin: String,
     /// The folder that files named in the preset are relative to.
-    folder: PathBuf,
-}
-
-/// A preset that was found and read.
-#[derive(Clone, Debug)]
-pub struct Preset {
-    /// As [`Source::name`].
-    pub name: String,
-    /// The plan.
-    pub plan: Plan,
-    reading: Reading,
-}
-
-impl Preset {
-    /// Reads a preset from its text. Errors name it as `origin`; files that it names are relative
-    /// to the current folder.
-    ///
-    /// # Errors
-    /// The text or an override is wrong.
-    pub fn read(text: &str, origin: &str, overrides: &[Override]) -> Result<Self, PresetError> {
-        let source = Source {
-            name: origin.into(),
-            text: text.into(),
-            origin: origin.into(),
-            folder: PathBuf::new(),
-        };
-        source.read(overrides)
-    }
-
-    /// Reads the files that the preset names, and keeps them in the assets.
-    ///
-    /// # Errors
-    /// A file cannot be read, holds something else or does not fit. The error names the line
-    /// of the preset, or the override.
-    pub fn load_assets(&self, assets: &Assets) -> Result<(), PresetError> {
-        let loaded = self.reading.plan.scene.load(assets);
-        loaded.map_err(|fault| self.reading.blame(fault))
-    }
-}
-
-impl Source {
-    fn read(self, overrides: &[Override]) -> Result<Preset, PresetError> {
-        let reading = read_in(&self.folder, &self.text, &self.origin, overrides)?;
-        Ok(Preset {
-            name: self.name,
-            plan: reading.plan.clone(),
-            reading,
-        })
-    }
+    pub(super) folder: PathBuf,
 }
 
 /// The file that an argument of [`load`] names; `None` for a built-in preset.

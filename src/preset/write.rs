@@ -1,6 +1,7 @@
 //! Writes a plan as the text of a preset: every key, in the order of its lists.
 
 use std::fmt::Write as _;
+use std::iter;
 
 use toml::Value;
 
@@ -11,11 +12,12 @@ use crate::preset::document::SECTIONS;
 pub fn write(plan: &Plan) -> String {
     let mut plan = plan.clone();
     let mut text = String::new();
-    line(&mut text, "title", &Value::String(plan.title.clone()));
     let (kind, formula) = (plan.scene.kind(), plan.scene.formula());
-    for section in SECTIONS {
-        // Writing to a string cannot fail, here and below.
-        let _ = writeln!(text, "\n[{section}]");
+    for section in iter::once("").chain(SECTIONS) {
+        if !section.is_empty() {
+            // Writing to a string cannot fail, here and below.
+            let _ = writeln!(text, "\n[{section}]");
+        }
         if section == "scene" {
             line(&mut text, "kind", &Value::String(kind.into()));
             if let Some(formula) = formula {

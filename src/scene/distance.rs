@@ -220,7 +220,6 @@ impl Twin for Distance {
         all
     }
 
-    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {
         let scene = DistanceUniform {
             eye: self.eye.as_vec3(),

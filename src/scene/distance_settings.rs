@@ -2,7 +2,7 @@
 
 use super::distance::Distance;
 use super::{AnySolid, Assets, Scene, SceneSettings, Viewpoint};
-use crate::base::key::{AutoCount, Fault, Key};
+use crate::base::key::{Fault, Key, auto_count};
 use crate::formula::Formula;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::keys;
@@ -23,11 +23,6 @@ pub const MOST_ITERATIONS: u32 = 1000;
 const MOST_SHADOW_STEPS: u32 = 512;
 
 impl DistanceSettings {
-    /// Every formula with its defaults.
-    pub fn all() -> Vec<Self> {
-        Formula::all().into_iter().map(Self::from).collect()
-    }
-
     /// The iteration limit: the given one, or as many as the finest footprint needs.
     fn limit(&self, from: &Viewpoint) -> u32 {
         // A quarter of the hit threshold: too little to see in a comparison.
@@ -41,27 +36,21 @@ impl DistanceSettings {
     fn finest_footprint(&self, from: &Viewpoint) -> f64 {
         let bounds = self.formula.bounds();
         let (raw, _) = self.formula.estimate(from.eye, MOST_ITERATIONS);
-        let clear = bounds
-            .distance(from.eye)
-            .max(raw / self.formula.lipschitz());
+        let inside = raw / self.formula.lipschitz();
+        let clear = bounds.distance(from.eye).max(inside);
         // On the surface the footprint would be zero.
         let least = 1e-7 * bounds.farthest(from.eye);
         from.grain * clear.max(least)
     }
 }
 
-impl From<Formula> for DistanceSettings {
-    fn from(formula: Formula) -> Self {
-        Self {
-            formula,
-            iterations: None,
-        }
-    }
-}
-
 impl From<Formula> for Scene {
     fn from(formula: Formula) -> Self {
-        DistanceSettings::from(formula).into()
+        let iterations = None;
+        Self::Distance(DistanceSettings {
+            formula,
+            iterations,
+        })
     }
 }
 
@@ -77,7 +66,7 @@ impl SceneSettings for DistanceSettings {
     fn keys(&mut self) -> Vec<Key<'_>> {
         let mut keys = self.formula.keys();
         keys.extend(keys![
-            "iterations" = AutoCount(&mut self.iterations, 1, MOST_ITERATIONS),
+            "iterations" = auto_count(&mut self.iterations, 1, MOST_ITERATIONS),
                 "iteration limit; auto is as many as the finest footprint needs, up to 1000";
         ]);
         keys

@@ -14,17 +14,15 @@ use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
 use crate::heightfield::assets::{Assets, Ready};
-
 use crate::heightfield::heights::Patches;
 use crate::heightfield::paint::Colors;
-
 use crate::heightfield::region_max::{self, region_max};
 use crate::heightfield::settings::HeightfieldSettings;
 use crate::heightfield::tracer::grid::{FAR, FLAT};
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::heightfield::tracer::{self, LocalRay, Trace, TraceHit};
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use crate::scene::{AnySolid, MOST_SHADOW_STEPS, SceneSettings, Viewpoint};
+use crate::scene::{AnySolid, SceneSettings, Viewpoint};
 use crate::wgsl;
 
 /// How often the longest sweep is halved, and the smallest ball doubled. This spans a map of
@@ -90,10 +88,6 @@ impl SceneSettings for HeightfieldSettings {
         Ok(AnySolid::Heightfield(solid))
     }
 
-    fn most_shadow_steps(&self) -> u32 {
-        MOST_SHADOW_STEPS
-    }
-
     /// A tracer of the papers can run out of steps anywhere; a fractal's ray does so only next
     /// to a hit.
     fn flags_unconverged(&self) -> bool {
@@ -140,19 +134,11 @@ impl Heightfield {
         DVec3::new(hue, up, 0.5)
     }
 
-    fn units(&self) -> DVec3 {
-        DVec3::new(
-            self.made.placement.texel,
-            self.made.placement.texel,
-            self.made.placement.depth,
-        )
-    }
-
     /// Whether a ball of a world radius that moves between two local positions meets nothing
     /// solid.
     fn sweep_is_free(&self, one: DVec3, two: DVec3, radius: f64, work: &mut Work) -> bool {
         work.evaluations += 1;
-        let room = radius / self.units();
+        let room = radius / self.made.placement.units();
         let (low, high) = (one.min(two) - room, one.max(two) + room);
         let top = || region_max(&self.made.surface, low.truncate(), high.truncate());
         high.z < 0.0 || low.z > 1.0 || low.z > top()
@@ -161,15 +147,14 @@ impl Heightfield {
     /// The world distance from a local position to the surface straight below it. Beside the
     /// block it is the distance to the edge of the top, or to the wall below that edge.
     fn surface_gap(&self, p: DVec3) -> f64 {
-        let xy = p.truncate();
-        let inside = xy.clamp(DVec2::ZERO, self.made.placement.sides);
-        let last = (self.made.placement.sides - 1.0).max(DVec2::ZERO);
-        let cell = inside.floor().min(last);
+        let (xy, place) = (p.truncate(), &self.made.placement);
+        let inside = xy.clamp(DVec2::ZERO, place.sides);
+        let cell = inside.floor().min((place.sides - 1.0).max(DVec2::ZERO));
         let at = inside - cell;
-        let cell = [cell.x as i32, cell.y as i32];
+        let cell = cell.as_ivec2().to_array();
         let height = self.made.surface.height(cell, at.x, at.y);
-        let above = ((p.z - height) * self.made.placement.depth).max(0.0);
-        let off = (xy - inside) * self.made.placement.texel;
+        let above = ((p.z - height) * place.depth).max(0.0);
+        let off = (xy - inside) * place.texel;
         off.extend(above).length()
     }
 
@@ -178,7 +163,7 @@ impl Heightfield {
     fn slack(&self) -> DVec3 {
         let eye = self.made.placement.position(self.eye).abs();
         let sides = self.made.placement.sides.extend(1.0);
-        5e-7 * (eye + sides + self.far / self.units())
+        5e-7 * (eye + sides + self.far / self.made.placement.units())
     }
 }
 
@@ -220,7 +205,6 @@ impl Twin for Heightfield {
         all
     }
 
-    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {
         let [row_x, row_y, row_z] = self.made.placement.rows().map(|r| r.as_vec3());
         let scene = HeightfieldUniform {
@@ -242,11 +226,8 @@ impl Twin for Heightfield {
     }
 
     fn describe(&self) -> String {
-        let [w, h] = self.made.surface.heights().size();
-        format!(
-            "heightfield: {w} x {h} samples, traced by {}",
-            self.made.name
-        )
+        let ([w, h], name) = (self.made.surface.heights().size(), self.made.name);
+        format!("heightfield: {w} x {h} samples, traced by {name}")
     }
 
     fn rounds(&self) -> u32 {
@@ -258,26 +239,21 @@ impl Solid for Heightfield {
     type Walk = Trace;
 
     fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance {
+        let free_to = |front| Advance { front, going: true };
         let ray = self.local(cone);
         let here = ray.at(front);
         let away = self.made.placement.distance(here) - cone.r0;
         // Far outside the block, the distance to it is enough.
         let carried = self.rule.cone_front(front, front, away, cone.k);
         if away > 0.0 && carried - front > 0.5 * away {
-            return Advance {
-                front: carried,
-                going: true,
-            };
+            return free_to(carried);
         }
         let thick = cone.r0 + cone.k * front;
         let mut length = self.far * 1.0001 - front;
         for _ in 0..HEIGHTFIELD_HALVINGS {
             let end = front + length;
             if self.sweep_is_free(here, ray.at(end), cone.r0 + cone.k * end, work) {
-                return Advance {
-                    front: end,
-                    going: true,
-                };
+                return free_to(end);
             }
             length *= 0.5;
             // The four thinner children gain more.
@@ -301,12 +277,8 @@ impl Solid for Heightfield {
     }
 
     fn walk_hit(&self, walk: &Trace) -> Hit {
-        let hit = walk.hit();
-        Hit {
-            t: hit.s,
-            id: hit.id,
-            uv: hit.uv,
-        }
+        let TraceHit { s: t, id, uv } = walk.hit();
+        Hit { t, id, uv }
     }
 
     fn walk_radius(&self, ray: &Beam, walk: &Trace) -> f64 {
@@ -340,22 +312,19 @@ impl Solid for Heightfield {
     }
 
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface {
-        let hit = TraceHit {
-            s: hit.t,
-            id: hit.id,
-            uv: hit.uv,
-        };
-        let wall = match hit.face() {
-            tracer::SURFACE => None,
-            tracer::WALL_X_LOW => Some(-DVec3::X),
-            tracer::WALL_X_HIGH => Some(DVec3::X),
-            tracer::WALL_Y_LOW => Some(-DVec3::Y),
-            tracer::WALL_Y_HIGH => Some(DVec3::Y),
-            _ => Some(-DVec3::Z),
-        };
-        if let Some(side) = wall {
+        let (place, surface) = (&self.made.placement, &self.made.surface);
+        let Hit { t: s, id, uv } = *hit;
+        let hit = TraceHit { s, id, uv };
+        if hit.face() != tracer::SURFACE {
+            let side = match hit.face() {
+                tracer::WALL_X_LOW => -DVec3::X,
+                tracer::WALL_X_HIGH => DVec3::X,
+                tracer::WALL_Y_LOW => -DVec3::Y,
+                tracer::WALL_Y_HIGH => DVec3::Y,
+                _ => -DVec3::Z,
+            };
             return Surface {
-                normal: self.made.placement.side(side),
+                normal: place.side(side),
                 pigment: if self.is_colored() {
                     DVec3::splat(HEIGHTFIELD_WALL)
                 } else {
@@ -363,15 +332,15 @@ impl Solid for Heightfield {
                 },
             };
         }
-        let (cell, width) = (hit.cell(), self.made.surface.cells()[0]);
+        let (cell, width) = (hit.cell(), surface.cells()[0]);
         let cell = [cell % width, cell / width].map(|n| n as i32);
-        let [a, b, c, d] = self.made.surface.corners(cell);
+        let [a, b, c, d] = surface.corners(cell);
         let ray = self.local(ray);
         let z = ray.height(hit.s);
         // Below the top of its box by more than rounding: the hit is on a side.
-        if self.made.surface.patches() == Patches::Boxes && z < a - self.slack().z {
+        if surface.patches() == Patches::Boxes && z < a - self.slack().z {
             return Surface {
-                normal: self.made.placement.side(box_side(ray.axis, hit.uv)),
+                normal: place.side(box_side(ray.axis, hit.uv)),
                 pigment: self.pigment(cell, hit.uv, z, 0.0),
             };
         }
@@ -380,13 +349,13 @@ impl Solid for Heightfield {
             (b - a) + v * ((d - c) - (b - a)),
             (c - a) + u * ((d - b) - (c - a)),
         );
-        let low = a + u * (b - a);
-        let high = c + u * (d - c);
-        let steep = slope * (self.made.placement.depth / self.made.placement.texel);
-        let up = steep.extend(1.0).length().recip();
+        let up = (slope * (place.depth / place.texel))
+            .extend(1.0)
+            .length()
+            .recip();
         Surface {
-            normal: self.made.placement.normal(slope),
-            pigment: self.pigment(cell, hit.uv, low + v * (high - low), up),
+            normal: place.normal(slope),
+            pigment: self.pigment(cell, hit.uv, surface.height(cell, u, v), up),
         }
     }
 

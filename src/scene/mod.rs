@@ -21,6 +21,7 @@ use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 
 use crate::base::key::Fault;
+use crate::formula::Formula;
 pub use crate::heightfield::assets::Assets;
 use crate::heightfield::assets::Preparation;
 use crate::heightfield::settings::HeightfieldSettings;
@@ -70,6 +71,11 @@ macro_rules! scenes {
                 match self { $(Self::$kind(s) => task.run(s)),* }
             }
 
+            /// Whether pigments are colours.
+            pub fn is_colored(&self) -> bool {
+                match self { $(Self::$kind(s) => s.is_colored()),* }
+            }
+
             /// The GPU's side of the scene.
             pub fn twin(&self) -> &dyn Twin {
                 match self { $(Self::$kind(s) => s),* }
@@ -96,7 +102,7 @@ scenes![
 impl Scene {
     /// Every scene with its defaults: each formula, and each other kind.
     pub fn all() -> Vec<Self> {
-        let formulas = DistanceSettings::all().into_iter().map(Self::Distance);
+        let formulas = Formula::all().into_iter().map(Self::from);
         let others = [
             HeightfieldSettings::default().into(),
             SlabSettings::default().into(),
@@ -147,8 +153,8 @@ impl Scene {
     /// # Errors
     /// A file does not fit, or `make` fails.
     pub fn prepare(&self, assets: &Assets, make: Make<'_>) -> Result<(), PrepareError> {
-        let made = |h| assets.prepare(h, make);
-        self.heightfield().map_or(Ok(()), made)
+        self.heightfield()
+            .map_or(Ok(()), |h| assets.prepare(h, make))
     }
 
     /// The cone maps that [`Scene::prepare`] makes.
@@ -172,19 +178,5 @@ impl Scene {
     /// The largest number of steps that a ray can take through the scene, where it is known.
     pub fn most_steps(&self, assets: &Assets) -> Option<u32> {
         assets.most_steps(self.heightfield()?)
-    }
-}
-
-impl AnySolid {
-    /// Whether pigments are colours.
-    pub fn is_colored(&self) -> bool {
-        struct Asked;
-        impl Task for Asked {
-            type Output = bool;
-            fn run<S: Solid>(self, solid: &S) -> bool {
-                solid.is_colored()
-            }
-        }
-        self.run(Asked)
     }
 }

@@ -55,7 +55,9 @@ pub trait SceneSettings {
     }
 
     /// The largest step limit of a shadow ray.
-    fn most_shadow_steps(&self) -> u32;
+    fn most_shadow_steps(&self) -> u32 {
+        MOST_SHADOW_STEPS
+    }
 
     /// Whether unconverged pixels are magenta by default.
     fn flags_unconverged(&self) -> bool {

@@ -7,13 +7,13 @@ use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::base::cone::ConeRule;
-use crate::base::key::{Fault, Key, Number, Triple};
+use crate::base::key::{Fault, Key, number, triple};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use crate::scene::{AnySolid, Assets, MOST_SHADOW_STEPS, SceneSettings, Viewpoint};
+use crate::scene::{AnySolid, Assets, SceneSettings, Viewpoint};
 use crate::{settings, wgsl};
 
 /// The slab as WGSL reads it.
@@ -41,9 +41,9 @@ pub struct SlabUniform {
 settings! {
     /// The settings of a slab about the origin.
     pub struct SlabSettings {
-        normal: DVec3 = DVec3::Z, Triple(-1e6, 1e6), "direction of the planes' normal";
-        half: f64 = 0.5, Number(1e-6, 1e6), "half the thickness";
-        radius: f64 = 6.0, Number(1e-6, 1e6), "radius of the disc";
+        normal: DVec3 = DVec3::Z, triple(-1e6, 1e6), "direction of the planes' normal";
+        half: f64 = 0.5, number(1e-6, 1e6), "half the thickness";
+        radius: f64 = 6.0, number(1e-6, 1e6), "radius of the disc";
     }
 }
 
@@ -58,22 +58,16 @@ impl SceneSettings for SlabSettings {
 
     /// Checks that the normal is a direction.
     fn check(&self) -> Result<(), Fault> {
-        if self.normal.length() < 1e-9 {
-            return Err(Fault::new(
-                "scene.normal",
-                "the normal must not be zero; try [0, 0, 1]",
-            ));
-        }
-        Ok(())
+        Fault::unless(
+            self.normal.length() >= 1e-9,
+            "scene.normal",
+            "the normal must not be zero; try [0, 0, 1]",
+        )
     }
 
     fn solid(&self, from: &Viewpoint, _: &Assets) -> Result<AnySolid, PrepareError> {
         let slab = Slab::new(self, from.eye, from.stepping.rule);
         Ok(AnySolid::Slab(slab))
-    }
-
-    fn most_shadow_steps(&self) -> u32 {
-        MOST_SHADOW_STEPS
     }
 }
 
@@ -130,7 +124,6 @@ impl Twin for Slab {
         ]
     }
 
-    #[allow(clippy::cast_possible_truncation, reason = "f32 is what the GPU takes")]
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {
         let slab = SlabUniform {
             eye: self.eye.as_vec3(),
@@ -181,10 +174,8 @@ impl Solid for Slab {
         let (z, dz) = (p.dot(self.normal), ray.axis.dot(self.normal));
         let (s, ds) = (self.along(p), self.along(ray.axis));
         // The distance and the face of the hit.
-        let mut hit = None;
-        if self.slab_distance(ray.at(front)) <= 0.0 {
-            hit = Some((front, 0));
-        }
+        let inside = self.slab_distance(ray.at(front)) <= 0.0;
+        let mut hit = inside.then_some((front, 0));
         if hit.is_none() && z.abs() > self.half && dz.abs() > 1e-12 {
             let t = (self.half.copysign(z) - z) / dz;
             if t >= front && (s + t * ds).length() <= self.radius {
@@ -219,11 +210,10 @@ impl Solid for Slab {
     }
 
     fn walk_hit(&self, walk: &Walk) -> Hit {
-        let at = Hit {
+        Hit {
             t: walk.t,
-            ..Hit::default()
-        };
-        walk.hit.map_or(at, |hit| Hit { t: walk.t, ..hit })
+            ..walk.hit.unwrap_or_default()
+        }
     }
 
     fn walk_radius(&self, _ray: &Beam, _walk: &Walk) -> f64 {

@@ -63,7 +63,7 @@ const ERRORS: &str = r#"
 [scene]|kind = "slab"|kind = "slab" => p.toml:3: this is not TOML: duplicate key
 [scene => p.toml:1: this is not TOML:
 [scene]|kind = "slab"||[camera]|fov = 400 => p.toml:5: camera.fov = 400: must be a number from 1 to 170
-[scene]|kind = "slab"|[camera]|fow = 40 => p.toml:4: camera.fow = 40: unknown key, perhaps `fov`; [camera] has eye, target, up, fov
+[scene]|kind = "slab"|[camera]|Fow = 40 => p.toml:4: camera.Fow = 40: unknown key, perhaps `fov`; [camera] has eye, target, up, fov
 [scene]|kind = "slab"|[camer]|fov = 40 => p.toml:3: unknown section `camer`, perhaps `camera`
 [scene]|kind = "slab"|half = [|0.5|] => p.toml:3: scene.half = [ 0.5 ]: must be a number from
 camera = 3|[scene]|kind = "slab" => p.toml:1: camera = 3: must be a section, like [camera]
@@ -74,6 +74,7 @@ title = 3|[scene]|kind = "slab" => p.toml:1: title = 3: must be a line of text
 [scene]|kind = "slab"|[camera]|eye = [0, 0, 0] => p.toml: camera.target = [0.0, 0.0, 0.0] (the default): the eye and the target
 [scene]|kind = "slab"|[camera]|eye = [0, 0, 5] => p.toml: camera.up = [0.0, 0.0, 1.0] (the default): up must not be
 [scene]|kind = "slab"|[march]|coarsest = 3 => p.toml:4: march.coarsest = 3: must be a power of two
+[scene]|kind = "slab"|[march]|mode = "calibrated"|coarsest = 8|fudge = [1, 1, 1, 1] => p.toml:6: march.fudge = [1, 1, 1, 1]: 4 factors for 3 cone passes; give at most 3
 [scene]|kind = "slab"|formula = "mandelbox" => p.toml:3: scene.formula = "mandelbox": a slab has no formula
 [scene]|kind = "distance"|formula = "mandelbox"|scale = 0.5 => p.toml:4: scene.scale = 0.5:
 "#;

@@ -2,7 +2,7 @@
 
 use conemarch::base::key::Key;
 use conemarch::plan::Plan;
-use conemarch::preset::{BUILTIN, Override, builtin, load, read, read_with, write};
+use conemarch::preset::{BUILTIN, Override, Preset, builtin, load, read, write};
 use conemarch::scene::Scene;
 use conemarch::scene::distance_settings::DistanceSettings;
 use conemarch::scene::slab::SlabSettings;
@@ -146,13 +146,13 @@ fn every_key_can_be_set_in_a_file_and_by_override_and_reads_back() {
             let set = Override::read(&format!("{section}.{name}={text}"));
             let set = set.unwrap_or_else(|e| panic!("{e}"));
             // Some values fit the key, but not the rest of the plan.
-            let Ok(by_set) = read_with(&least(&plan), "least", &[set]) else {
+            let Ok(set) = Preset::read(&least(&plan), "least", &[set]) else {
                 continue;
             };
             let file = with(&plan, section, &format!("{name} = {text}"));
-            assert_eq!(read(&file, "file").expect(&file), by_set, "{file}");
-            assert_eq!(read(&write(&by_set), "again").expect(&file), by_set);
-            changed += usize::from(get(&by_set, section, name) != before);
+            assert_eq!(read(&file, "file").expect(&file), set.plan, "{file}");
+            assert_eq!(read(&write(&set.plan), "again").expect(&file), set.plan);
+            changed += usize::from(get(&set.plan, section, name) != before);
         }
         // More than one tile needs axes that wrap, a texture a file: see the heightfields.
         let elsewhere = ["tiles", "texture"].contains(&name);
@@ -183,7 +183,7 @@ fn fields_and_paths_need_no_quotes() {
     // What becomes of a value, be it a plan or a sentence about a missing file.
     let set = |value: &str| {
         let set = Override::read(&format!("scene.field={value}"));
-        let plan = set.and_then(|set| read_with(text, "p.toml", &[set]));
+        let plan = set.and_then(|set| Ok(Preset::read(text, "p.toml", &[set])?.plan));
         plan.map_err(|e| e.to_string().replace('"', ""))
     };
     let bare = "fbm fbm:64x64,seed=3 ridges:12x7,power=1.5 d8.png true.png inf/nan.exr ./maps/rock-2_b.png ../a+b.exr /tmp/x.raw";

@@ -8,6 +8,7 @@ use conemarch::formula::{DistanceEstimate, Formula};
 use glam::DVec3;
 
 use super::probe::{Numbers, Probe};
+use super::programs::in_f64;
 use super::random::Random;
 use super::setups::{formula_probe, four, narrow};
 
@@ -71,7 +72,7 @@ fn two_f32(p: DVec3) -> DVec3 {
 pub fn asker(m: &Mandelbox, double: bool) -> Probe {
     let mut all = formula_probe(Formula::Mandelbox(m.clone()), 60);
     if double {
-        all.modules = Program::new("probe", all.modules).in_f64().modules;
+        all.modules = in_f64(&Program::new("probe", all.modules)).modules;
     }
     all
 }

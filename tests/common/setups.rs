@@ -2,7 +2,6 @@
 
 use bytemuck::bytes_of;
 use conemarch::base::shader::Module;
-use conemarch::base::view;
 use conemarch::formula::Formula;
 use conemarch::plan::Plan;
 use conemarch::scene::Scene;
@@ -43,7 +42,7 @@ pub fn probe_of(plan: &Plan, probe: Module) -> Probe {
     let solid = solid(plan);
     let mut modules = solid.twin().modules();
     modules.extend([
-        view::module(),
+        wgsl!("base/view.wgsl"),
         wgsl!("pass/shared.wgsl"),
         wgsl!("pass/counters_off.wgsl"),
         probe,

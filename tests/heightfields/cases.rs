@@ -169,7 +169,7 @@ pub fn rays(surface: &HeightSurface, count: u64, seed: u64) -> Vec<LocalRay> {
 pub struct Named {
     pub kind: TracerKind,
     pub name: String,
-    pub tracer: Arc<dyn Tracer>,
+    pub tracer: Arc<Tracer>,
 }
 
 /// A reference map of a kind, with an offset for the walks.
@@ -197,7 +197,7 @@ pub fn tracer(
     surface: &Arc<HeightSurface>,
     settings: &TracerSettings,
     map: Option<Arc<ConeMap>>,
-) -> Result<Arc<dyn Tracer>, TraceError> {
+) -> Result<Arc<Tracer>, TraceError> {
     let cones = map.map(Supply::from);
     settings.tracer.make(surface, cones.as_ref(), settings, 0.0)
 }
@@ -297,13 +297,13 @@ pub fn first_box(surface: &HeightSurface, ray: &LocalRay) -> Option<(f64, DVec3)
 }
 
 /// How a ray ends: its state, its hit and its steps; `None` for a ray that does not end.
-pub fn run(tracer: &dyn Tracer, ray: &LocalRay, to: f64) -> Option<(Step, TraceHit, u32)> {
+pub fn run(tracer: &Tracer, ray: &LocalRay, to: f64) -> Option<(Step, TraceHit, u32)> {
     let (trace, steps) = traced(tracer, ray, to)?;
     Some((trace.state, trace.hit(), steps))
 }
 
 /// The trace of a ray at its end, and its steps.
-pub fn traced(tracer: &dyn Tracer, ray: &LocalRay, to: f64) -> Option<(Trace, u32)> {
+pub fn traced(tracer: &Tracer, ray: &LocalRay, to: f64) -> Option<(Trace, u32)> {
     let mut work = Work::default();
     let mut trace = tracer.begin(ray, 0.0, to);
     for _ in 0..100_000 {

@@ -1,7 +1,6 @@
 //! First hits against closed forms: planes, boxes, corners of the map, walls and the floor.
 
 use conemarch::heightfield::heights::Patches;
-use conemarch::heightfield::tracer::reference::ReferenceTracer;
 use conemarch::heightfield::tracer::{
     Accuracy, BASE, LocalRay, SURFACE, Step, TraceHit, Tracer, WALL_X_HIGH, WALL_X_LOW,
     WALL_Y_HIGH, WALL_Y_LOW,
@@ -11,7 +10,7 @@ use glam::{DVec2, DVec3};
 use crate::cases::{END, alone, cell_of, first_box, rays, run, surface, tracers};
 use crate::common::random::Random;
 
-fn hit_of(tracer: &dyn Tracer, ray: &LocalRay) -> Option<TraceHit> {
+fn hit_of(tracer: &Tracer, ray: &LocalRay) -> Option<TraceHit> {
     let (step, hit, _) = run(tracer, ray, END).expect("the ray ends");
     assert_ne!(step, Step::Spent);
     (step == Step::Hit).then_some(hit)
@@ -35,7 +34,7 @@ fn planes_are_hit_where_their_equation_says() {
         let samples = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
         let z = samples.map(|(x, y)| plane(DVec2::new(f64::from(x), f64::from(y))) as f32);
         let block = surface(alone(size, Patches::Bilinear), z.collect());
-        let reference = ReferenceTracer::new(block.clone());
+        let reference = Tracer::reference(block.clone());
         for ray in rays(&block, 6000, 2) {
             let hit = hit_of(&reference, &ray);
             let Some(hit) = hit.filter(|hit| hit.face() == SURFACE && hit.s > 0.0) else {
@@ -70,7 +69,7 @@ fn boxes_are_hit_where_each_alone_would_be() {
     for _ in 0..200 {
         let z = (0..12).map(|_| random.unit() as f32).collect();
         let block = surface(alone([4, 3], Patches::Boxes), z);
-        let reference = ReferenceTracer::new(block.clone());
+        let reference = Tracer::reference(block.clone());
         for ray in rays(&block, 120, (random.unit() * 1e6) as u64) {
             let first = first_box(&block, &ray).map_or(f64::INFINITY, |(s, _)| s);
             let Some(hit) = hit_of(&reference, &ray) else {
@@ -104,7 +103,7 @@ fn the_reference_never_passes_a_point_under_the_surface() {
                 .map(|_| random.unit() as f32)
                 .collect();
             let block = surface((size, wrap, tiles, patches), z);
-            let reference = ReferenceTracer::new(block.clone());
+            let reference = Tracer::reference(block.clone());
             let [w, h] = block.domain().map(f64::from);
             for ray in rays(&block, 600, 5) {
                 let hit = hit_of(&reference, &ray);
@@ -151,7 +150,7 @@ fn a_cell_beyond_both_borders_joins_all_four_corners_of_the_map() {
     let check = |block, cell: DVec2, at: [f64; 2], height: Option<f64>| {
         let ray = down((cell + DVec2::from_array(at)).extend(1.0));
         for own in tracers(block, Accuracy::Exact) {
-            let found = hit_of(&*own.tracer, &ray).map(|hit| ray.height(hit.s));
+            let found = hit_of(&own.tracer, &ray).map(|hit| ray.height(hit.s));
             let same = match (found, height) {
                 (Some(found), Some(height)) => (found - height).abs() < 1e-12,
                 (found, height) => found == height,
@@ -205,7 +204,7 @@ fn the_block_has_walls_and_a_floor() {
         };
         let wanted = (words[7] != "-").then(|| (n(7), face(words[8]), [n(9), n(10)]));
         for own in tracers(&flat, Accuracy::Exact) {
-            let (step, hit, _) = run(&*own.tracer, &ray, n(6)).unwrap();
+            let (step, hit, _) = run(&own.tracer, &ray, n(6)).unwrap();
             let found = (step == Step::Hit).then_some((hit.s, hit.face(), hit.uv));
             assert_eq!(found, wanted, "{}: {row}", own.name);
             assert!(step == Step::Hit || step == Step::Out);

@@ -8,7 +8,6 @@ use conemarch::heightfield::conemap::generate::generator::Generator;
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::pattern::Pattern;
-use conemarch::heightfield::tracer::reference::ReferenceTracer;
 use conemarch::heightfield::tracer::settings::TracerSettings;
 use conemarch::heightfield::tracer::walk_mip::walk_mip_level;
 use conemarch::heightfield::tracer::{
@@ -23,7 +22,7 @@ use crate::cases::{Case, END, alone, case, cases, made, rays, run, traced, trace
 const NEVER: f64 = 2.0 * END;
 
 /// The tracers that are off by a pixel, where a texel is as wide as one at a parameter.
-fn distant(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> Vec<Arc<dyn Tracer>> {
+fn distant(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> Vec<Arc<Tracer>> {
     let kinds = TracerKind::ALL.into_iter();
     let made = kinds
         .filter(|kind| kind.facts().accuracy == Accuracy::Pixel)
@@ -37,7 +36,7 @@ fn distant(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> Vec<Ar
     made.collect()
 }
 
-fn walk(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>) -> Arc<dyn Tracer> {
+fn walk(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>) -> Arc<Tracer> {
     tracer(surface, &TracerKind::Walk.into(), Some(map.clone())).unwrap()
 }
 
@@ -52,7 +51,7 @@ fn as_long_as_texels_are_wider_than_pixels_it_is_the_walk() {
             .flatten()
         {
             for ray in rays(&case.surface, 1200, 31) {
-                let (truth, own) = (run(&*walk, &ray, END), run(&**own, &ray, END));
+                let (truth, own) = (run(&walk, &ray, END), run(own, &ray, END));
                 assert_eq!(own, truth, "{}: {ray:?}", case.name);
             }
         }
@@ -109,7 +108,7 @@ fn no_first_hit_is_passed_and_every_hit_is_of_the_node_under_it() {
         let surface = &case.surface;
         let map = made(Generator::Walk, surface, 2.0);
         let rays = rays(surface, 2400, 32);
-        let reference = ReferenceTracer::new(surface.clone());
+        let reference = Tracer::reference(surface.clone());
         let truths = rays.iter().map(|ray| {
             let (step, hit, _) = run(&reference, ray, END).unwrap();
             (step == Step::Hit).then_some(hit.s)
@@ -121,7 +120,7 @@ fn no_first_hit_is_passed_and_every_hit_is_of_the_node_under_it() {
         for lod in [0.02, 0.3, 5.0] {
             for own in distant(surface, &map, lod) {
                 for (ray, truth) in rays.iter().zip(&truths) {
-                    let (end, _) = traced(&*own, ray, END).expect("the ray ends");
+                    let (end, _) = traced(&own, ray, END).expect("the ray ends");
                     let fault = wrong(surface, lod, ray, &end, *truth);
                     told.extend(fault.map(|f| format!("{} {lod}: {ray:?}: {f}", case.name)));
                     coarse += u32::from(end.state == Step::Hit && end.level > 0);
@@ -142,7 +141,7 @@ fn no_first_hit_is_passed_and_every_hit_is_of_the_node_under_it() {
 fn distant_views_take_fewer_steps_than_with_the_walk() {
     let Case { surface, .. } = case(Pattern::Fbm, alone([512, 512], Patches::Bilinear));
     let map = made(Generator::Walk, &surface, 2.0);
-    let reference = ReferenceTracer::new(surface.clone());
+    let reference = Tracer::reference(surface.clone());
     for degrees in [60.0, 80.0] {
         // As many heights away as texels are to be as wide as a pixel.
         let mut rays = view_rays(&surface, degrees, 10_000);
@@ -150,10 +149,10 @@ fn distant_views_take_fewer_steps_than_with_the_walk() {
             ray.origin -= 64.0 * ray.axis;
         }
         let truths = first_hits(&reference, &rays);
-        let walk = measure(&*walk(&surface, &map), &rays, &truths);
+        let walk = measure(&walk(&surface, &map), &rays, &truths);
         for texels in [2.0, 4.0, 8.0] {
             let all = distant(&surface, &map, 64.0 / texels);
-            let found = all.iter().map(|own| measure(&**own, &rays, &truths));
+            let found = all.iter().map(|own| measure(own, &rays, &truths));
             let found: Vec<_> = found.collect();
             println!("{degrees}: {texels} texels to a pixel: {found:?}, walk {walk:?}");
             for own in &found {

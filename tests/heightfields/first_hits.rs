@@ -7,7 +7,6 @@ use conemarch::heightfield::conemap::{ConeMap, MapKind};
 use conemarch::heightfield::height_surface::{HeightSurface, HeightSurfaceError};
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::pattern::Pattern;
-use conemarch::heightfield::tracer::reference::ReferenceTracer;
 use conemarch::heightfield::tracer::{
     Accuracy, LocalRay, Step, TraceError, TraceHit, Tracer, TracerKind,
 };
@@ -56,7 +55,7 @@ fn touches(surface: &HeightSurface, ray: &LocalRay, truth: &End, own: Option<End
 fn exact_tracers_find_the_first_hit() {
     const RAYS: u64 = 4200;
     let check = |case: &Case| {
-        let reference = ReferenceTracer::new(case.surface.clone());
+        let reference = Tracer::reference(case.surface.clone());
         let rays = rays(&case.surface, RAYS, 11);
         let ends = rays.iter().map(|ray| run(&reference, ray, END).unwrap());
         let truths: Vec<_> = ends.collect();
@@ -66,7 +65,7 @@ fn exact_tracers_find_the_first_hit() {
             let mut faults = Vec::new();
             for (ray, truth) in rays.iter().zip(&truths) {
                 traced += 1;
-                let end = run(&*own.tracer, ray, END);
+                let end = run(&own.tracer, ray, END);
                 let Some(fault) = wrong(ray, truth, end) else {
                     continue;
                 };
@@ -117,13 +116,13 @@ fn rising_rays_pass_over_what_lies_under_them() {
             }
         })
         .collect();
-    let steps = |tracer: &dyn Tracer| -> u32 {
+    let steps = |tracer: &Tracer| -> u32 {
         let all = rays.iter().map(|ray| run(tracer, ray, END).unwrap().2);
         all.sum()
     };
-    let cells = steps(&ReferenceTracer::new(surface.clone()));
+    let cells = steps(&Tracer::reference(surface.clone()));
     for own in exact(&surface).iter().filter(|own| own.kind.needs_map()) {
-        let steps = steps(&*own.tracer);
+        let steps = steps(&own.tracer);
         let name = &own.name;
         assert!(
             5 * steps < 3 * cells,
@@ -156,12 +155,12 @@ fn cones_are_not_wider_than_they_may_be() {
     let mut z = vec![0.0; 97 * 97];
     z[48 * 97 + 48] = 1.0;
     let block = surface(alone([97, 97], Patches::Boxes), z);
-    let reference = ReferenceTracer::new(block.clone());
+    let reference = Tracer::reference(block.clone());
     let mut random = Random::new(8);
     let rays: Vec<_> = (0..4000)
         .map(|_| clipping(&mut random, DVec2::splat(48.5)))
         .collect();
-    let bad = |tracer: &dyn Tracer| {
+    let bad = |tracer: &Tracer| {
         let faults = rays.iter().filter_map(|ray| {
             let truth = run(&reference, ray, END).unwrap();
             wrong(ray, &truth, run(tracer, ray, END))
@@ -169,13 +168,13 @@ fn cones_are_not_wider_than_they_may_be() {
         faults.count()
     };
     for own in exact(&block) {
-        assert_eq!(bad(&*own.tracer), 0, "{}", own.name);
+        assert_eq!(bad(&own.tracer), 0, "{}", own.name);
         // With cones that are wider by a hundredth some hits are lost.
         if let Some(kind) = own.kind.facts().kinds.first() {
             let mut map = reference_map(&block, *kind, 1.5);
             map.ratios.iter_mut().for_each(|r| *r *= 1.01);
             let wider = tracer(&block, &own.kind.into(), Some(Arc::new(map))).unwrap();
-            assert!(bad(&*wider) > 0, "{}", own.name);
+            assert!(bad(&wider) > 0, "{}", own.name);
         }
     }
 }

@@ -6,8 +6,7 @@ use conemarch::heightfield::assets::Ready;
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::placement::Placement;
-use conemarch::heightfield::tracer::LocalRay;
-use conemarch::heightfield::tracer::reference::ReferenceTracer;
+use conemarch::heightfield::tracer::{LocalRay, Tracer};
 use conemarch::measure::tracer_stats::first_hits;
 use conemarch::plan::{Extras, Plan};
 use conemarch::scene::heightfield::Heightfield;
@@ -63,7 +62,7 @@ fn truths(plan: &Plan, ready: &Ready) -> Vec<f64> {
     let rays: Vec<_> = pixels
         .map(|ray| local(&ready.placement, view.eye, &ray))
         .collect();
-    let hits = first_hits(&ReferenceTracer::new(ready.surface.clone()), &rays);
+    let hits = first_hits(&Tracer::reference(ready.surface.clone()), &rays);
     hits.into_iter()
         .map(|s| s.unwrap_or(f64::INFINITY))
         .collect()

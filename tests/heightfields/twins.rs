@@ -12,7 +12,6 @@ use conemarch::heightfield::conemap::MapKind;
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::pattern::Pattern;
-use conemarch::heightfield::tracer::reference::ReferenceTracer;
 use conemarch::heightfield::tracer::{Accuracy, LocalRay, SURFACE, Step, Tracer, TracerKind};
 use conemarch::wgsl;
 use glam::DVec3;
@@ -45,7 +44,7 @@ fn every_tracer(surface: &Arc<HeightSurface>) -> Vec<Named> {
 }
 
 /// The probe of a tracer.
-fn probe_of(tracer: &dyn Tracer) -> Probe {
+fn probe_of(tracer: &Tracer) -> Probe {
     let mut modules = tracer.modules();
     modules.push(wgsl!("pass/shared.wgsl"));
     modules.push(wgsl!("pass/counters_off.wgsl"));
@@ -92,9 +91,9 @@ fn lowered(own: &HeightSurface) -> Arc<HeightSurface> {
 }
 
 /// Skipped hits, rays that do not end, and the 99th percentile of the others' errors in texels.
-fn measure(surface: &Arc<HeightSurface>, tracer: &dyn Tracer) -> (u32, u32, f64) {
+fn measure(surface: &Arc<HeightSurface>, tracer: &Tracer) -> (u32, u32, f64) {
     let all: Vec<_> = rays(surface, 9000, 21).iter().map(narrow).collect();
-    let [reference, low] = [surface.clone(), lowered(surface)].map(ReferenceTracer::new);
+    let [reference, low] = [surface.clone(), lowered(surface)].map(Tracer::reference);
     let (mut skipped, mut unconverged) = (0, 0);
     let mut errors = Vec::new();
     for (ray, (state, s, id)) in all.iter().zip(answers(&probe_of(tracer), &all)) {
@@ -128,7 +127,7 @@ fn shaders_skip_nothing_and_hit_where_they_should() {
         for accuracy in [Accuracy::Exact, Accuracy::Pixel] {
             for own in tracers(&case.surface, accuracy) {
                 let what = format!("{}, {}", case.name, own.name);
-                let (skipped, unconverged, error) = measure(&case.surface, &*own.tracer);
+                let (skipped, unconverged, error) = measure(&case.surface, &own.tracer);
                 println!("{what}: {skipped} skipped, error {error:.1e}");
                 assert_eq!((skipped, unconverged), (0, 0), "{what}");
                 assert!(
@@ -147,7 +146,7 @@ fn the_check_sees_cones_that_are_too_wide() {
     let mut map = reference_map(&case.surface, MapKind::Walk, 1.5);
     map.ratios.iter_mut().for_each(|r| *r *= 1.5);
     let walk = tracer(&case.surface, &TracerKind::Walk.into(), Some(Arc::new(map)));
-    let (skipped, ..) = measure(&case.surface, &*walk.unwrap());
+    let (skipped, ..) = measure(&case.surface, &walk.unwrap());
     assert!(skipped > 0);
 }
 
@@ -159,10 +158,10 @@ fn inexact_shaders_agree_with_their_twins() {
             if own.kind.facts().accuracy == Accuracy::Exact {
                 continue;
             }
-            let told = answers(&probe_of(&*own.tracer), &all);
+            let told = answers(&probe_of(&own.tracer), &all);
             let mut apart = 0;
             for (ray, (state, s, _)) in all.iter().zip(&told) {
-                let (step, hit, _) = run(&*own.tracer, ray, END).unwrap();
+                let (step, hit, _) = run(&own.tracer, ray, END).unwrap();
                 let code = match step {
                     Step::Out => 0,
                     Step::Hit => 1,
@@ -182,7 +181,7 @@ fn inexact_shaders_agree_with_their_twins() {
 fn every_module_of_a_tracer_is_valid() {
     for case in surfaces() {
         for own in every_tracer(&case.surface) {
-            let mut modules = probe_of(&*own.tracer).modules;
+            let mut modules = probe_of(&own.tracer).modules;
             modules.push(probe!("frame"));
             let valid = Program::new("probe", modules).validate(Capabilities::default());
             assert!(valid.is_ok(), "{}: {}", own.name, valid.unwrap_err());

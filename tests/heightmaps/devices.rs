@@ -6,7 +6,6 @@ use conemarch::gpu::conemap::generate::{Division, Maker};
 use conemarch::gpu::device::Device;
 use conemarch::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
 use conemarch::heightfield::conemap::generate::min3x3::min3x3;
-use conemarch::heightfield::conemap::generate::task::every_program;
 use conemarch::heightfield::conemap::{ConeMap, WIDEST};
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::max_mip::MaxMip;
@@ -15,6 +14,7 @@ use wgpu::naga::valid::Capabilities;
 
 use crate::adapter;
 use crate::fields::{WRAPS, assert_same, field, large, make, plain, small};
+use crate::programs::map_programs;
 
 /// A device of its own: makers borrow one.
 fn device() -> Arc<Device> {
@@ -50,7 +50,7 @@ fn assert_cpus(
 
 #[test]
 fn every_generators_program_is_valid() {
-    let all = every_program();
+    let all = map_programs();
     assert_eq!(all.len(), 2 + Generator::ALL.len());
     for program in all {
         let result = program.validate(Capabilities::default());

@@ -123,7 +123,7 @@ fn a_file_of_any_kind_is_read() {
     let file = tiff::<colortype::RGB8>([2, 1], &[51, 1, 2, 255, 3, 4]);
     check("rgb.tif", file, &[0.2, 1.0], "first");
     // Heights within 0 to 1 stay as they are.
-    check("dent-2x1.raw", raw(&[0.4, 0.5]), &[0.4, 0.5], "");
+    check("a_dent_2X1.raw", raw(&[0.4, 0.5]), &[0.4, 0.5], "");
     let uv = vec![("U", two(0.5)), ("V", two(0.5))];
     folder.write("uv.exr", exr([2, 1], uv));
     refused(&folder, "uv.exr", &["channels U, V", "rename"]);
@@ -405,9 +405,10 @@ fn an_argument_that_names_no_heights_is_refused() {
     for (argument, words) in [
         ("fmb", "fields are fbm, ridges"),
         ("", "fields are fbm"),
-        ("fbm:0x5", "like 512x256"),
         ("fbm:4x4,seed=-1", "seed=-1"),
-        ("fbm:4x4,power=x", "power=x"),
+        ("fbm:seed=,4x4", "seed="),
+        ("fbm:power=9", "power=9"),
+        ("fbm:9000x1", "like 512x256"),
         ("noise:4x4,colour=red", "colour=red"),
     ] {
         let why = load(argument, &LoadOptions::default()).expect_err(argument);
@@ -415,4 +416,6 @@ fn an_argument_that_names_no_heights_is_refused() {
     }
     let named = load("noise:9x5,seed=3", &LoadOptions::default()).expect("a field");
     assert_eq!(named.heights.data(), Pattern::Noise.heights([9, 5], 3, 2.6));
+    let again = load("stones:power=3,9X9", &LoadOptions::default()).expect("a field");
+    assert_eq!(again.form, "stones:9x9,seed=1,power=3");
 }

@@ -13,6 +13,9 @@ mod folder;
 #[path = "../common/pictures.rs"]
 mod pictures;
 #[allow(dead_code, reason = "other tests use the rest")]
+#[path = "../common/programs.rs"]
+mod programs;
+#[allow(dead_code, reason = "other tests use the rest")]
 #[path = "../common/reference_maps.rs"]
 mod reference_maps;
 

@@ -62,7 +62,7 @@ fn formats(kind: MapKind) -> Vec<MapFormat> {
 
 /// The largest number of a format's channels.
 fn most(format: &MapFormat) -> u16 {
-    format.bits.steps().most
+    format.bits.most()
 }
 
 /// Heights in a grid that is often tiny, on steps of 8 bits or not.
@@ -170,7 +170,7 @@ fn what_a_format_keeps() {
 /// How 8 bits stand for ratios that were not read from them.
 fn fresh_ratios(scaling: RatioScale, scale: f64) -> Ratios {
     Ratios {
-        steps: Bits::Eight.steps(),
+        bits: Bits::Eight,
         scaling,
         scale,
         reread: false,

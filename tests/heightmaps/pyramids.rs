@@ -7,10 +7,11 @@ use conemarch::heightfield::conemap::generate::min3x3::min3x3;
 use conemarch::heightfield::conemap::generate::mips::{self, rounded_down};
 use conemarch::heightfield::conemap::generate::planes::Planes;
 use conemarch::heightfield::conemap::generate::slopes::slopes;
-use conemarch::heightfield::height_surface::{HeightSurface, TracerParameters};
+use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::{Heights, Patches};
-use conemarch::heightfield::max_mip::MaxMip;
+use conemarch::heightfield::max_mip::{MaxMip, Places};
 use conemarch::heightfield::pattern::Pattern;
+use conemarch::heightfield::tracer::Tracer;
 
 use crate::fields::{WRAPS, field, make, plain, small};
 use crate::reference_maps::Grid;
@@ -24,7 +25,7 @@ fn planes_lie_above_all_heights() {
             let [w, h] = mip.levels[level].size;
             for at in (0..h).flat_map(|y| (0..w).map(move |x| [x, y])) {
                 let plane = planes.get(level, at);
-                let (low, high) = mip.places(level, at[0], at[1]);
+                let Places { low, high } = mip.places(level, at);
                 let mut touches = f64::INFINITY;
                 for y in low[1]..=high[1] {
                     for x in low[0]..=high[0] {
@@ -121,7 +122,9 @@ fn ratios_are_stored_rounded_down() {
     // So they reach a device, too.
     let map = plain(Generator::Walk, &heights);
     let relief = HeightSurface::new(heights, Patches::Bilinear, [1, 1]).unwrap();
-    let buffers = relief.buffers(Some(&map), TracerParameters::default());
+    let mut tracer = Tracer::reference(relief.into());
+    tracer.map = map.clone().into();
+    let buffers = tracer.buffers();
     let (_, bytes) = buffers.iter().find(|(name, _)| *name == "ratios").unwrap();
     let there: &[f32] = bytemuck::cast_slice(bytes);
     assert_eq!(there.len(), map.ratios.len());

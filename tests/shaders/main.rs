@@ -12,6 +12,7 @@
 mod common {
     pub mod files;
     pub mod plans;
+    pub mod programs;
 }
 mod explain;
 mod layouts;
@@ -22,9 +23,9 @@ use std::ops::RangeInclusive;
 
 use common::files::files_below;
 use common::plans::{preset, program, solid};
+use common::programs::{in_f64, map_programs};
 use conemarch::base::shader::{Module, Program, ShaderError};
 use conemarch::gpu::device::{PROMISED_BUFFERS, STORAGE_BUFFERS};
-use conemarch::heightfield::conemap::generate::task as generate;
 use conemarch::heightfield::texture::Texture;
 use conemarch::plan::{Extras, Pass};
 use programs::ALL;
@@ -58,17 +59,17 @@ fn every_program_with_real_numbers_is_valid_in_f64() {
         .partition(|(_, program)| has(program, "wgsl/base/real.wgsl"));
     assert!(real.len() > 100, "only {} programs in f64", real.len());
     for (listing, program) in other {
-        assert_eq!(&program.in_f64(), program, "{listing}");
+        assert_eq!(&in_f64(program), program, "{listing}");
     }
     real.par_iter().for_each(|(listing, program)| {
-        let wide = program.in_f64();
+        let wide = in_f64(program);
         assert!(!has(&wide, "wgsl/base/real.wgsl") && has(&wide, "wgsl/base/real64.wgsl"));
         let result = wide.validate(Capabilities::FLOAT64);
         assert!(result.is_ok(), "{}\n{listing}", result.unwrap_err());
     });
     // Without the capability f64 is refused: the text has really changed.
     let (_, first) = real[0];
-    assert!(first.in_f64().validate(Capabilities::default()).is_err());
+    assert!(in_f64(first).validate(Capabilities::default()).is_err());
 }
 
 #[test]
@@ -173,7 +174,7 @@ fn every_file_of_shaders_is_joined_by_some_program() {
     // A texture is in a program only where a preset names a picture.
     let mut joined = BTreeSet::from([Texture::module().path]);
     for made in ALL.values() {
-        let wide = made.program.in_f64();
+        let wide = in_f64(&made.program);
         joined.extend(
             made.program
                 .modules
@@ -214,6 +215,6 @@ fn no_program_binds_more_buffers_than_are_asked_for() {
     let most = of_plans.chain(quads.iter().map(bound)).max();
     assert_eq!(most, Some(STORAGE_BUFFERS as usize));
     // To make maps what every device has is enough.
-    let most = generate::every_program().iter().map(bound).max();
+    let most = map_programs().iter().map(bound).max();
     assert!(most <= Some(PROMISED_BUFFERS as usize), "{most:?}");
 }

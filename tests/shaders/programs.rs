@@ -6,9 +6,8 @@ use std::sync::LazyLock;
 
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
-use conemarch::heightfield::conemap::generate::task::every_program;
 use conemarch::pass::{LookFeature, turn};
-use conemarch::plan::march::MODES;
+use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
 use conemarch::scene::{AnySolid, Assets, Scene};
@@ -17,6 +16,7 @@ use toml::Value;
 use wgpu::naga::{self, valid::Capabilities};
 
 use super::common::plans::{distance, outline, preset, program};
+use super::common::programs::map_programs;
 
 /// Switches a feature of the look, by the key that does and nothing else.
 pub fn switch(plan: &mut Plan, feature: LookFeature, on: bool) {
@@ -107,7 +107,7 @@ fn plans() -> Vec<Plan> {
     let first = presets.chain(scenes().into_iter().map(Plan::new));
     let mut all = Vec::new();
     for plan in first {
-        for (_, mode) in MODES {
+        for mode in &Mode::ALL {
             for look in 0..1 << LookFeature::ALL.len() {
                 let apart = matches!(plan.scene, Scene::Heightfield(_));
                 if apart && look > 0 && *mode != plan.march.mode {
@@ -163,7 +163,7 @@ pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     let plans = plans().into_iter();
     let of_plans = plans.flat_map(|plan| programs_of(&plan, &outline(&plan, &assets)));
     let of_stages = [turn::arrange(), turn::reset(), turn::census()];
-    for program in every_program().into_iter().chain(of_stages).chain(of_plans) {
+    for program in map_programs().into_iter().chain(of_stages).chain(of_plans) {
         let listing = format!("{}\n{}", program.entry, program.describe());
         found.entry(listing).or_insert(program);
     }

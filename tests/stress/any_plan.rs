@@ -7,7 +7,7 @@ use conemarch::formula::mandelbox::{Estimate, Mandelbox};
 use conemarch::plan::Plan;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::look::Look;
-use conemarch::plan::march::{MODES, Marching};
+use conemarch::plan::march::{Marching, Mode};
 use conemarch::scene::Scene;
 use conemarch::scene::distance::Relaxation;
 use glam::DVec3;
@@ -114,7 +114,7 @@ fn camera(extent: f64) -> impl Strategy<Value = Camera> {
 }
 
 fn marching() -> impl Strategy<Value = Marching> {
-    let mode = prop::sample::select(MODES).prop_map(|(_, mode)| mode);
+    let mode = prop::sample::select(&Mode::ALL);
     let relaxation = prop_oneof![
         Just(Relaxation::Off),
         Just(Relaxation::Auto),

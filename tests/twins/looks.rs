@@ -2,7 +2,7 @@
 
 use bytemuck::bytes_of;
 use conemarch::base::view::{Beam, footprint};
-use conemarch::pass::{LookFeature, fog, look, occlusion, shadow};
+use conemarch::pass::{LookFeature, fog, occlusion, shadow};
 use conemarch::plan::Plan;
 use conemarch::scene::{Hit, Solid};
 use glam::DVec3;
@@ -17,7 +17,7 @@ use super::{balls, three};
 /// Adds the look of a plan to what a probe binds.
 fn with_look(mut probe: Probe, plan: &Plan) -> Probe {
     let look = light(plan).uniform();
-    probe.modules.push(look::module());
+    probe.modules.push(conemarch::wgsl!("pass/look.wgsl"));
     probe
         .parameters
         .push(("look_parameters", bytes_of(&look).to_vec()));

@@ -2,12 +2,12 @@
 //! share of its pixels.
 
 use anyhow::Result;
-use clap::Args;
+use clap::{Args, value_parser};
 use serde::Serialize;
 
 use crate::base::work::State;
-use crate::command::bench::common::Common;
-use crate::command::bench::runner::{COUNTED, Runner, TIMED, of_how_many};
+use crate::command::bench::common::{Common, Subject};
+use crate::command::bench::runner::{COUNTED, Runner, TIMED};
 use crate::command::bench::table;
 use crate::command::executor::Executor;
 use crate::command::interrupt;
@@ -27,18 +27,14 @@ pub struct CalibrateBench {
     #[arg(long, value_name = "SHARE", default_value_t = 0.002, value_parser = share)]
     budget: f64,
     /// Number of camera rays that probe the preset
-    #[arg(long, value_name = "COUNT", default_value_t = 8192, value_parser = count)]
+    #[arg(long, value_name = "COUNT", default_value_t = 8192)]
+    #[arg(value_parser = value_parser!(u32).range(100..=1_000_000))]
     rays: u32,
 }
 
 fn share(text: &str) -> Result<f64, String> {
     let read: Option<f64> = text.parse().ok().filter(|x| (0.0..=0.5).contains(x));
     read.ok_or_else(|| "must be a share of pixels from 0 to 0.5, like 0.002".into())
-}
-
-fn count(text: &str) -> Result<u32, String> {
-    let read: Option<u32> = text.parse().ok().filter(|n| (100..=1_000_000).contains(n));
-    read.ok_or_else(|| "must be a number from 100 to 1000000".into())
 }
 
 /// One preset.
@@ -67,54 +63,34 @@ struct CalibrateRow {
 /// An unknown preset, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &CalibrateBench) -> Result<()> {
     interrupt::listen();
-    let assets = Assets::default();
-    let plans = args.common.plans(&assets)?;
-    let files = args.common.files(None, &plans)?;
-    let mut executor = args.common.executor()?;
+    let mut all = args.common.begin(None)?;
     let mut rows = Vec::new();
-    for (i, (name, plan)) in plans.iter().enumerate() {
-        let what = of_how_many(name, i, plans.len());
-        let mut progress = Progress::start(&format!("calibrating {what}"));
-        let found = calibrate(
-            plan,
-            &assets,
-            args.budget,
-            args.rays as usize,
-            &mut |share| {
-                progress.report(share, "");
-                !interrupt::asked()
-            },
-        )?;
+    for subject in &all.subjects {
+        let mut progress = Progress::start(&format!("calibrating {}", subject.what));
+        let watch = &mut |share| progress.report(share, "");
+        let rays = args.rays as usize;
+        let found = calibrate(&subject.plan, &all.assets, args.budget, rays, watch)?;
         drop(progress);
-        let row = measure(
-            &mut executor,
-            &assets,
-            name,
-            &what,
-            plan,
-            found,
-            args.budget,
-        )?;
-        files.show(&sentence(&row, plan))?;
+        let row = measure(&mut all.executor, &all.assets, subject, found, args.budget)?;
+        all.files.show(&sentence(&row, &subject.plan))?;
         rows.push(row);
     }
-    files.write(&rows)
+    all.files.write(&rows)
 }
 
 /// Measures the proposal on the device, and `safe` for comparison.
 fn measure(
     executor: &mut Executor,
     assets: &Assets,
-    name: &str,
-    what: &str,
-    plan: &Plan,
+    subject: &Subject,
     found: Calibration,
     budget: f64,
 ) -> Result<CalibrateRow, RenderError> {
     /// Warm runs that the shortest time is taken of.
     const RUNS: usize = 4;
+    let plan = &subject.plan;
     let (device, precision) = (executor.name(), executor.precision_warning(plan));
-    let mut runner = Runner::new(executor, assets, what, 2 * (RUNS + 1));
+    let mut runner = Runner::new(executor, assets, &subject.what, 2 * (RUNS + 1));
     let mut safe = plan.clone();
     safe.march.mode = Mode::Safe;
     let calibrated = found.apply(plan);
@@ -138,7 +114,7 @@ fn measure(
         lost = gone.count();
     }
     Ok(CalibrateRow {
-        preset: name.into(),
+        preset: subject.name.clone(),
         size: plan.size,
         device,
         budget,
@@ -156,13 +132,12 @@ fn measure(
 /// The result as text, with the lines to write into the preset.
 fn sentence(row: &CalibrateRow, plan: &Plan) -> String {
     let [w, h] = row.size;
-    let verdict = if row.found.within {
-        String::new()
-    } else {
-        format!(
-            "\nThe budget of {:.3} % is out of reach: these settings come nearest.\n",
-            100.0 * row.budget
-        )
+    let budget = 100.0 * row.budget;
+    let verdict = match row.found.within {
+        true => String::new(),
+        false => {
+            format!("\nThe budget of {budget:.3} % is out of reach: these settings come nearest.\n")
+        }
     };
     let fudge: Vec<String> = row.found.fudge.iter().map(|f| format!("{f}")).collect();
     let precision = table::precision(row.precision.as_deref());

@@ -2,15 +2,35 @@
 
 use serde::{Deserialize, Serialize};
 
-/// One map of one field. Ratios are in texture widths over whole heights.
+use crate::measure::tracer_stats::TracerStats;
+
+/// A row of either kind, as a file has it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct GeneratorRow {
+#[serde(untagged)]
+pub enum ConesRow {
+    /// A map of a field.
+    Generator(GeneratorRow),
+    /// A tracer over a view of a field.
+    Tracer(TracerRow),
+}
+
+/// A surface.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct SurfaceNote {
     /// Name of the field.
     pub field: String,
     /// Samples along each axis.
     pub size: [u32; 2],
     /// `bilinear` patches between the samples, or `boxes`.
     pub surface: String,
+}
+
+/// One map of one field. Ratios are in texture widths over whole heights.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct GeneratorRow {
+    /// What it was made for.
+    #[serde(flatten)]
+    pub over: SurfaceNote,
     /// The generator.
     pub generator: String,
     /// The device that makes it.
@@ -31,26 +51,16 @@ pub struct GeneratorRow {
 /// One tracer over one view.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TracerRow {
-    /// Name of the field.
-    pub field: String,
-    /// Samples along each axis.
-    pub size: [u32; 2],
-    /// `bilinear` patches between the samples, or `boxes`.
-    pub surface: String,
+    /// What it was traced over.
+    #[serde(flatten)]
+    pub over: SurfaceNote,
     /// Angle from the vertical.
     pub view_deg: u32,
     /// The tracer.
     pub tracer: String,
     /// The generator of its cones.
     pub map: String,
-    /// Mean steps of a ray.
-    pub steps_mean: f64,
-    /// The number of steps that is enough for 99 % of the rays.
-    pub steps_p99: u32,
-    /// Share of rays with a hit over one texel behind the true one, or with none.
-    pub skipped: f64,
-    /// Share of rays that run out of steps.
-    pub unconverged: f64,
-    /// Mean distance of the other hits from the true ones.
-    pub error_texels: f64,
+    /// What it costs and misses.
+    #[serde(flatten)]
+    pub stats: TracerStats,
 }

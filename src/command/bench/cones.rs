@@ -1,34 +1,31 @@
 //! `conemarch bench cones`: what generators and tracers of heightfields cost and miss, map by map
 //! and view by view. It renders no picture.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
 use clap::Args;
-use serde::Serialize;
+use clap::builder::TypedValueParser;
 
-use crate::command::bench::common::Common;
-use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
+use crate::command::arguments::{samples, words};
+use crate::command::bench::common::open;
+use crate::command::bench::cone_rows::{ConesRow, GeneratorRow, SurfaceNote, TracerRow};
+use crate::command::bench::files::RowFiles;
 use crate::command::bench::table;
+use crate::command::conemap::maker::MapMaker;
 use crate::command::executor::{Executor, device};
-use crate::command::failure::usage;
+use crate::command::interrupt;
 use crate::command::print::say;
 use crate::command::progress::Progress;
-use crate::command::{interrupt, size};
-use crate::gpu::conemap::generate::Maker;
 use crate::gpu::device::{Choice, PROMISED_BUFFERS};
-use crate::gpu::render::RenderError;
 use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::cpu;
-use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options, Watch};
+use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::{Heights, Patches};
-use crate::heightfield::max_mip::MaxMip;
 use crate::heightfield::pattern::Pattern;
+use crate::heightfield::tracer::Tracer;
 use crate::heightfield::tracer::TracerKind;
-use crate::heightfield::tracer::reference::ReferenceTracer;
 use crate::heightfield::tracer::settings::{Supply, TracerSettings};
 use crate::measure::tracer_stats::{first_hits, measure, view_rays};
 
@@ -75,12 +72,11 @@ const PAIRS: [(TracerKind, Option<Generator>); 16] = [
 /// Options of `bench cones`.
 #[derive(Debug, Args)]
 pub struct ConesBench {
-    /// Fields: fbm, ridges, spikes, checker, sine, noise, stones, bricks; the first five by
-    /// default
-    #[arg(value_name = "FIELD")]
-    names: Vec<String>,
+    /// Fields; the first five by default
+    #[arg(value_name = "FIELD", value_parser = fields())]
+    fields: Vec<Pattern>,
     /// Samples, instead of 128x128 and 256x256
-    #[arg(long, value_name = "WxH", value_parser = size::read)]
+    #[arg(long, value_name = "WxH", value_parser = samples)]
     size: Option<[u32; 2]>,
     /// Treat each sample as a flat box, instead of joining four samples by a patch
     #[arg(long)]
@@ -88,20 +84,12 @@ pub struct ConesBench {
     /// The device that makes the maps: cpu, auto, gpu, software, an index or a part of a name
     #[arg(long, value_name = "DEVICE", default_value = "cpu", value_parser = device)]
     device: Choice,
-    /// Also write the rows as JSON
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// Also write the rows as CSV
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
+    #[command(flatten)]
+    rows: RowFiles,
 }
 
-/// A row of either kind, as a file has it.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum ConesRow {
-    Generator(GeneratorRow),
-    Tracer(TracerRow),
+fn fields() -> impl TypedValueParser<Value = Pattern> {
+    words(Pattern::ALL.map(|field| (field, field.name(), "")))
 }
 
 /// Maps that were finished, by their generators.
@@ -109,7 +97,7 @@ type Maps = Vec<(Generator, Arc<ConeMap>)>;
 
 /// One surface to measure, and who makes its maps.
 struct Measured<'a> {
-    field: Pattern,
+    note: SurfaceNote,
     surface: Arc<HeightSurface>,
     executor: &'a Executor,
 }
@@ -120,32 +108,27 @@ struct Measured<'a> {
 /// A field is unknown, a device fails, a file cannot be written, or the user interrupts.
 pub fn run(args: &ConesBench) -> Result<()> {
     interrupt::listen();
-    let common = Common {
-        names: Vec::new(),
-        size: None,
-        device: args.device.clone(),
-        json: args.json.clone(),
-        csv: args.csv.clone(),
+    let fields = match &args.fields[..] {
+        [] => &FIELDS,
+        named => named,
     };
-    let fields = fields(&args.names)?;
     let sizes = args.size.map_or(SIZES.to_vec(), |size| vec![size]);
-    for size in &sizes {
-        let area = size[0] as usize * size[1] as usize;
-        Heights::new(*size, [false; 2], vec![0.0; area]).map_err(|e| usage(e.to_string()))?;
-    }
-    let patches = if args.boxes {
-        Patches::Boxes
-    } else {
-        Patches::Bilinear
+    let patches = match args.boxes {
+        true => Patches::Boxes,
+        false => Patches::Bilinear,
     };
-    let files = common.files(None, &[])?;
-    let executor = &common.executor_with(PROMISED_BUFFERS)?;
+    let files = args.rows.prepare(None, &[])?;
+    let executor = &open(&args.device, PROMISED_BUFFERS)?;
     let (mut generators, mut tracers) = (Vec::new(), Vec::new());
     for size in sizes {
-        for &field in &fields {
+        for &field in fields {
             let heights = Heights::new(size, [false; 2], field.heights(size, SEED, POWER))?;
             let measured = Measured {
-                field,
+                note: SurfaceNote {
+                    field: field.name().into(),
+                    size,
+                    surface: patches.name().into(),
+                },
                 surface: Arc::new(HeightSurface::new(heights, patches, [1, 1])?),
                 executor,
             };
@@ -157,66 +140,39 @@ pub fn run(args: &ConesBench) -> Result<()> {
             tracers.extend(rows);
         }
     }
-    let all = generators.into_iter().map(ConesRow::Generator);
-    let all: Vec<_> = all
-        .chain(tracers.into_iter().map(ConesRow::Tracer))
-        .collect();
-    files.write(&all)
-}
-
-/// The named fields, or the default ones if there are no names.
-fn fields(names: &[String]) -> Result<Vec<Pattern>> {
-    if names.is_empty() {
-        return Ok(FIELDS.to_vec());
-    }
-    let one = |name: &String| {
-        let known = Pattern::ALL.map(Pattern::name).join(", ");
-        let why = || {
-            usage(format!(
-                "there is no field `{name}`; the fields are: {known}"
-            ))
-        };
-        Pattern::named(name).ok_or_else(why)
-    };
-    names.iter().map(one).collect()
+    let mut rows: Vec<_> = generators.into_iter().map(ConesRow::Generator).collect();
+    rows.extend(tracers.into_iter().map(ConesRow::Tracer));
+    files.write(&rows)
 }
 
 impl Measured<'_> {
     /// The row of a generator, without any figures.
     fn row(&self, generator: &str) -> GeneratorRow {
         GeneratorRow {
-            field: self.field.name().into(),
-            size: self.surface.heights().size(),
-            surface: self.surface.patches().name().into(),
+            over: self.note.clone(),
             generator: generator.into(),
             device: self.executor.name(),
-            ms: None,
-            mean_ratio: None,
-            of_exact: None,
-            wider_than_exact: None,
-            estimate_ms: None,
+            ..GeneratorRow::default()
         }
     }
 
     /// Rows of all generators and of the pyramid of maxima, and the maps that were finished in
     /// time.
     fn generate(&self) -> Result<(Vec<GeneratorRow>, Maps)> {
-        let mut maker = match self.executor {
-            Executor::Gpu(renderer) => Some(Maker::new(&renderer.device)),
-            Executor::Cpu => None,
-        };
-        let mut maps: Maps = Vec::new();
-        let mut rows = Vec::new();
-        let mut progress = Progress::start(&format!("making maps of {}", self.field.name()));
+        let (heights, patches) = (self.surface.heights(), self.surface.patches());
+        let mut maker = MapMaker::new(self.executor);
+        let (mut rows, mut maps) = (Vec::new(), Maps::new());
+        let mut progress = Progress::start(&format!("making maps of {}", self.note.field));
         for (i, generator) in Generator::ALL.into_iter().enumerate() {
             let mut row = self.row(generator.name());
             let (start, mut done) = (Instant::now(), 0.0);
-            let made = self.one_map(&mut maker, generator, &mut |share| {
+            let watch = &mut |share| {
                 done = share;
                 let all = (i as f64 + share) / Generator::ALL.len() as f64;
-                progress.report(all, generator.name());
-                !interrupt::asked() && (share >= 1.0 || start.elapsed() < BUDGET)
-            });
+                let goes_on = progress.report(all, generator.name());
+                goes_on && (share >= 1.0 || start.elapsed() < BUDGET)
+            };
+            let made = maker.generate(generator, heights, patches, &Options::default(), watch);
             let ms = start.elapsed().as_secs_f64() * 1e3;
             match made {
                 Ok(map) => {
@@ -224,46 +180,28 @@ impl Measured<'_> {
                     row.mean_ratio = Some(mean_ratio(&map));
                     maps.push((generator, Arc::new(map)));
                 }
-                Err(GenerateError::Cancelled) if interrupt::asked() => {
-                    return Err(RenderError::Cancelled.into());
+                Err(GenerateError::Cancelled) if !interrupt::asked() => {
+                    row.estimate_ms = Some(ms / done.max(1e-6));
                 }
-                Err(GenerateError::Cancelled) => row.estimate_ms = Some(ms / done.max(1e-6)),
                 Err(e) => return Err(e.into()),
             }
             rows.push(row);
         }
         compare(&mut rows, &maps);
-        let apexes = self.surface.heights().apexes(self.surface.patches());
+        let apexes = heights.apexes(patches);
         let start = Instant::now();
-        match &mut maker {
-            Some(maker) => maker.max_mip(self.surface.cells(), &apexes)?,
-            None => MaxMip::new(self.surface.cells(), apexes),
-        };
+        maker.max_mip(self.surface.cells(), apexes)?;
         let mut row = self.row("max-mip");
         row.ms = Some(start.elapsed().as_secs_f64() * 1e3);
         rows.push(row);
         Ok((rows, maps))
     }
 
-    fn one_map(
-        &self,
-        maker: &mut Option<Maker<'_>>,
-        generator: Generator,
-        watch: Watch<'_>,
-    ) -> Result<ConeMap, GenerateError> {
-        let (heights, patches) = (self.surface.heights(), self.surface.patches());
-        let options = Options::default();
-        match maker {
-            Some(maker) => maker.generate(generator, heights, patches, &options, watch),
-            None => cpu::generate(generator, heights, patches, &options, watch),
-        }
-    }
-
     /// Rows of all tracers over all views.
     fn trace(&self, maps: &Maps) -> Result<Vec<TracerRow>> {
-        let reference = ReferenceTracer::new(self.surface.clone());
+        let reference = Tracer::reference(self.surface.clone());
         let mut rows = Vec::new();
-        let mut progress = Progress::start(&format!("tracing {}", self.field.name()));
+        let mut progress = Progress::start(&format!("tracing {}", self.note.field));
         for (i, view_deg) in VIEWS.into_iter().enumerate() {
             let rays = view_rays(&self.surface, f64::from(view_deg), RAYS);
             let truths = first_hits(&reference, &rays);
@@ -271,9 +209,7 @@ impl Measured<'_> {
                 let done = (i * PAIRS.len() + j) as f64;
                 let share = done / (VIEWS.len() * PAIRS.len()) as f64;
                 progress.report(share, kind.name());
-                if interrupt::asked() {
-                    return Err(RenderError::Cancelled.into());
-                }
+                interrupt::check()?;
                 let map = maps.iter().find(|(g, _)| Some(*g) == generator);
                 if kind.needs_map() && map.is_none() {
                     if view_deg == VIEWS[0] {
@@ -287,19 +223,12 @@ impl Measured<'_> {
                 let cones = map.map(|(_, map)| Supply::from(map.clone()));
                 let settings = TracerSettings::from(kind);
                 let tracer = kind.make(&self.surface, cones.as_ref(), &settings, 0.0)?;
-                let found = measure(&*tracer, &rays, &truths);
                 rows.push(TracerRow {
-                    field: self.field.name().into(),
-                    size: self.surface.heights().size(),
-                    surface: self.surface.patches().name().into(),
+                    over: self.note.clone(),
                     view_deg,
                     tracer: kind.name().into(),
                     map: generator.map_or("none", Generator::name).into(),
-                    steps_mean: found.steps_mean,
-                    steps_p99: found.steps_p99,
-                    skipped: found.skipped,
-                    unconverged: found.unconverged,
-                    error_texels: found.error_texels,
+                    stats: measure(&tracer, &rays, &truths),
                 });
             }
         }

@@ -4,15 +4,15 @@
 //! turn, so that a machine whose speed drifts slows all of them alike.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
 use glam::DVec3;
 
-use crate::command::bench::common::{Common, median_of};
-use crate::command::bench::row::{DepthError, Row, TruthNote};
-use crate::command::bench::runner::{COUNTED, RUNS, Runner, TIMED, of_how_many};
+use crate::command::bench::common::{Common, Subject, of_how_many};
+use crate::command::bench::row::Row;
+use crate::command::bench::runner::{COUNTED, RUNS, Runner, TIMED, median_of};
 use crate::command::bench::setting::{Setting, baselines, sweeps};
 use crate::command::bench::{plot, table};
 use crate::command::executor::Executor;
@@ -20,10 +20,10 @@ use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
 use crate::command::progress::Progress;
-use crate::command::sink::is_stdout;
+use crate::command::sink::{ending, is_stdout};
 use crate::gpu::RenderError;
 use crate::measure::compare::compare;
-use crate::measure::flip::{Picture, flip};
+use crate::measure::flip::flip;
 use crate::measure::truth::{Cache, Truth, cached};
 use crate::picture::frame::Frame;
 use crate::picture::{Layer, Shades};
@@ -49,44 +49,37 @@ pub struct ErrorBench {
 /// An unknown preset, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &ErrorBench) -> Result<()> {
     interrupt::listen();
-    let assets = Assets::default();
-    let plans = args.common.plans(&assets)?;
     if let Some(path) = &args.plot
-        && !is_svg(path)
+        && !(is_stdout(path) || ending(path) == "svg")
     {
         return Err(usage(format!(
             "--plot draws an SVG, and `{}` does not end in .svg; - is standard output",
             path.display()
         )));
     }
-    let mut files = args.common.files(args.plot.as_deref(), &plans)?;
-    let mut executor = args.common.executor()?;
+    let mut all = args.common.begin(args.plot.as_deref())?;
     let cache = Cache::user();
     let mut settings = baselines();
     if args.sweep {
         settings.extend(sweeps());
     }
     let mut rows = Vec::new();
-    for (i, (name, plan)) in plans.iter().enumerate() {
-        let what = of_how_many(name, i, plans.len());
-        let fitting = settings.iter().filter_map(|s| Some((s, s.apply(plan)?)));
+    for subject in &all.subjects {
+        let fitting = settings.iter();
+        let fitting = fitting.filter_map(|s| Some((s, s.apply(&subject.plan)?)));
         let fitting: Vec<(&Setting, Plan)> = fitting.collect();
-        let truths = truths(cache.as_ref(), &assets, name, &what, &fitting)?;
-        let measured = measure(&mut executor, &assets, name, &what, &fitting, &truths)?;
-        files.show(&table::preset(&measured))?;
+        let truths = truths(cache.as_ref(), &all.assets, subject, &fitting)?;
+        let measured = measure(&mut all.executor, &all.assets, subject, &fitting, &truths)?;
+        all.files.show(&table::preset(&measured))?;
         rows.extend(measured);
     }
-    files.show(&table::means(&rows))?;
-    files.show(&table::better_than_safe(&rows))?;
-    files.show(&table::slides(&rows))?;
-    files.draw(|| plot::draw(&rows))?;
-    files.write(&rows)
-}
-
-/// Whether a name is that of an SVG or of standard output.
-fn is_svg(path: &Path) -> bool {
-    let ending = path.extension().and_then(|e| e.to_str());
-    is_stdout(path) || ending.is_some_and(|e| e.eq_ignore_ascii_case("svg"))
+    all.files.show(&table::means(&rows))?;
+    all.files.show(&table::better_than_safe(&rows))?;
+    all.files.show(&table::slides(&rows))?;
+    if let Some(sink) = all.files.plot.take() {
+        all.files.parcel.put(sink, plot::draw(&rows).as_bytes())?;
+    }
+    all.files.write(&rows)
 }
 
 /// Truths by `march.detail`: settings that change the hit rule have a truth of their own.
@@ -100,11 +93,11 @@ fn truth_key(plan: &Plan) -> u64 {
 fn truths(
     cache: Option<&Cache>,
     assets: &Assets,
-    name: &str,
-    what: &str,
+    subject: &Subject,
     settings: &[(&Setting, Plan)],
 ) -> Result<Truths, RenderError> {
     let mut found = Truths::new();
+    let Subject { name, what, .. } = subject;
     for (_, plan) in settings {
         if found.contains_key(&truth_key(plan)) {
             continue;
@@ -112,11 +105,10 @@ fn truths(
         let mut progress = Progress::start(&format!("rendering the truth of {what}"));
         let (truth, kept) = cached(cache, plan, assets, &mut progress.watch())?;
         drop(progress);
+        let kept = if kept { ", kept from before," } else { "" };
+        let (stride, moved) = (truth.note.stride, 100.0 * truth.note.moved);
         say(&format!(
-            "{name}: truth{} at {} of the estimate, {:.4} % of pixels still move",
-            if kept { ", kept from before," } else { "" },
-            truth.stride,
-            100.0 * truth.moved
+            "{name}: truth{kept} at {stride} of the estimate, {moved:.4} % of pixels still move"
         ));
         found.insert(truth_key(plan), truth);
     }
@@ -127,60 +119,39 @@ fn truths(
 fn measure(
     executor: &mut Executor,
     assets: &Assets,
-    name: &str,
-    what: &str,
+    subject: &Subject,
     settings: &[(&Setting, Plan)],
     truths: &Truths,
 ) -> Result<Vec<Row>, RenderError> {
     let device = executor.name();
-    let precision = settings
-        .first()
-        .and_then(|(_, plan)| executor.precision_warning(plan));
-    let mut runner = Runner::new(executor, assets, what, settings.len() * (RUNS + 2));
-    let detail = |i: usize, setting: &Setting| of_how_many(setting.mode.name(), i, settings.len());
+    let precision = executor.precision_warning(&subject.plan);
+    let all = settings.len();
+    let mut runner = Runner::new(executor, assets, &subject.what, all * (RUNS + 2));
+    let counted = Extras {
+        depth_only: false,
+        ..COUNTED
+    };
+    let detail = |i: usize, setting: &Setting| of_how_many(setting.mode.name(), i, all);
     let mut rows = Vec::new();
     for (i, (setting, plan)) in settings.iter().enumerate() {
         let truth = &truths[&truth_key(plan)];
-        let counted = Extras {
-            depth_only: false,
-            ..COUNTED
-        };
         let frame = runner.render(plan, counted, &detail(i, setting))?;
-        let report = compare(&frame, &truth.frame, plan, &plan.solid(assets)?);
         let work = frame.work_per_pixel().unwrap_or((0.0, 0.0));
-        let [median, p95, p99, max] = report.depth_error;
         rows.push(Row {
-            preset: name.into(),
+            preset: subject.name.clone(),
             mode: setting.mode.name().into(),
             parameters: setting.parameters(),
-            baseline: setting.changes.is_empty(),
+            baseline: setting.change.is_none(),
             size: plan.size,
             device: device.clone(),
-            // Times follow below.
-            wall_ms: 0.0,
-            gpu_ms: None,
             evaluations_per_pixel: work.0,
             iterations_per_pixel: work.1,
-            depth_error: DepthError {
-                median,
-                p95,
-                p99,
-                max,
-            },
-            behind: report.behind,
-            front: report.front,
-            behind8: report.behind8,
-            front8: report.front8,
-            holes: report.holes,
-            false_hits: report.false_hits,
-            start_violations: report.start_violations.iter().map(|v| v.1).collect(),
-            unconverged: report.unconverged,
+            report: compare(&frame, &truth.frame, plan, &plan.solid(assets)?),
             flip: look_apart(&truth.frame, &frame, plan),
-            truth: TruthNote {
-                stride: truth.stride,
-                moved: truth.moved,
-            },
+            truth: truth.note,
             precision: precision.clone(),
+            // Times follow below.
+            ..Row::default()
         });
     }
     let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); rows.len()];
@@ -190,8 +161,7 @@ fn measure(
             // The first round warms up: programs without counters are new.
             if run > 0 {
                 wall.push(frame.march_ms);
-                let each = frame.marched();
-                gpu.extend(each.map(|p| p.gpu_ms).sum::<Option<f64>>());
+                gpu.extend(frame.marched().map(|p| p.gpu_ms).sum::<Option<f64>>());
             }
         }
     }
@@ -206,13 +176,8 @@ fn measure(
 fn look_apart(reference: &Frame, frame: &Frame, plan: &Plan) -> f64 {
     let [one, two] = [reference, frame].map(|frame| {
         let shades = Shades::new(Layer::Color, frame, plan);
-        (0..frame.state.len())
-            .map(|i| shades.at(i).clamp(DVec3::ZERO, DVec3::ONE))
-            .collect::<Vec<_>>()
+        let shown = (0..frame.state.len()).map(|i| shades.at(i).clamp(DVec3::ZERO, DVec3::ONE));
+        shown.collect::<Vec<_>>()
     });
-    let picture = |pixels| Picture {
-        size: plan.size,
-        pixels,
-    };
-    flip(picture(&one), picture(&two))
+    flip(plan.size, &one, &two)
 }

@@ -26,52 +26,38 @@ const COLORS: [(&str, &str); 7] = [
 
 /// The picture of all rows.
 pub fn draw(rows: &[Row]) -> String {
-    let mut presets: Vec<&str> = Vec::new();
-    for row in rows {
-        if !presets.contains(&row.preset.as_str()) {
-            presets.push(&row.preset);
-        }
-    }
+    let presets: Vec<&[Row]> = rows.chunk_by(|a, b| a.preset == b.preset).collect();
     let columns = presets.len().clamp(1, COLUMNS);
     let lines = presets.len().div_ceil(columns).max(1);
     let (w, h) = (columns as f64 * PANEL[0], lines as f64 * PANEL[1] + LEGEND);
-    let mut svg = format!(
+    let mut svg = vec![format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="11" fill="#333">
-<rect width="{w}" height="{h}" fill="#fff"/>
-"##
-    );
-    for (i, preset) in presets.iter().enumerate() {
-        let own: Vec<&Row> = rows.iter().filter(|r| r.preset == *preset).collect();
-        let at = [
-            (i % columns) as f64 * PANEL[0],
-            (i / columns) as f64 * PANEL[1],
-        ];
-        panel(&mut svg, preset, &own, at);
+<rect width="{w}" height="{h}" fill="#fff"/>"##
+    )];
+    for (i, own) in presets.into_iter().enumerate() {
+        let [x, y] = [i % columns, i / columns].map(|n| n as f64);
+        panel(&mut svg, own, [x * PANEL[0], y * PANEL[1]]);
     }
     legend(&mut svg, h - LEGEND + 18.0);
-    svg.push_str("</svg>\n");
-    svg
+    svg.push("</svg>\n".into());
+    svg.join("\n")
 }
 
 /// Rows that no other row beats in both time and wrong pixels, sorted by time.
 pub fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
-    let mut sorted: Vec<&Row> = rows.iter().copied().filter(|r| comparable(r)).collect();
+    let mut sorted: Vec<&Row> = rows.iter().copied().filter(|r| r.is_comparable()).collect();
     sorted.sort_by(|a, b| {
         let time = a.wall_ms.total_cmp(&b.wall_ms);
-        time.then(a.wrong().total_cmp(&b.wrong()))
+        time.then(a.report.wrong().total_cmp(&b.report.wrong()))
     });
     let mut best: Vec<&Row> = Vec::new();
     for row in sorted {
-        if best.last().is_none_or(|b| row.wrong() < b.wrong()) {
+        let beats = |best: &&Row| row.report.wrong() < best.report.wrong();
+        if best.last().is_none_or(beats) {
             best.push(row);
         }
     }
     best
-}
-
-/// Whether a row is compared with the usual truth: another `detail` has another one.
-fn comparable(row: &Row) -> bool {
-    !row.parameters.contains_key("detail")
 }
 
 /// A logarithmic axis over some values, from `at` over `length`.
@@ -111,9 +97,8 @@ impl Axis {
             &[1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
         ];
         let of = |round: &[f64]| -> Vec<f64> {
-            let all = decades
-                .clone()
-                .flat_map(|e| round.iter().map(move |m| m * 10_f64.powi(e)));
+            let powers = decades.clone().map(|e| 10_f64.powi(e));
+            let all = powers.flat_map(|power| round.iter().map(move |m| m * power));
             all.filter(|t| (self.low..=self.high).contains(t)).collect()
         };
         let made = choices.map(of);
@@ -130,11 +115,12 @@ fn rounded(t: f64) -> f64 {
 /// Wrong pixels in percent. None at all is drawn as half a pixel: the axis is logarithmic.
 fn shown(row: &Row) -> f64 {
     let pixels = f64::from(row.size[0]) * f64::from(row.size[1]);
-    100.0 * row.wrong().max(0.5 / pixels)
+    100.0 * row.report.wrong().max(0.5 / pixels)
 }
 
-fn panel(svg: &mut String, preset: &str, rows: &[&Row], [left, top]: [f64; 2]) {
-    let rows: Vec<&Row> = rows.iter().copied().filter(|r| comparable(r)).collect();
+fn panel(svg: &mut Vec<String>, rows: &[Row], [left, top]: [f64; 2]) {
+    let preset = rows.first().map_or("", |r| &r.preset);
+    let rows: Vec<&Row> = rows.iter().filter(|r| r.is_comparable()).collect();
     let [x0, y0] = [left + MARGIN[0], top + MARGIN[1]];
     let [x1, y1] = [left + PANEL[0] - MARGIN[2], top + PANEL[1] - MARGIN[3]];
     let [w, h] = [x1 - x0, y1 - y0];
@@ -143,55 +129,43 @@ fn panel(svg: &mut String, preset: &str, rows: &[&Row], [left, top]: [f64; 2]) {
     let y = Axis::new(rows.iter().map(|r| shown(r)), y1, -h);
     let place = |row: &Row| [x.place(row.wall_ms), y.place(shown(row))];
     let above = y0 - 12.0;
-    *svg += &format!(
-        r##"<text x="{x0}" y="{above:.1}" font-size="13" font-weight="bold">{preset}</text>
-"##
-    );
+    svg.push(format!(
+        r##"<text x="{x0}" y="{above:.1}" font-size="13" font-weight="bold">{preset}</text>"##
+    ));
     for t in x.ticks() {
         let (at, below, label) = (x.place(t), y1 + 14.0, rounded(t));
-        *svg += &format!(
-            r##"<path d="M{at:.1} {y0:.1}v{h:.1}" stroke="#eee"/><text x="{at:.1}" y="{below:.1}" text-anchor="middle">{label}</text>
-"##
-        );
+        svg.push(format!(
+            r##"<path d="M{at:.1} {y0:.1}v{h:.1}" stroke="#eee"/><text x="{at:.1}" y="{below:.1}" text-anchor="middle">{label}</text>"##
+        ));
     }
     for t in y.ticks() {
         let (at, beside, base, label) = (y.place(t), x0 - 5.0, y.place(t) + 4.0, rounded(t));
-        *svg += &format!(
-            r##"<path d="M{x0:.1} {at:.1}h{w:.1}" stroke="#eee"/><text x="{beside:.1}" y="{base:.1}" text-anchor="end">{label}</text>
-"##
-        );
+        svg.push(format!(
+            r##"<path d="M{x0:.1} {at:.1}h{w:.1}" stroke="#eee"/><text x="{beside:.1}" y="{base:.1}" text-anchor="end">{label}</text>"##
+        ));
     }
     let (middle, below) = (x0 + 0.5 * w, y1 + 32.0);
     let (beside, height) = (x0 - 44.0, y0 + 0.5 * h);
     let best = front(&rows);
-    let line = best
-        .iter()
-        .map(|r| place(r))
-        .map(|[x, y]| format!("{x:.1},{y:.1}"));
+    let line = best.iter().map(|r| place(r));
+    let line = line.map(|[x, y]| format!("{x:.1},{y:.1}"));
     let line = line.collect::<Vec<_>>().join(" ");
-    *svg += &format!(
+    svg.push(format!(
         r##"<rect x="{x0}" y="{y0}" width="{w}" height="{h}" fill="none" stroke="#999"/>
 <text x="{middle:.1}" y="{below:.1}" text-anchor="middle">march and trace, ms</text><text transform="translate({beside:.1} {height:.1}) rotate(-90)" text-anchor="middle">wrong pixels, %</text>
-<polyline points="{line}" fill="none" stroke="#009e73" stroke-width="1.5"/>
-"##
-    );
+<polyline points="{line}" fill="none" stroke="#009e73" stroke-width="1.5"/>"##
+    ));
     for row in &rows {
         let [x, y] = place(row);
-        let (radius, stroke) = if row.baseline {
-            (5.0, "#fff")
-        } else {
-            (2.6, "none")
+        let (radius, stroke) = match row.baseline {
+            true => (5.0, "#fff"),
+            false => (2.6, "none"),
         };
-        let (color, label, ms, wrong) = (
-            color(&row.mode),
-            row.label(),
-            row.wall_ms,
-            100.0 * row.wrong(),
-        );
-        *svg += &format!(
-            r##"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" fill="{color}" stroke="{stroke}"><title>{label}: {ms:.1} ms, {wrong:.4} %</title></circle>
-"##
-        );
+        let (color, label) = (color(&row.mode), row.label());
+        let (ms, wrong) = (row.wall_ms, 100.0 * row.report.wrong());
+        svg.push(format!(
+            r##"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" fill="{color}" stroke="{stroke}"><title>{label}: {ms:.1} ms, {wrong:.4} %</title></circle>"##
+        ));
     }
     let dots: Vec<[f64; 2]> = rows.iter().map(|row| place(row)).collect();
     names(svg, &best, &dots, &x, &y);
@@ -209,11 +183,9 @@ const BESIDE: [[f64; 2]; 6] = [
 
 /// Writes the names of the sweeps on the front, the least wrong first, unless they would
 /// cover each other or a dot. A dot also tells its name to a pointer.
-fn names(svg: &mut String, best: &[&Row], dots: &[[f64; 2]], x: &Axis, y: &Axis) {
-    let mut taken: Vec<[f64; 4]> = dots
-        .iter()
-        .map(|[x, y]| [x - 3.0, y - 3.0, x + 3.0, y + 3.0])
-        .collect();
+fn names(svg: &mut Vec<String>, best: &[&Row], dots: &[[f64; 2]], x: &Axis, y: &Axis) {
+    let around = |[x, y]: &[f64; 2]| [x - 3.0, y - 3.0, x + 3.0, y + 3.0];
+    let mut taken: Vec<[f64; 4]> = dots.iter().map(around).collect();
     let [left, right] = [x.at, x.at + x.length];
     for row in best.iter().rev().filter(|r| !r.baseline) {
         let (cx, cy) = (x.place(row.wall_ms), y.place(shown(row)));
@@ -230,10 +202,9 @@ fn names(svg: &mut String, best: &[&Row], dots: &[[f64; 2]], x: &Axis, y: &Axis)
         });
         if let Some((shape, start, base)) = room {
             taken.push(shape);
-            *svg += &format!(
-                r##"<text x="{start:.1}" y="{base:.1}" font-size="9" fill="#666">{label}</text>
-"##
-            );
+            svg.push(format!(
+                r##"<text x="{start:.1}" y="{base:.1}" font-size="9" fill="#666">{label}</text>"##
+            ));
         }
     }
 }
@@ -243,45 +214,42 @@ fn color(mode: &str) -> &'static str {
     found.map_or("#009e73", |(_, color)| color)
 }
 
-fn legend(svg: &mut String, y: f64) {
+fn legend(svg: &mut Vec<String>, y: f64) {
     let (mut x, middle, below) = (20.0, y - 4.0, y + 20.0);
     for (name, color) in COLORS {
         let beside = x + 9.0;
-        *svg += &format!(
-            r##"<circle cx="{x}" cy="{middle:.1}" r="5" fill="{color}"/><text x="{beside:.1}" y="{y}">{name}</text>
-"##
-        );
+        svg.push(format!(
+            r##"<circle cx="{x}" cy="{middle:.1}" r="5" fill="{color}"/><text x="{beside:.1}" y="{y}">{name}</text>"##
+        ));
         x += 30.0 + 6.5 * name.len() as f64;
     }
-    *svg += &format!(
-        r##"<text x="20" y="{below:.1}">Small dots: one key of the mode changed. Green line: no other setting is both faster and less wrong. Wrong: behind, lost or unconverged.</text>
-"##
-    );
+    svg.push(format!(
+        r##"<text x="20" y="{below:.1}">Small dots: one key of the mode changed. Green line: no other setting is both faster and less wrong. Wrong: behind, lost or unconverged.</text>"##
+    ));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::compare::Report;
 
     fn row(wall_ms: f64, behind: f64) -> Row {
         Row {
             preset: "p".into(),
             size: [100, 100],
             wall_ms,
-            behind,
+            report: Report {
+                behind,
+                ..Report::default()
+            },
             ..Row::default()
         }
     }
 
     #[test]
     fn the_front_holds_what_nothing_beats() {
-        let rows = [
-            row(3.0, 0.1),
-            row(1.0, 0.5),
-            row(2.0, 0.6),
-            row(4.0, 0.1),
-            row(5.0, 0.0),
-        ];
+        let figures = [(3.0, 0.1), (1.0, 0.5), (2.0, 0.6), (4.0, 0.1), (5.0, 0.0)];
+        let rows = figures.map(|(ms, behind)| row(ms, behind));
         let all: Vec<&Row> = rows.iter().collect();
         let times: Vec<f64> = front(&all).iter().map(|r| r.wall_ms).collect();
         assert_eq!(times, [1.0, 3.0, 5.0]);
@@ -289,12 +257,9 @@ mod tests {
 
     #[test]
     fn a_plot_is_whole_with_few_rows_and_with_none() {
-        for rows in [
-            vec![],
-            vec![row(1.0, 0.0)],
-            vec![row(1.0, 0.0), row(20.0, 0.3)],
-        ] {
-            let svg = draw(&rows);
+        let both = [row(1.0, 0.0), row(20.0, 0.3)];
+        for rows in [&both[..0], &both[..1], &both] {
+            let svg = draw(rows);
             assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
             assert_eq!(svg.matches("<circle").count(), rows.len() + COLORS.len());

@@ -5,27 +5,8 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// Quantiles of |e| in footprints, over pixels that hit in both.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct DepthError {
-    /// 50 % of the pixels are closer.
-    pub median: f64,
-    /// 95 % are.
-    pub p95: f64,
-    /// 99 % are.
-    pub p99: f64,
-    /// All are.
-    pub max: f64,
-}
-
-/// How converged the truth is.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct TruthNote {
-    /// Length of its steps over the estimate.
-    pub stride: f64,
-    /// Share of sampled pixels that still change when the steps are halved.
-    pub moved: f64,
-}
+use crate::measure::compare::Report;
+use crate::measure::truth::TruthNote;
 
 /// A measured setting. Shares are of all pixels, 0..1; errors in footprints.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -50,25 +31,9 @@ pub struct Row {
     pub evaluations_per_pixel: f64,
     /// Fold iterations of march and trace over pixels.
     pub iterations_per_pixel: f64,
-    /// Quantiles of the depth error.
-    pub depth_error: DepthError,
-    /// Share more than 2 footprints too deep.
-    pub behind: f64,
-    /// Share more than 2 footprints too near.
-    pub front: f64,
-    /// Share more than 8 footprints too deep.
-    pub behind8: f64,
-    /// Share more than 8 footprints too near.
-    pub front8: f64,
-    /// Share of hits shown as sky.
-    pub holes: f64,
-    /// Share of sky shown as hits.
-    pub false_hits: f64,
-    /// Pixels whose true hit lies before the distance up to which their cell was proven free,
-    /// per level, coarse to fine.
-    pub start_violations: Vec<u64>,
-    /// Share that reached a limit.
-    pub unconverged: f64,
+    /// How the depths and states differ from the truth's.
+    #[serde(flatten)]
+    pub report: Report,
     /// Mean FLIP difference of the pictures.
     pub flip: f64,
     /// How converged the truth is.
@@ -78,9 +43,9 @@ pub struct Row {
 }
 
 impl Row {
-    /// Share of pixels that are wrong: too deep, lost, or not finished.
-    pub fn wrong(&self) -> f64 {
-        self.behind + self.holes + self.unconverged
+    /// Whether the row is compared with the usual truth: another `detail` has another one.
+    pub fn is_comparable(&self) -> bool {
+        !self.parameters.contains_key("detail")
     }
 
     /// The mode and the keys that differ, like `safe, shell 0.1`.

@@ -1,9 +1,9 @@
 //! The renders of a measurement, with progress.
 
 use crate::command::executor::Executor;
-use crate::command::interrupt;
 use crate::command::progress::Progress;
 use crate::gpu::RenderError;
+use crate::pass::progress::Progress as Now;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
 use crate::scene::Assets;
@@ -39,11 +39,10 @@ pub struct Runner<'a> {
 impl<'a> Runner<'a> {
     /// Begins so many renders; `what` is what they measure.
     pub fn new(executor: &'a mut Executor, assets: &'a Assets, what: &str, all: usize) -> Self {
-        let progress = Progress::start(&format!("measuring {what}"));
         Self {
             executor,
             assets,
-            progress,
+            progress: Progress::start(&format!("measuring {what}")),
             done: 0,
             all,
         }
@@ -60,18 +59,15 @@ impl<'a> Runner<'a> {
         detail: &str,
     ) -> Result<Frame, RenderError> {
         let (progress, done, all) = (&mut self.progress, self.done as f64, self.all as f64);
-        let frame = self
-            .executor
-            .render(plan, self.assets, extras, &mut |now| {
-                progress.report((done + now.done) / all, detail);
-                !interrupt::asked()
-            })?;
+        let watch = &mut |now: &Now| progress.report((done + now.done) / all, detail);
+        let frame = self.executor.render(plan, self.assets, extras, watch)?;
         self.done += 1;
         Ok(frame)
     }
 }
 
-/// `mandelbox (3 of 14)`.
-pub fn of_how_many(name: &str, index: usize, all: usize) -> String {
-    format!("{name} ({} of {all})", index + 1)
+/// The median of some values; sorts them.
+pub fn median_of(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }

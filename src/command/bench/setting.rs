@@ -5,38 +5,28 @@ use serde_json::{Map, json};
 use toml::Value;
 
 use crate::plan::Plan;
-use crate::plan::march::{MODES, Mode};
+use crate::plan::march::Mode;
 
-/// A mode, and keys of `[march]` that are changed.
+/// A mode, and perhaps a key of `[march]` that is changed.
 #[derive(Clone, Debug)]
 pub struct Setting {
     /// The mode.
     pub mode: Mode,
-    /// Keys and values.
-    pub changes: Vec<(&'static str, Value)>,
+    /// The changed key with its value, if there is one.
+    pub change: Option<(&'static str, Value)>,
 }
 
 impl Setting {
     /// A mode without changes.
     pub fn of(mode: Mode) -> Self {
-        Self {
-            mode,
-            changes: Vec::new(),
-        }
-    }
-
-    fn new(mode: Mode, key: &'static str, value: impl Into<Value>) -> Self {
-        Self {
-            mode,
-            changes: vec![(key, value.into())],
-        }
+        Self { mode, change: None }
     }
 
     /// A plan with the setting, if it fits.
     pub fn apply(&self, plan: &Plan) -> Option<Plan> {
         let mut plan = plan.clone();
         plan.march.mode = self.mode;
-        for (name, value) in &self.changes {
+        if let Some((name, value)) = &self.change {
             let mut keys = plan.march.keys();
             let key = keys.iter_mut().find(|k| k.name == *name)?;
             key.slot.set(value).ok()?;
@@ -44,10 +34,10 @@ impl Setting {
         plan.check().is_ok().then_some(plan)
     }
 
-    /// The changes as JSON.
+    /// The change as JSON.
     pub fn parameters(&self) -> Map<String, serde_json::Value> {
         let pair = |(name, value): &(&str, Value)| ((*name).to_string(), json!(value));
-        self.changes.iter().map(pair).collect()
+        self.change.iter().map(pair).collect()
     }
 }
 
@@ -55,38 +45,41 @@ impl Setting {
 /// left out: all are measured against it.
 pub fn baselines() -> Vec<Setting> {
     let first = [Mode::Ray, Mode::RayRelaxed, Mode::Safe];
-    let rest = MODES.iter().map(|(_, mode)| *mode);
+    let rest = Mode::ALL.into_iter();
     let rest = rest.filter(|m| !first.contains(m) && *m != Mode::Truth);
     first.into_iter().chain(rest).map(Setting::of).collect()
 }
 
 /// One key changed at a time.
 pub fn sweeps() -> Vec<Setting> {
-    let safe = |key, value: Value| Setting::new(Mode::Safe, key, value);
-    let mut all = Vec::new();
-    for divisor in [32, 8, 4, 2] {
-        all.push(safe("coarsest", Value::Integer(divisor)));
-    }
-    for shell in [0.0, 0.15, 0.3, 0.6, 0.8] {
-        all.push(safe("shell", Value::Float(shell)));
-    }
-    all.push(safe("relaxation", "off".into()));
-    for factor in [1.2, 1.5] {
-        all.push(safe("relaxation", Value::Float(factor)));
-    }
-    for steps in [16, 64, 1024] {
-        all.push(safe("steps", Value::Integer(steps)));
-    }
-    for schedule in [&[0.9][..], &[0.8], &[0.6], &[1.0, 1.0, 0.8, 0.6]] {
-        all.push(Setting::new(Mode::Calibrated, "fudge", schedule.to_vec()));
-    }
-    for detail in [0.5, 2.0] {
-        all.push(safe("detail", Value::Float(detail)));
-    }
-    for mode in [Mode::Ray, Mode::RayRelaxed] {
-        all.push(Setting::new(mode, "clip", "on"));
-    }
-    all
+    const FUDGES: [&[f64]; 4] = [&[0.9], &[0.8], &[0.6], &[1.0, 1.0, 0.8, 0.6]];
+    let swept: [(Mode, &'static str, Vec<Value>); 8] = [
+        (Mode::Safe, "coarsest", values([32, 8, 4, 2])),
+        (Mode::Safe, "shell", values([0.0, 0.15, 0.3, 0.6, 0.8])),
+        (
+            Mode::Safe,
+            "relaxation",
+            vec!["off".into(), 1.2.into(), 1.5.into()],
+        ),
+        (Mode::Safe, "steps", values([16, 64, 1024])),
+        (
+            Mode::Calibrated,
+            "fudge",
+            values(FUDGES.map(<[f64]>::to_vec)),
+        ),
+        (Mode::Safe, "detail", values([0.5, 2.0])),
+        (Mode::Ray, "clip", values(["on"])),
+        (Mode::RayRelaxed, "clip", values(["on"])),
+    ];
+    let settings = swept.into_iter().flat_map(|(mode, key, values)| {
+        let change = values.into_iter().map(move |value| Some((key, value)));
+        change.map(move |change| Setting { mode, change })
+    });
+    settings.collect()
+}
+
+fn values<const N: usize>(list: [impl Into<Value>; N]) -> Vec<Value> {
+    list.map(Into::into).into()
 }
 
 #[cfg(test)]
@@ -99,12 +92,15 @@ mod tests {
         let plan = preset::load("bench-far", &[]).expect("built in").plan;
         let mut seen = vec![plan.clone()];
         let all = baselines().into_iter().chain(sweeps());
-        for setting in all.filter(|s| s.mode != Mode::Safe || !s.changes.is_empty()) {
+        for setting in all.filter(|s| s.mode != Mode::Safe || s.change.is_some()) {
             let changed = setting.apply(&plan).expect("fits");
             assert!(!seen.contains(&changed), "{setting:?}");
             seen.push(changed);
         }
-        let wrong = Setting::new(Mode::Safe, "shell", 2.0);
+        let wrong = Setting {
+            mode: Mode::Safe,
+            change: Some(("shell", 2.0.into())),
+        };
         assert!(wrong.apply(&plan).is_none());
     }
 }

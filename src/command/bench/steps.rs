@@ -4,21 +4,23 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
+use clap::builder::TypedValueParser;
 
 use crate::base::work::{State, Work};
-use crate::command::bench::common::{Common, median_of};
-use crate::command::bench::runner::{COUNTED, RUNS, Runner, TIMED, of_how_many};
+use crate::command::arguments::words;
+use crate::command::bench::common::{Common, Subject, of_how_many};
+use crate::command::bench::runner::{COUNTED, RUNS, Runner, TIMED, median_of};
 use crate::command::bench::setting::{Setting, baselines};
 use crate::command::bench::steps_row::StepsRow;
 use crate::command::bench::table;
 use crate::command::executor::Executor;
-use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::gpu::RenderError;
+use crate::measure::compare::quantile;
 use crate::picture::frame::Frame;
 use crate::picture::{BitDepth, Folder, Layer, Place, Shades, write_png};
 use crate::plan::Plan;
-use crate::plan::march::MODES;
+use crate::plan::march::Mode;
 use crate::preset;
 use crate::scene::Assets;
 
@@ -28,11 +30,15 @@ pub struct StepsBench {
     #[command(flatten)]
     common: Common,
     /// Only this mode
-    #[arg(long, value_name = "MODE")]
-    mode: Option<String>,
+    #[arg(long, value_name = "MODE", value_parser = modes())]
+    mode: Option<Mode>,
     /// Draw a heat map of evaluations for every preset and mode into this folder
     #[arg(long, value_name = "FOLDER")]
     heat: Option<PathBuf>,
+}
+
+fn modes() -> impl TypedValueParser<Value = Mode> {
+    words(Mode::ALL.map(|mode| (mode, mode.name(), "")))
 }
 
 /// Runs the measurement.
@@ -41,65 +47,51 @@ pub struct StepsBench {
 /// An unknown preset or mode, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &StepsBench) -> Result<()> {
     interrupt::listen();
-    let assets = Assets::default();
-    let plans = args.common.plans(&assets)?;
-    let settings = modes(args.mode.as_deref())?;
+    // Without a mode all but the truth, which takes long.
+    let of_one = |mode| vec![Setting::of(mode)];
+    let settings = args.mode.map_or_else(baselines, of_one);
     // Kept until the end: a folder that was made is removed again if it stays empty.
     let _folder = args.heat.as_deref().map(Folder::prepare).transpose()?;
-    let mut files = args.common.files(None, &plans)?;
-    let mut executor = args.common.executor()?;
+    let mut all = args.common.begin(None)?;
     let mut rows = Vec::new();
-    for (i, (name, plan)) in plans.iter().enumerate() {
-        let fitting: Vec<Plan> = settings.iter().filter_map(|s| s.apply(plan)).collect();
-        for (j, plan) in fitting.iter().enumerate() {
-            let mode = of_how_many(plan.march.mode.name(), j, fitting.len());
-            let what = format!("{}, {mode}", of_how_many(name, i, plans.len()));
-            let (measured, frame) = measure(&mut executor, &assets, name, &what, plan)?;
-            files.show(&table::levels(&measured))?;
+    for subject in &all.subjects {
+        let fitting = settings.iter().filter_map(|s| s.apply(&subject.plan));
+        let fitting: Vec<Plan> = fitting.collect();
+        let count = fitting.len();
+        for (i, plan) in fitting.into_iter().enumerate() {
+            let mode = plan.march.mode.name();
+            let what = format!("{}, {}", subject.what, of_how_many(mode, i, count));
+            let name = subject.name.clone();
+            let one = Subject { name, plan, what };
+            let (measured, frame) = measure(&mut all.executor, &all.assets, &one)?;
+            all.files.show(&table::levels(&measured))?;
             rows.extend(measured);
             if let Some(folder) = &args.heat {
-                let file = format!("{name}-{}.png", plan.march.mode.name());
-                let mut place = Place::prepare(&folder.join(file))?;
+                let Subject { name, plan, .. } = &one;
+                let mut place = Place::prepare(&folder.join(format!("{name}-{mode}.png")))?;
                 let shades = Shades::new(Layer::Steps, &frame, plan);
                 let text = preset::write(plan);
                 place.write(|to| write_png(to, &shades, BitDepth::Eight, &plan.title, &text))?;
-                files.parcel.add(place);
+                all.files.parcel.add(place);
             }
         }
     }
-    files.write(&rows)
-}
-
-/// The mode of a name; without a name all modes but the truth, which takes long.
-fn modes(name: Option<&str>) -> Result<Vec<Setting>> {
-    let Some(name) = name else {
-        return Ok(baselines());
-    };
-    if let Some((_, mode)) = MODES.iter().find(|(known, _)| *known == name) {
-        return Ok(vec![Setting::of(*mode)]);
-    }
-    let names: Vec<&str> = MODES.iter().map(|(known, _)| *known).collect();
-    let names = names.join(", ");
-    Err(usage(format!(
-        "there is no mode `{name}`; the modes are {names}"
-    )))
+    all.files.write(&rows)
 }
 
 /// The passes of one plan, and the frame that was counted.
 fn measure(
     executor: &mut Executor,
     assets: &Assets,
-    name: &str,
-    what: &str,
-    plan: &Plan,
+    subject: &Subject,
 ) -> Result<(Vec<StepsRow>, Frame), RenderError> {
-    let mut runner = Runner::new(executor, assets, what, RUNS + 2);
+    let plan = &subject.plan;
+    let mut runner = Runner::new(executor, assets, &subject.what, RUNS + 2);
     let frame = runner.render(plan, COUNTED, "counting")?;
     let mut times: Vec<[Vec<f64>; 2]> = vec![Default::default(); frame.passes.len()];
     for run in 0..=RUNS {
         let warm = runner.render(plan, TIMED, "timing")?;
-        let passes = warm.marched();
-        for (pass, [wall, gpu]) in passes.zip(&mut times) {
+        for (pass, [wall, gpu]) in warm.marched().zip(&mut times) {
             if run > 0 {
                 wall.push(pass.wall_ms);
                 gpu.extend(pass.gpu_ms);
@@ -108,15 +100,13 @@ fn measure(
     }
     drop(runner);
     let mut rows = Vec::new();
-    let passes = frame.marched();
-    for (at, (pass, [mut wall, mut gpu])) in passes.zip(times).enumerate() {
+    for (at, (pass, [mut wall, mut gpu])) in frame.marched().zip(times).enumerate() {
         let (work, states, width) = match frame.levels.get(at) {
             Some(level) => (&level.work, &level.state, level.cells[0]),
             None => (&frame.work, &frame.state, frame.size[0]),
         };
-        let row = count(work, states, width as usize);
         rows.push(StepsRow {
-            preset: name.into(),
+            preset: subject.name.clone(),
             mode: plan.march.mode.name().into(),
             pass: pass.pass.name(),
             size: plan.size,
@@ -124,7 +114,7 @@ fn measure(
             wall_ms: median_of(&mut wall).unwrap_or(0.0),
             gpu_ms: median_of(&mut gpu),
             precision: executor.precision_warning(plan),
-            ..row
+            ..count(work, states, width as usize)
         });
     }
     Ok((rows, frame))
@@ -132,39 +122,30 @@ fn measure(
 
 /// The figures of one pass's cells.
 fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
-    let mut spent: Vec<u32> = work
-        .iter()
-        .map(|w| w.evaluations)
-        .filter(|n| *n > 0)
-        .collect();
+    let spent = work.iter().map(|w| w.evaluations);
+    let mut spent: Vec<u32> = spent.filter(|n| *n > 0).collect();
     spent.sort_unstable();
-    let quantile = |q: f64| {
-        let last = spent.len().saturating_sub(1) as f64;
-        spent.get((q * last).round() as usize).copied().unwrap_or(0)
-    };
     let cells = work.len();
     let share = |state: State| {
         let n = states.iter().filter(|s| **s == state as u8).count();
         n as f64 / cells.max(1) as f64
     };
-    let mut histogram = vec![(cells - spent.len()) as u64];
+    // 1, 2, 3-4, 5-8 ...: the power of two that holds n.
+    let bin = |n: u32| 1 + n.next_power_of_two().ilog2() as usize;
+    let mut histogram = vec![0; spent.last().map_or(1, |most| bin(*most) + 1)];
+    histogram[0] = (cells - spent.len()) as u64;
     for n in &spent {
-        // 1, 2, 3-4, 5-8 ...: the power of two that holds n.
-        let bin = 1 + n.next_power_of_two().ilog2() as usize;
-        if histogram.len() <= bin {
-            histogram.resize(bin + 1, 0);
-        }
-        histogram[bin] += 1;
+        histogram[bin(*n)] += 1;
     }
     StepsRow {
         cells: cells as u64,
         visited: spent.len() as u64,
         evaluations: work.iter().map(|w| u64::from(w.evaluations)).sum(),
         iterations: work.iter().map(|w| u64::from(w.iterations)).sum(),
-        p50: quantile(0.5),
-        p90: quantile(0.9),
-        p99: quantile(0.99),
-        max: quantile(1.0),
+        p50: quantile(&spent, 0.5),
+        p90: quantile(&spent, 0.9),
+        p99: quantile(&spent, 0.99),
+        max: quantile(&spent, 1.0),
         sky: share(State::Sky),
         unconverged: share(State::Unconverged),
         waste_8x4: waste(work, width, [8, 4]),
@@ -178,20 +159,16 @@ fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
 /// lanes need. Lanes past the edge of the level idle too.
 fn waste(work: &[Work], width: usize, tile: [usize; 2]) -> f64 {
     let height = work.len().checked_div(width).unwrap_or(0);
-    let (mut needed, mut spent) = (0_u64, 0_u64);
+    let needed = |cell: usize| u64::from(work[cell].evaluations);
+    let mut spent = 0;
     for y in (0..height).step_by(tile[1]) {
         for x in (0..width).step_by(tile[0]) {
             let rows = (y..(y + tile[1]).min(height)).map(|y| y * width);
             let cells = rows.flat_map(|row| row + x..row + (x + tile[0]).min(width));
-            let mut longest = 0;
-            for cell in cells {
-                let n = u64::from(work[cell].evaluations);
-                needed += n;
-                longest = longest.max(n);
-            }
-            spent += longest * (tile[0] * tile[1]) as u64;
+            spent += cells.map(needed).max().unwrap_or(0) * (tile[0] * tile[1]) as u64;
         }
     }
+    let needed: u64 = (0..work.len()).map(needed).sum();
     spent as f64 / needed.max(1) as f64
 }
 

@@ -1,9 +1,9 @@
 //! The tables of measurements.
 
-use crate::command::bench::cone_rows::{GeneratorRow, TracerRow};
+use crate::command::bench::cone_rows::{GeneratorRow, SurfaceNote, TracerRow};
 use crate::command::bench::row::Row;
 use crate::command::bench::steps_row::StepsRow;
-use crate::command::table::table;
+use crate::command::table::{Column, table};
 
 /// Stands above the times of a device without timestamps.
 const UNTIMED: &str = "The device has no timestamps: times are wall time.\n\n";
@@ -23,22 +23,23 @@ pub fn precision(warning: Option<&str>) -> String {
     warning.map_or(String::new(), |w| format!("Precision: {w}.\n\n"))
 }
 
+/// What stands above a table: its title, and what is wrong with its figures.
+fn head(title: &str, [w, h]: [u32; 2], warning: Option<&str>, timed: bool) -> String {
+    let clock = if timed { "" } else { UNTIMED };
+    format!("\n### {title}, {w} x {h}\n\n{}{clock}", precision(warning))
+}
+
 /// The rows of one preset, compared with the first.
 pub fn preset(rows: &[Row]) -> String {
     let Some(first) = rows.first() else {
         return String::new();
     };
-    let [w, h] = first.size;
-    let mut text = format!("\n### {}, {w} x {h}\n\n", first.preset);
-    text += &precision(first.precision.as_deref());
-    if rows.iter().all(|r| r.gpu_ms.is_none()) {
-        text += UNTIMED;
-    }
+    let timed = rows.iter().any(|r| r.gpu_ms.is_some());
+    let text = head(&first.preset, first.size, first.precision.as_deref(), timed);
     let starts = |row: &Row| {
-        let starts = row.start_violations.iter().map(u64::to_string);
+        let starts = row.report.start_violations.iter().map(u64::to_string);
         starts.collect::<Vec<_>>().join(" ")
     };
-    let work = |row: &Row| row.evaluations_per_pixel;
     text + &table(
         rows,
         &[
@@ -47,11 +48,11 @@ pub fn preset(rows: &[Row]) -> String {
             ("fewer", &|r| fixed(work(first) / work(r), 2)),
             ("wall ms", &|r| fixed(r.wall_ms, 1)),
             ("faster", &|r| fixed(first.wall_ms / r.wall_ms, 2)),
-            ("behind %", &|r| percent(r.behind, 4)),
-            ("holes %", &|r| percent(r.holes, 4)),
-            ("behind 8 %", &|r| percent(r.behind8, 4)),
-            ("p99 footprints", &|r| fixed(r.depth_error.p99, 3)),
-            ("unconverged %", &|r| percent(r.unconverged, 4)),
+            ("behind %", &|r| percent(r.report.behind, 4)),
+            ("holes %", &|r| percent(r.report.holes, 4)),
+            ("behind 8 %", &|r| percent(r.report.behind8, 4)),
+            ("p99 footprints", &|r| fixed(r.report.depth_error.p99, 3)),
+            ("unconverged %", &|r| percent(r.report.unconverged, 4)),
             ("FLIP", &|r| fixed(r.flip, 4)),
             ("start violations, coarse to fine", &starts),
         ],
@@ -75,12 +76,28 @@ fn mean(rows: &[&Row], figure: fn(&Row) -> f64) -> f64 {
     rows.iter().map(|r| figure(r)).sum::<f64>() / rows.len().max(1) as f64
 }
 
+fn wrong(row: &Row) -> f64 {
+    row.report.wrong()
+}
+
+fn work(row: &Row) -> f64 {
+    row.evaluations_per_pixel
+}
+
+fn time(row: &Row) -> f64 {
+    row.wall_ms
+}
+
 /// Means over the presets, of each setting against `ray` and `ray-relaxed`.
 pub fn means(rows: &[Row]) -> String {
     let (ray, relaxed) = (of(rows, "ray"), of(rows, "ray-relaxed"));
-    let text = String::from(
-        "\n### Means over the presets\n\nRatios are geometric means, shares are arithmetic means. Wrong pixels are those behind, lost or\nunconverged.\n\n",
-    );
+    let text = "
+### Means over the presets
+
+Ratios are geometric means, shares are arithmetic means. Wrong pixels are those behind, lost or
+unconverged.
+
+";
     let mut labels: Vec<String> = Vec::new();
     for row in rows {
         if !labels.contains(&row.label()) {
@@ -89,27 +106,19 @@ pub fn means(rows: &[Row]) -> String {
     }
     // A setting that does not fit every preset has no mean over them.
     labels.retain(|label| of(rows, label).len() == ray.len());
-    let work = |r: &Row| r.evaluations_per_pixel;
-    let time = |r: &Row| r.wall_ms;
     let own = |label: &String| of(rows, label);
-    text + &table(
-        &labels,
-        &[
-            ("setting", &String::clone),
-            ("fewer evaluations than ray", &|l| {
-                fixed(ratio(&ray, &own(l), work), 2)
-            }),
-            ("than ray-relaxed", &|l| {
-                fixed(ratio(&relaxed, &own(l), work), 2)
-            }),
-            ("faster than ray", &|l| fixed(ratio(&ray, &own(l), time), 2)),
-            ("than ray-relaxed", &|l| {
-                fixed(ratio(&relaxed, &own(l), time), 2)
-            }),
-            ("wrong pixels %", &|l| percent(mean(&own(l), Row::wrong), 4)),
-            ("FLIP", &|l| fixed(mean(&own(l), |r| r.flip), 4)),
-        ],
-    )
+    let fewer = |than: &[&Row], l: &String| fixed(ratio(than, &own(l), work), 2);
+    let faster = |than: &[&Row], l: &String| fixed(ratio(than, &own(l), time), 2);
+    let columns: [Column<'_, String>; 7] = [
+        ("setting", &String::clone),
+        ("fewer evaluations than ray", &|l| fewer(&ray, l)),
+        ("than ray-relaxed", &|l| fewer(&relaxed, l)),
+        ("faster than ray", &|l| faster(&ray, l)),
+        ("than ray-relaxed", &|l| faster(&relaxed, l)),
+        ("wrong pixels %", &|l| percent(mean(&own(l), wrong), 4)),
+        ("FLIP", &|l| fixed(mean(&own(l), |r| r.flip), 4)),
+    ];
+    text.to_string() + &table(&labels, &columns)
 }
 
 /// The rules of the list of what beats `safe`.
@@ -126,29 +135,26 @@ it.
 /// Settings that are both at least 5 % faster than `safe` and wrong on fewer pixels, preset
 /// by preset.
 pub fn better_than_safe(rows: &[Row]) -> String {
-    let mut text = String::from(BEATS);
-    let mut found = 0;
+    let mut text = String::new();
     for safe in of(rows, "safe") {
         let own = rows.iter().filter(|r| r.preset == safe.preset);
-        let same = own.filter(|r| !r.parameters.contains_key("detail"));
-        for row in same {
-            if row.wall_ms <= 0.95 * safe.wall_ms && row.wrong() < safe.wrong() {
-                found += 1;
+        for row in own.filter(|r| r.is_comparable()) {
+            if row.wall_ms <= 0.95 * safe.wall_ms && wrong(row) < wrong(safe) {
                 text += &format!(
                     "- {}: `{}`, {:.2} of the time, wrong on {:.4} % instead of {:.4} %\n",
                     row.preset,
                     row.label(),
                     row.wall_ms / safe.wall_ms,
-                    100.0 * row.wrong(),
-                    100.0 * safe.wrong(),
+                    100.0 * wrong(row),
+                    100.0 * wrong(safe),
                 );
             }
         }
     }
-    if found == 0 {
+    if text.is_empty() {
         text += "None.\n";
     }
-    text
+    BEATS.to_string() + &text
 }
 
 /// The gain in percent that the slides claim for each of their budgets.
@@ -160,7 +166,7 @@ const CLAIMS: [(&str, u32); 3] = [
 
 /// The claims of the slides beside what was measured.
 pub fn slides(rows: &[Row]) -> String {
-    let (ray, safe) = (of(rows, "ray"), of(rows, "safe"));
+    let ray = of(rows, "ray");
     let text = "
 ### The claims of the 2012 slides
 
@@ -168,40 +174,28 @@ Speed gained over plain rays, and what it costs: pixels behind or lost, against 
 exact step.
 
 ";
-    let own = |name: &str| of(rows, name);
-    let starts = |name: &str| -> u64 {
-        own(name)
-            .iter()
-            .flat_map(|r| r.start_violations.last())
-            .sum()
+    let own = |(name, _): &(&str, u32)| of(rows, name);
+    let share = |figure: fn(&Row) -> f64| move |claim: &_| percent(mean(&own(claim), figure), 3);
+    let starts = |claim: &_| {
+        let all = own(claim).into_iter();
+        let last = all.filter_map(|r| r.report.start_violations.last());
+        last.sum::<u64>().to_string()
     };
-    text.to_string()
-        + &table(
-            &CLAIMS,
-            &[
-                ("budget", &|(name, _)| (*name).to_string()),
-                ("claimed gain %", &|(_, claim)| claim.to_string()),
-                ("measured gain %", &|(n, _)| {
-                    percent(ratio(&ray, &own(n), |r| r.wall_ms) - 1.0, 0)
-                }),
-                ("fewer evaluations", &|(n, _)| {
-                    fixed(ratio(&ray, &own(n), |r| r.evaluations_per_pixel), 2)
-                }),
-                ("behind %", &|(n, _)| {
-                    percent(mean(&own(n), |r| r.behind), 3)
-                }),
-                ("holes %", &|(n, _)| percent(mean(&own(n), |r| r.holes), 3)),
-                ("unconverged %", &|(n, _)| {
-                    percent(mean(&own(n), |r| r.unconverged), 3)
-                }),
-                ("cells' pixels started behind", &|(n, _)| {
-                    starts(n).to_string()
-                }),
-                ("behind, holes and unconverged of `safe` %", &|_| {
-                    percent(mean(&safe, Row::wrong), 3)
-                }),
-            ],
-        )
+    let gain = |claim: &_| percent(ratio(&ray, &own(claim), time) - 1.0, 0);
+    let fewer = |claim: &_| fixed(ratio(&ray, &own(claim), work), 2);
+    let of_safe = |_: &_| percent(mean(&of(rows, "safe"), wrong), 3);
+    let columns: [Column<'_, (&str, u32)>; 9] = [
+        ("budget", &|(name, _)| (*name).to_string()),
+        ("claimed gain %", &|(_, claim)| claim.to_string()),
+        ("measured gain %", &gain),
+        ("fewer evaluations", &fewer),
+        ("behind %", &share(|r| r.report.behind)),
+        ("holes %", &share(|r| r.report.holes)),
+        ("unconverged %", &share(|r| r.report.unconverged)),
+        ("cells' pixels started behind", &starts),
+        ("behind, holes and unconverged of `safe` %", &of_safe),
+    ];
+    text.to_string() + &table(&CLAIMS, &columns)
 }
 
 /// The levels of one preset and mode.
@@ -209,14 +203,10 @@ pub fn levels(rows: &[StepsRow]) -> String {
     let Some(first) = rows.first() else {
         return String::new();
     };
-    let [w, h] = first.size;
-    let mut text = format!("\n### {}, {}, {w} x {h}\n\n", first.preset, first.mode);
-    text += &precision(first.precision.as_deref());
     // The whole column has one clock.
     let timed = rows.iter().all(|r| r.gpu_ms.is_some());
-    if !timed {
-        text += UNTIMED;
-    }
+    let title = format!("{}, {}", first.preset, first.mode);
+    let text = head(&title, first.size, first.precision.as_deref(), timed);
     let clock = if timed { "gpu ms" } else { "wall ms" };
     let ms = |r: &StepsRow| fixed(r.gpu_ms.filter(|_| timed).unwrap_or(r.wall_ms), 2);
     text + &table(
@@ -241,60 +231,54 @@ pub fn levels(rows: &[StepsRow]) -> String {
 
 /// The cone maps of one field.
 pub fn generators(rows: &[GeneratorRow]) -> String {
-    let Some(first) = rows.first() else {
-        return String::new();
-    };
-    let [w, h] = first.size;
     let number = |value: Option<f64>| value.map_or("n/a".into(), |v| fixed(v, 4));
     let ms = |row: &GeneratorRow| match (row.ms, row.estimate_ms) {
         (Some(ms), _) => fixed(ms, 2),
         (None, Some(ms)) => format!("n/a, about {ms:.0}"),
         (None, None) => "n/a".into(),
     };
-    format!(
-        "\n### Maps of {}, {w} x {h}, {}\n\n",
-        first.field, first.surface
-    ) + &table(
-        rows,
-        &[
-            ("generator", &|r| r.generator.clone()),
-            ("ms", &ms),
-            ("mean ratio", &|r| number(r.mean_ratio)),
-            ("of exact", &|r| number(r.of_exact)),
-            ("wider than exact %", &|r| {
-                number(r.wider_than_exact.map(|share| 100.0 * share))
-            }),
-        ],
-    )
+    let wider = |row: &GeneratorRow| number(row.wider_than_exact.map(|share| 100.0 * share));
+    let columns: [Column<'_, GeneratorRow>; 5] = [
+        ("generator", &|r| r.generator.clone()),
+        ("ms", &ms),
+        ("mean ratio", &|r| number(r.mean_ratio)),
+        ("of exact", &|r| number(r.of_exact)),
+        ("wider than exact %", &wider),
+    ];
+    rows.first().map_or(String::new(), |r| {
+        of_field("Maps of", &r.over) + &table(rows, &columns)
+    })
 }
 
 /// The tracers of one field.
 pub fn tracers(rows: &[TracerRow]) -> String {
-    let Some(first) = rows.first() else {
-        return String::new();
-    };
-    let [w, h] = first.size;
-    format!(
-        "\n### Tracers over {}, {w} x {h}, {}\n\n",
-        first.field, first.surface
-    ) + &table(
-        rows,
-        &[
-            ("view", &|r| r.view_deg.to_string()),
-            ("tracer", &|r| r.tracer.clone()),
-            ("map", &|r| r.map.clone()),
-            ("steps, mean", &|r| fixed(r.steps_mean, 2)),
-            ("p99", &|r| r.steps_p99.to_string()),
-            ("skipped %", &|r| percent(r.skipped, 3)),
-            ("unconverged %", &|r| percent(r.unconverged, 3)),
-            ("error, texels", &|r| format!("{:.2e}", r.error_texels)),
-        ],
-    )
+    let columns: [Column<'_, TracerRow>; 8] = [
+        ("view", &|r| r.view_deg.to_string()),
+        ("tracer", &|r| r.tracer.clone()),
+        ("map", &|r| r.map.clone()),
+        ("steps, mean", &|r| fixed(r.stats.steps_mean, 2)),
+        ("p99", &|r| r.stats.steps_p99.to_string()),
+        ("skipped %", &|r| percent(r.stats.skipped, 3)),
+        ("unconverged %", &|r| percent(r.stats.unconverged, 3)),
+        ("error, texels", &|r| {
+            format!("{:.2e}", r.stats.error_texels)
+        }),
+    ];
+    rows.first().map_or(String::new(), |r| {
+        of_field("Tracers over", &r.over) + &table(rows, &columns)
+    })
+}
+
+/// The title of a table of a field.
+fn of_field(what: &str, over: &SurfaceNote) -> String {
+    let ([w, h], surface) = (over.size, &over.surface);
+    format!("\n### {what} {}, {w} x {h}, {surface}\n\n", over.field)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::compare::Report;
 
     /// A row of some mode, setting, time and wrong pixels.
     fn row(mode: &str, set: &str, wall_ms: f64, behind: f64, unconverged: f64) -> Row {
@@ -304,8 +288,11 @@ mod tests {
             parameters: serde_json::from_str(&format!("{{{set}}}")).expect("a setting"),
             size: [100, 100],
             wall_ms,
-            behind,
-            unconverged,
+            report: Report {
+                behind,
+                unconverged,
+                ..Report::default()
+            },
             ..Row::default()
         }
     }

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::{Args, ValueHint};
 
-use crate::command::conemap::options::{Foreign, Output, Writing, shown, wraps, write};
+use crate::command::conemap::options::{Foreign, Output, Writing, wraps, write};
 use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
-use crate::command::sink::{Sink, spared};
+use crate::command::sink::{Sink, shown, spared};
 
 /// What `convert` takes.
 #[derive(Args, Debug)]

@@ -26,10 +26,8 @@ impl Sorted {
 
     fn at(&self, share: f64) -> f64 {
         let last = self.0.len().saturating_sub(1);
-        self.0
-            .get((share * last as f64) as usize)
-            .copied()
-            .unwrap_or(0.0)
+        let found = self.0.get((share * last as f64) as usize);
+        found.copied().unwrap_or(0.0)
     }
 
     fn mean(&self) -> f64 {
@@ -83,16 +81,10 @@ fn report(
         let _ = writeln!(text, "  {name:<9} {what}");
     }
     let _ = writeln!(text, "\n  {title}");
-    histogram(&mut text, bars, all);
-    text
-}
-
-/// Rows of a histogram: what, how many of how many.
-fn histogram(text: &mut String, rows: &[(String, usize)], all: usize) {
-    let longest = rows.iter().map(|(_, n)| *n).max().unwrap_or(0).max(1);
-    let width = rows.iter().map(|(name, _)| name.chars().count()).max();
+    let longest = bars.iter().map(|(_, n)| *n).max().unwrap_or(0).max(1);
+    let width = bars.iter().map(|(name, _)| name.chars().count()).max();
     let width = width.unwrap_or(0);
-    for (name, n) in rows {
+    for (name, n) in bars {
         let eighths = (BAR * 8.0 * *n as f64 / longest as f64).round() as usize;
         // Whatever is there has a visible bar.
         let eighths = eighths.max(usize::from(*n > 0));
@@ -100,6 +92,7 @@ fn histogram(text: &mut String, rows: &[(String, usize)], all: usize) {
         let line = format!("  {name:>width$}  {:>7}  {bar}", percent(*n, all));
         let _ = writeln!(text, "{}", line.trim_end());
     }
+    text
 }
 
 /// Describes a cone map.
@@ -117,39 +110,24 @@ pub fn describe_map(name: &str, file: &MapFile) -> String {
     }
     let ratios = Sorted::new(map.ratios.iter().copied());
     let (all, mean) = (ratios.0.len(), file.mean_share());
+    let [low, median, high] = [0.0, 0.5, 1.0].map(|share| figure(ratios.at(share)));
+    let [mean, texels, widest] = [mean, mean * scale, scale].map(figure);
+    let means = format!(
+        "mean {mean} of the width ({texels} texels), wider cones counted as the width; median {median} texels"
+    );
+    let zeros = percent(ratios.zeros(), all);
+    let wide = percent(all - ratios.under(scale), all);
+    let range = format!("from {low} to {high}; {zeros} are 0, {wide} are {widest} or wider");
     let rows = [
         ("cone map", format!("{w} x {h}, kind {word}: {promise}")),
         ("file", format_of(file)),
         ("heights", heights),
         ("made by", maker(label.generator.as_deref())),
-        (
-            "ratios",
-            format!(
-                "mean {} of the width ({} texels), wider cones counted as the width; median {} texels",
-                figure(mean),
-                figure(mean * scale),
-                figure(ratios.at(0.5))
-            ),
-        ),
-        (
-            "",
-            format!(
-                "from {} to {}; {} are 0, {} are {} or wider",
-                figure(ratios.at(0.0)),
-                figure(ratios.at(1.0)),
-                percent(ratios.zeros(), all),
-                percent(all - ratios.under(scale), all),
-                figure(scale)
-            ),
-        ),
+        ("ratios", means),
+        ("", range),
     ];
-    report(
-        name,
-        &rows,
-        "ratios in texels",
-        &octaves(&ratios, scale),
-        all,
-    )
+    let bars = octaves(&ratios, scale);
+    report(name, &rows, "ratios in texels", &bars, all)
 }
 
 /// What made a map, with a warning if its cones may be too wide.
@@ -204,20 +182,15 @@ fn octaves(ratios: &Sorted, scale: f64) -> Vec<(String, usize)> {
         bounds.sort_by(f64::total_cmp);
         bounds.dedup();
     }
-    let mut rows = vec![("0".to_string(), zero)];
-    let mut before = zero;
-    let mut from = None;
-    for bound in &bounds {
-        let n = ratios.under(*bound).max(zero);
-        let name = match from {
-            None => format!("under {}", short(*bound)),
-            Some(from) => format!("{} to {}", short(from), short(*bound)),
-        };
-        rows.push((name, n - before));
-        (before, from) = (n, Some(*bound));
-    }
-    let last = bounds.last().copied().unwrap_or(0.0);
-    rows.push((format!("{} and wider", short(last)), all - before));
+    let (least, most) = (short(bounds[0]), short(bounds[bounds.len() - 1]));
+    let between = bounds.windows(2);
+    let between = between.map(|pair| format!("{} to {}", short(pair[0]), short(pair[1])));
+    let names = ["0".to_string(), format!("under {least}")].into_iter();
+    let names = names.chain(between).chain([format!("{most} and wider")]);
+    let under = bounds.iter().map(|bound| ratios.under(*bound).max(zero));
+    let counts: Vec<usize> = [0, zero].into_iter().chain(under).chain([all]).collect();
+    let counts = counts.windows(2).map(|pair| pair[1] - pair[0]);
+    let rows: Vec<(String, usize)> = names.zip(counts).collect();
     // Empty rows at both ends are left out.
     let full = |r: &(String, usize)| r.1 > 0;
     let first = rows.iter().position(full).unwrap_or(0);
@@ -226,10 +199,9 @@ fn octaves(ratios: &Sorted, scale: f64) -> Vec<(String, usize)> {
 }
 
 fn short(x: f64) -> String {
-    if x >= 1.0 {
-        format!("{x:.0}")
-    } else {
-        format!("1/{:.0}", 1.0 / x)
+    match x {
+        x if x >= 1.0 => format!("{x:.0}"),
+        x => format!("1/{:.0}", 1.0 / x),
     }
 }
 
@@ -242,26 +214,15 @@ pub fn describe_heights(name: &str, loaded: &Loaded) -> String {
     let steep = Sorted::new(slopes(heights).into_iter().map(steepness));
     let [mean, mean_slope] = [&sorted, &steep].map(|s| figure(s.mean()));
     let steepest = figure(steep.at(1.0));
-    let rows = [
-        (
-            "heights",
-            format!("{w} x {h} samples, wrap {wrap}, {}", loaded.form),
-        ),
-        (
-            "",
-            format!("from {low} to {high}, mean {mean}, median {median}"),
-        ),
-        (
-            "slopes",
-            format!("mean {mean_slope} of the height per texel, steepest {steepest}"),
-        ),
-    ];
+    let samples = format!("{w} x {h} samples, wrap {wrap}, {}", loaded.form);
+    let range = format!("from {low} to {high}, mean {mean}, median {median}");
+    let slopes = format!("mean {mean_slope} of the height per texel, steepest {steepest}");
+    let rows = [("heights", samples), ("", range), ("slopes", slopes)];
     let bound = |i: usize| i as f64 / 10.0;
-    let bars = (0..10).map(|i| {
+    let bars: [_; 10] = std::array::from_fn(|i| {
         let end = if i == 9 { f64::INFINITY } else { bound(i + 1) };
         let n = sorted.under(end) - sorted.under(bound(i));
         (format!("{:.1} to {:.1}", bound(i), bound(i + 1)), n)
     });
-    let bars: Vec<_> = bars.collect();
     report(name, &rows, "heights", &bars, sorted.0.len())
 }

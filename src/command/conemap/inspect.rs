@@ -7,12 +7,12 @@ use anyhow::Result;
 use clap::{Args, ValueHint};
 
 use crate::command::conemap::describe::{describe_heights, describe_map};
-use crate::command::conemap::options::{Foreign, Reading, of_map, shown};
+use crate::command::conemap::options::{Foreign, Reading};
 use crate::command::conemap::panels::{heights_panels, map_panels};
 use crate::command::conemap::sheet::png;
 use crate::command::failure::usage;
 use crate::command::print::{print, say};
-use crate::command::sink::{Sink, spared};
+use crate::command::sink::{Sink, ending, shown, spared};
 use crate::heightfield::conemap::file::{MapFile, MapUse, has_map};
 
 /// What `inspect` takes.
@@ -75,7 +75,7 @@ pub fn run(args: &Inspect) -> Result<()> {
         picture.is_some().then(|| heights_panels(&loaded.heights))
     };
     if let (Some((path, sink)), Some(panels)) = (picture, panels) {
-        let (bytes, [w, h]) = png(&panels).map_err(anyhow::Error::msg)?;
+        let (bytes, [w, h]) = png(&panels)?;
         sink.finish(&bytes)?;
         say(&format!("{}  {w} x {h}", shown(&path)));
     }
@@ -84,8 +84,7 @@ pub fn run(args: &Inspect) -> Result<()> {
 
 /// The name of a picture, checked to be writable.
 fn prepared(path: &Path) -> Result<(PathBuf, Sink)> {
-    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-    if path.as_os_str() == "-" || ending.to_lowercase() != "png" {
+    if ending(path) != "png" {
         return Err(usage(format!(
             "`{}` must end in .png, the format of these pictures",
             path.display()
@@ -104,7 +103,7 @@ fn check_heights(args: &Inspect, file: &MapFile, path: &Path, heights: &OsString
         // Nothing is traced here, so any surface will do.
         patches: file.label.patches,
     };
-    file.check_use(path, &wanted).map_err(of_map)?;
+    file.check_use(path, &wanted)?;
     let verb = match file.unknown() {
         Some(_) => "may belong",
         None => "belongs",

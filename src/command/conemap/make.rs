@@ -8,14 +8,16 @@ use anyhow::Result;
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint};
 
-use crate::command::conemap::maker::{generate, open};
-use crate::command::conemap::options::{Output, Reading, Writing, shown, words, write};
-use crate::command::executor::device;
+use crate::command::arguments::words;
+use crate::command::conemap::maker::MapMaker;
+use crate::command::conemap::options::{Output, Reading, Writing, write};
+use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::print::say;
-use crate::command::sink::{Sink, spared};
+use crate::command::progress::Progress;
+use crate::command::sink::{Sink, shown, spared};
 use crate::command::{interrupt, memory};
-use crate::gpu::device::Choice;
+use crate::gpu::device::{Choice, PROMISED_BUFFERS};
 use crate::heightfield::conemap::file::MapFile;
 use crate::heightfield::conemap::generate::generator::{Generator, Options};
 use crate::heightfield::heights::Patches;
@@ -104,15 +106,18 @@ pub fn run(args: &Make) -> Result<()> {
         true => Patches::Boxes,
         false => Patches::Bilinear,
     };
-    let (device, who) = open(&args.device)?;
+    // Software adapters run on the same cores, which are faster without them.
+    let (executor, who) = Executor::open_with(&args.device, PROMISED_BUFFERS, false)?;
     say(&format!("making cones on {who}"));
     let start = Instant::now();
-    let map = generate(device.as_ref(), generator, heights, patches, &options)?;
+    let mut progress = Progress::start("making cones");
+    let watch = &mut |done| progress.report(done, generator.name());
+    let mut maker = MapMaker::new(&executor);
+    let map = maker.generate(generator, heights, patches, &options, watch)?;
+    drop(progress);
     let took = start.elapsed().as_secs_f64() * 1e3;
     let file = MapFile::new(map, heights, patches, &made_by(generator, &options));
-    if interrupt::asked() {
-        return Err(crate::gpu::render::RenderError::Cancelled.into());
-    }
+    interrupt::check()?;
     let kept = write(&file, &format, sink)?;
     let [w, h] = file.map.size;
     say(&format!(
@@ -127,34 +132,19 @@ pub fn run(args: &Make) -> Result<()> {
 
 /// Checks that there is memory for a map of heights of a size.
 fn check_memory(generator: Generator, [w, h]: [u32; 2]) -> Result<()> {
-    let ratios = u64::from(w) * u64::from(h) * generator.channels() as u64;
-    match memory::lacking_maps(ratios, memory::available()) {
-        Some(why) => anyhow::bail!(why),
-        None => Ok(()),
-    }
+    memory::check_map(u64::from(w) * u64::from(h) * generator.channels() as u64)
 }
 
 /// The generator's options. An option that the generator does not have is wrong usage.
 fn options(args: &Make) -> Result<Options> {
     let generator = args.generator;
-    let (cells, search) = (
-        generator.over_cells(),
-        generator == Generator::RelaxedSearch,
-    );
-    for (given, option, owners, applies) in [
-        (
-            args.offset.is_some(),
-            "offset",
-            "walk and walk-relaxed",
-            cells,
-        ),
-        (args.boxes, "boxes", "walk and walk-relaxed", cells),
-        (
-            args.search_steps.is_some(),
-            "search-steps",
-            "relaxed-search",
-            search,
-        ),
+    let searches = generator == Generator::RelaxedSearch;
+    let cells = (generator.over_cells(), "walk and walk-relaxed");
+    let search = (searches, "relaxed-search");
+    for (given, option, (applies, owners)) in [
+        (args.offset.is_some(), "offset", cells),
+        (args.boxes, "boxes", cells),
+        (args.search_steps.is_some(), "search-steps", search),
     ] {
         if given && !applies {
             let name = generator.name();

@@ -1,65 +1,49 @@
-//! Opens what makes a cone map, and makes it with a report of the progress.
+//! Makes cone maps on the device of an executor, or on the CPU.
 
-use anyhow::Result;
-
-use crate::command::interrupt;
-use crate::command::progress::Progress;
+use crate::command::executor::Executor;
+use crate::gpu::RenderError;
 use crate::gpu::conemap::generate::Maker;
-use crate::gpu::device::{Adapters, Choice, Device, DeviceError, PROMISED_BUFFERS};
-use crate::gpu::render::RenderError;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::cpu;
-use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
+use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options, Watch};
 use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::max_mip::MaxMip;
 
-/// Opens the device of a choice, or `None` for the CPU, with a line that says which and why.
-/// Unlike a render, `auto` passes over software adapters: they run on the same cores, which
-/// are faster without them.
-///
-/// # Errors
-/// The choice matches nothing, or the adapter does not open.
-pub fn open(choice: &Choice) -> Result<(Option<Device>, String), DeviceError> {
-    let (device, why) = match choice {
-        Choice::Cpu => (None, "as asked".into()),
-        Choice::Auto => match Adapters::find().open_first(PROMISED_BUFFERS, false) {
-            Ok((device, why)) => (Some(device), why),
-            Err(why) => (None, why),
-        },
-        choice => match Adapters::find().choose(choice)? {
-            Some((adapter, why)) => (Some(Device::open(adapter, PROMISED_BUFFERS)?), why),
-            None => (None, "as there is no adapter".into()),
-        },
-    };
-    let threads = rayon::current_num_threads();
-    let who = match &device {
-        Some(device) => device.info.name.clone(),
-        None => format!("the CPU, f64 on {threads} threads"),
-    };
-    Ok((device, format!("{who} ({why})")))
-}
+/// What makes cone maps.
+pub struct MapMaker<'a>(Option<Maker<'a>>);
 
-/// Makes a map, until it is done or interrupted.
-///
-/// # Errors
-/// The device failed, or an interrupt.
-pub fn generate(
-    device: Option<&Device>,
-    generator: Generator,
-    heights: &Heights,
-    patches: Patches,
-    options: &Options,
-) -> Result<ConeMap> {
-    let mut progress = Progress::start("making cones");
-    let watch = &mut |done: f64| {
-        progress.report(done, generator.name());
-        !interrupt::asked()
-    };
-    let made = match device {
-        Some(device) => Maker::new(device).generate(generator, heights, patches, options, watch),
-        None => cpu::generate(generator, heights, patches, options, watch),
-    };
-    made.map_err(|e| match e {
-        GenerateError::Cancelled => RenderError::Cancelled.into(),
-        e => e.into(),
-    })
+impl<'a> MapMaker<'a> {
+    /// The maker of an executor.
+    pub fn new(executor: &'a Executor) -> Self {
+        Self(executor.device().map(Maker::new))
+    }
+
+    /// Makes a map.
+    ///
+    /// # Errors
+    /// The device failed, or `watch` returned `false`.
+    pub fn generate(
+        &mut self,
+        generator: Generator,
+        heights: &Heights,
+        patches: Patches,
+        options: &Options,
+        watch: Watch<'_>,
+    ) -> Result<ConeMap, GenerateError> {
+        match &mut self.0 {
+            Some(maker) => maker.generate(generator, heights, patches, options, watch),
+            None => cpu::generate(generator, heights, patches, options, watch),
+        }
+    }
+
+    /// Makes the pyramid of maxima over apexes.
+    ///
+    /// # Errors
+    /// The device failed.
+    pub fn max_mip(&mut self, cells: [u32; 2], apexes: Vec<f32>) -> Result<MaxMip, RenderError> {
+        match &mut self.0 {
+            Some(maker) => maker.max_mip(cells, &apexes),
+            None => Ok(MaxMip::new(cells, apexes)),
+        }
+    }
 }

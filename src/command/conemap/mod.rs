@@ -1,11 +1,23 @@
 //! `conemarch conemap make|inspect|convert`
 
-mod convert;
+use clap::Subcommand;
+
+pub mod convert;
 mod describe;
-mod inspect;
-mod make;
-mod maker;
+pub mod inspect;
+pub mod make;
+pub mod maker;
 mod options;
 mod panels;
 mod sheet;
-pub mod verb;
+
+/// What `conemap` can do.
+#[derive(Debug, Subcommand)]
+pub enum ConeMapVerb {
+    /// Make a cone map from heights
+    Make(Box<make::Make>),
+    /// Describe a cone map or a height map
+    Inspect(Box<inspect::Inspect>),
+    /// Write a cone map in another layout or format
+    Convert(Box<convert::Convert>),
+}

@@ -5,20 +5,20 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint};
 
+use crate::command::arguments::{samples, words};
 use crate::command::failure::usage;
 use crate::command::print::say;
-use crate::command::sink::Sink;
-use crate::command::size;
+use crate::command::sink::{Sink, ending, is_stdout};
 use crate::heightfield::conemap::MapKind;
 use crate::heightfield::conemap::file::{
-    Bits, ForeignFormat, Layout, MapError, MapFile, MapFormat, RatioScale, Slopes, decode,
-    decode_bytes, encode, has_map,
+    Bits, ForeignFormat, Layout, MapFile, MapFormat, RatioScale, Slopes, decode, decode_bytes,
+    encode, has_map,
 };
-use crate::heightfield::heights::{MOST_SAMPLES, wrap_name};
-use crate::heightfield::load::{LoadError, LoadOptions, Loaded, load};
+use crate::heightfield::heights::wrap_name;
+use crate::heightfield::load::{LoadOptions, Loaded, load};
 
 /// How heights are read.
 #[derive(Args, Clone, Copy, Debug)]
@@ -49,7 +49,7 @@ impl Reading {
             normalize: self.normalize,
             size: self.size,
         };
-        let loaded = load(argument, &options).map_err(of_load)?;
+        let loaded = load(argument, &options)?;
         if let Some(note) = &loaded.note {
             say(&format!("note: {note}"));
         }
@@ -69,34 +69,8 @@ impl Reading {
 
 /// The first option of a list that was given.
 fn first_given(options: &[(bool, &'static str)]) -> Option<&'static str> {
-    options
-        .iter()
-        .find(|(given, _)| *given)
-        .map(|(_, name)| *name)
-}
-
-fn samples(text: &str) -> Result<[u32; 2], String> {
-    let fits = |s: &[u32; 2]| s.iter().all(|n| *n <= MOST_SAMPLES);
-    let read = size::read(text).ok().filter(fits);
-    read.ok_or_else(|| {
-        format!("must be columns x rows, each from 1 to {MOST_SAMPLES}, like 512x256")
-    })
-}
-
-/// A parser of words that stand for values; each value comes with its word and its help.
-pub fn words<T: Clone + Send + Sync + 'static>(
-    list: impl IntoIterator<Item = (T, &'static str, &'static str)>,
-) -> impl TypedValueParser<Value = T> {
-    let list: Vec<_> = list.into_iter().collect();
-    let shown = list.iter().map(|(_, word, help)| match *help {
-        "" => PossibleValue::new(*word),
-        help => PossibleValue::new(*word).help(help),
-    });
-    let shown: Vec<_> = shown.collect();
-    PossibleValuesParser::new(shown).try_map(move |chosen| {
-        let found = list.iter().find(|(_, word, _)| *word == chosen);
-        found.map(|(value, ..)| value.clone()).ok_or("unknown word")
-    })
+    let found = options.iter().find(|(given, _)| *given);
+    found.map(|(_, name)| *name)
 }
 
 /// `none`, `x`, `y` or `xy`.
@@ -142,7 +116,7 @@ impl Foreign {
             ratio: self.from_ratio.unwrap_or(MapFormat::new(layout).ratio),
             wrap,
         });
-        let file = decode(path, foreign.as_ref()).map_err(of_map)?;
+        let file = decode(path, foreign.as_ref())?;
         if let Some(why) = file.unknown() {
             say(&format!("note: {} {why}", path.display()));
         }
@@ -182,17 +156,17 @@ pub struct Writing {
 impl Writing {
     /// The format for a file's name and a kind of map.
     pub fn format(&self, output: &Path, kind: MapKind) -> Result<MapFormat> {
-        let ending = output.extension().and_then(|e| e.to_str()).unwrap_or("");
-        let is_png = ending.eq_ignore_ascii_case("png") || output.as_os_str() == "-";
-        let layout = if ending.eq_ignore_ascii_case("exr") {
-            Layout::Full
-        } else if is_png {
-            self.layout.unwrap_or(Layout::usual(kind))
-        } else {
-            return Err(usage(format!(
-                "`{}` must end in .png or .exr, which is the format to write; - writes PNG to standard output",
-                output.display()
-            )));
+        let layout = match ending(output).as_str() {
+            "exr" => Layout::Full,
+            other if other == "png" || is_stdout(output) => {
+                self.layout.unwrap_or(Layout::usual(kind))
+            }
+            _ => {
+                return Err(usage(format!(
+                    "`{}` must end in .png or .exr, which is the format to write; - writes PNG to standard output",
+                    output.display()
+                )));
+            }
         };
         let given = first_given(&[
             (self.layout.is_some(), "--layout"),
@@ -206,7 +180,7 @@ impl Writing {
                 "an EXR holds everything in 32 bits; leave out {option}, or write a .png"
             )));
         }
-        layout.check(kind).map_err(of_map)?;
+        layout.check(kind)?;
         for (is_given, option, whose, owner) in [
             (self.depth.is_some(), "--depth", "normals", Layout::Relief),
             (self.slopes.is_some(), "--slopes", "slopes", Layout::Dummer),
@@ -231,7 +205,7 @@ impl Writing {
 
 /// Writes a map and reads it back: how much of its ratios the file keeps, in words.
 pub fn write(file: &MapFile, format: &MapFormat, sink: Sink) -> Result<String> {
-    let bytes = encode(file, format).map_err(of_map)?;
+    let bytes = encode(file, format)?;
     let again = decode_bytes(&bytes).map_err(anyhow::Error::msg);
     let again = again.context("the map could not be read back")?;
     sink.finish(&bytes)?;
@@ -280,30 +254,4 @@ pub struct Output {
     /// Where to write: a .png or .exr file, or - for PNG on standard output
     #[arg(short, long, value_name = "MAP", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
-}
-
-/// The name of a file in messages.
-pub fn shown(path: &Path) -> String {
-    match path.to_str() {
-        Some("-") => "standard output".into(),
-        _ => path.display().to_string(),
-    }
-}
-
-/// An error of loading: wrong usage if the argument is wrong.
-fn of_load(e: LoadError) -> anyhow::Error {
-    if e.is_usage() {
-        usage(e.to_string())
-    } else {
-        e.into()
-    }
-}
-
-/// An error of a map: wrong usage if an option is wrong.
-pub fn of_map(e: MapError) -> anyhow::Error {
-    if e.is_usage() {
-        usage(e.to_string())
-    } else {
-        e.into()
-    }
 }

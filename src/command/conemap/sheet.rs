@@ -7,13 +7,12 @@ use embedded_graphics::mono_font::ascii::FONT_7X13;
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle};
 use embedded_graphics::pixelcolor::Rgb888;
 use embedded_graphics::prelude::{
-    Dimensions, DrawTarget, Drawable, OriginDimensions, Pixel, Point, Primitive, RgbColor, Size,
+    Dimensions, DrawTarget, Drawable, OriginDimensions, Pixel, Point, RgbColor, Size,
 };
-use embedded_graphics::primitives::PrimitiveStyle;
-use embedded_graphics::text::{Alignment, Baseline, Text, TextStyleBuilder};
+use embedded_graphics::text::{Alignment, Baseline, Text};
 use glam::DVec3;
 use image::imageops::{FilterType, replace, resize, thumbnail};
-use image::{ImageFormat, Rgb, RgbImage};
+use image::{ImageError, ImageFormat, Rgb, RgbImage};
 
 const FONT: &MonoFont<'_> = &FONT_7X13;
 /// Small maps are magnified by whole numbers to at most the first edge, large ones are scaled
@@ -26,7 +25,7 @@ const BAR: u32 = 12;
 
 const PAPER: Rgb<u8> = Rgb([246; 3]);
 const INK: Rgb888 = Rgb888::new(38, 38, 38);
-const FRAME: Rgb888 = Rgb888::new(140, 140, 140);
+const FRAME: Rgb<u8> = Rgb([140; 3]);
 
 /// A map of colours with its explanation.
 pub struct Panel {
@@ -89,8 +88,8 @@ fn rgb(color: DVec3) -> Rgb<u8> {
 /// Draws panels side by side, as the bytes of a PNG with its size.
 ///
 /// # Errors
-/// In words: what the encoder said.
-pub fn png(panels: &[Panel]) -> Result<(Vec<u8>, [u32; 2]), String> {
+/// The encoder failed.
+pub fn png(panels: &[Panel]) -> Result<(Vec<u8>, [u32; 2]), ImageError> {
     let tallest = panels.iter().map(|p| p.image.height()).max().unwrap_or(0);
     let width = GAP + panels.iter().map(|p| p.width() + GAP).sum::<u32>();
     let bars = GAP + LINE + tallest + BAR;
@@ -114,8 +113,7 @@ pub fn png(panels: &[Panel]) -> Result<(Vec<u8>, [u32; 2]), String> {
         left += w + GAP;
     }
     let mut bytes = Cursor::new(Vec::new());
-    let written = sheet.0.write_to(&mut bytes, ImageFormat::Png);
-    written.map_err(|e| e.to_string())?;
+    sheet.0.write_to(&mut bytes, ImageFormat::Png)?;
     Ok((bytes.into_inner(), [width, height]))
 }
 
@@ -125,24 +123,16 @@ struct Sheet(RgbImage);
 impl Sheet {
     fn text(&mut self, text: &str, at: [u32; 2], alignment: Alignment) {
         let [x, y] = at.map(|n| n as i32);
-        let style = TextStyleBuilder::new()
-            .alignment(alignment)
-            .baseline(Baseline::Top)
-            .build();
         let letters = MonoTextStyle::new(FONT, INK);
-        let text = Text::with_text_style(text, Point::new(x, y), letters, style);
+        let mut text = Text::with_alignment(text, Point::new(x, y), letters, alignment);
+        text.text_style.baseline = Baseline::Top;
         let Ok(_) = text.draw(self);
     }
 
     fn framed(&mut self, image: &RgbImage, [left, top]: [u32; 2]) {
+        let frame = RgbImage::from_pixel(image.width() + 2, image.height() + 2, FRAME);
+        replace(&mut self.0, &frame, i64::from(left) - 1, i64::from(top) - 1);
         replace(&mut self.0, image, left.into(), top.into());
-        let frame = embedded_graphics::primitives::Rectangle::new(
-            Point::new(left as i32 - 1, top as i32 - 1),
-            Size::new(image.width() + 2, image.height() + 2),
-        );
-        let Ok(()) = frame
-            .into_styled(PrimitiveStyle::with_stroke(FRAME, 1))
-            .draw(self);
     }
 }
 

@@ -9,17 +9,15 @@
 //! The work is divided into bands of rows, and each dispatch does a bounded number of rounds
 //! per place. The division never changes a map.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use bytemuck::{Pod, bytes_of};
 use rayon::prelude::*;
 
-use crate::base::shader::Program;
 use crate::gpu::buffer::{Buffer, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::error::{RenderError, check_room};
-use crate::gpu::kernel::{Kernel, KernelError, Kernels};
+use crate::gpu::kernel::{Kernel, Kernels};
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options, Watch};
 use crate::heightfield::conemap::generate::pyramid::{self, Tiles};
@@ -60,7 +58,7 @@ pub struct Maker<'a> {
     /// Milliseconds that the dispatches of the last map took, each with the reading of
     /// what it found.
     pub device_ms: f64,
-    kernels: Kernels,
+    pub(crate) kernels: Kernels,
 }
 
 impl<'a> Maker<'a> {
@@ -73,10 +71,6 @@ impl<'a> Maker<'a> {
             device_ms: 0.0,
             kernels: Kernels::default(),
         }
-    }
-
-    pub(crate) fn kernel(&mut self, program: &Program) -> Result<Arc<Kernel>, KernelError> {
-        self.kernels.get(self.device, program)
     }
 
     /// A buffer of values, if the device can bind it.
@@ -95,7 +89,7 @@ impl<'a> Maker<'a> {
 
     /// Builds the tiles over a grid.
     fn tiles(&mut self, layout: &Tiles, values: &[f32]) -> Result<Buffer<[f32; 4]>, RenderError> {
-        let kernel = self.kernel(&pyramid::program())?;
+        let kernel = self.kernels.get(self.device, &pyramid::program())?;
         let grid = self.upload("grid", values)?;
         let tiles = self.storage("tiles", layout.count as usize)?;
         for level in 1..layout.levels.len() {
@@ -147,7 +141,7 @@ impl<'a> Maker<'a> {
     }
 
     fn ratios(&mut self, task: &MapTask<'_>, watch: Watch<'_>) -> Result<Vec<f64>, RenderError> {
-        let kernel = self.kernel(&task.program())?;
+        let kernel = self.kernels.get(self.device, &task.program())?;
         let size = task.size;
         let layout = Tiles::new(size);
         let values = self.upload("heights", &task.values)?;

@@ -18,11 +18,6 @@ fn words(ratio: &f64) -> [u32; 2] {
     [(bits >> 32) as u32, bits as u32]
 }
 
-/// The ratio of two words.
-fn ratio([high, low]: [u32; 2]) -> f64 {
-    f64::from_bits(u64::from(high) << 32 | u64::from(low))
-}
-
 impl Maker<'_> {
     /// As [`crate::heightfield::conemap::generate::min3x3::min3x3`], on the device, some rows
     /// at a time.
@@ -34,7 +29,7 @@ impl Maker<'_> {
         let [width, height] = map.size;
         let row = map.ratios.len() / height as usize;
         let most = (self.division.band / width).clamp(1, height);
-        let kernel = self.kernel(&program())?;
+        let kernel = self.kernels.get(self.device, &program())?;
         let wide = self.storage("wide", row * (most as usize + 2))?;
         let narrow = self.storage("narrow", row * most as usize)?;
         let mut ratios = Vec::with_capacity(map.ratios.len());
@@ -61,7 +56,8 @@ impl Maker<'_> {
             let groups = [(row as u32).div_ceil(8), rows.div_ceil(8)];
             kernel.run(self.device, &bound, groups)?;
             let read = narrow.read(self.device, row * rows as usize)?;
-            ratios.extend(read.into_iter().map(ratio));
+            let ratio = |[high, low]: [u32; 2]| u64::from(high) << 32 | u64::from(low);
+            ratios.extend(read.into_iter().map(|words| f64::from_bits(ratio(words))));
         }
         self.device_ms += start.elapsed().as_secs_f64() * 1e3;
         Ok(ConeMap { ratios, ..*map })

@@ -5,6 +5,7 @@
 //! its radius, in texels, at one whole height above the apex.
 
 use crate::base::named::named_enum;
+use crate::heightfield::heights::{Patches, cells};
 
 pub mod file;
 pub mod generate;
@@ -56,6 +57,14 @@ impl MapKind {
         self.facts().over_cells
     }
 
+    /// Places along each axis of a map of heights.
+    pub fn places(self, samples: [u32; 2], wrap: [bool; 2], patches: Patches) -> [u32; 2] {
+        match self.over_cells() {
+            true => cells(samples, wrap, patches),
+            false => samples,
+        }
+    }
+
     /// Cones per place.
     pub fn channels(self) -> usize {
         self.facts().channels
@@ -83,6 +92,17 @@ pub struct ConeMap {
 }
 
 impl ConeMap {
+    /// A map of one cone of no width, for programs that read no cones.
+    pub fn none() -> Self {
+        Self {
+            kind: MapKind::Samples,
+            size: [1, 1],
+            wrap: [false; 2],
+            offset: 0.0,
+            ratios: vec![0.0],
+        }
+    }
+
     /// Mean ratio.
     pub fn mean(&self) -> f64 {
         self.ratios.iter().sum::<f64>() / self.ratios.len() as f64

@@ -14,8 +14,8 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::heightfield::conemap::file::{Layout, MapError, has_map, read_map};
-use crate::heightfield::heights::Patches;
+use crate::heightfield::Patches;
+use crate::heightfield::conemap::file::{Layout, decode_as, has_map};
 use crate::heightfield::load::pattern_spec::read_size;
 use crate::heightfield::raster::open::{Format, Opened, open};
 use crate::heightfield::raster::{exr, png, tiff};
@@ -43,7 +43,7 @@ pub fn read(path: &Path, size: Option<[u32; 2]>) -> Result<Grid, String> {
         return Err("has a size of its own; leave out --size, which is for raw files".into());
     }
     if has_map(path).unwrap_or(false) {
-        return of_map(path);
+        return of_map(opened);
     }
     match opened.format {
         Format::Png => read_png(opened),
@@ -57,8 +57,8 @@ pub fn read(path: &Path, size: Option<[u32; 2]>) -> Result<Grid, String> {
 }
 
 /// The heights in a cone map of this program.
-fn of_map(path: &Path) -> Result<Grid, String> {
-    let file = read_map(path).map_err(MapError::into_why)?;
+fn of_map(opened: Opened) -> Result<Grid, String> {
+    let file = decode_as(opened.format, opened.file, None)?;
     let instead = "name the heights that it was made from";
     let values = file
         .heights
@@ -215,33 +215,4 @@ fn read_raw(path: &Path, mut opened: Opened, size: Option<[u32; 2]>) -> Result<G
 fn size_in(stem: &str) -> Option<[u32; 2]> {
     let last = stem.rsplit(['-', '_', ' ', '.']).next()?;
     read_size(last).ok()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sizes_stand_at_the_end_of_names() {
-        assert_eq!(size_in("heights-512x256"), Some([512, 256]));
-        assert_eq!(size_in("a_b_3X4"), Some([3, 4]));
-        assert_eq!(size_in("5x6"), Some([5, 6]));
-        assert_eq!(size_in("heights512x256"), None);
-        assert_eq!(size_in("heights-0x256"), None);
-        assert_eq!(size_in("512x256-heights"), None);
-    }
-
-    #[test]
-    fn the_channel_of_heights_is_chosen_by_name() {
-        let of = |names: &[&str]| {
-            let names: Vec<String> = names.iter().map(|n| n.to_string()).collect();
-            chosen(&names).map(str::to_string)
-        };
-        assert_eq!(of(&["B", "G", "R"]).as_deref(), Some("R"));
-        assert_eq!(of(&["R", "Y", "height"]).as_deref(), Some("height"));
-        assert_eq!(of(&["depth.Z", "R"]).as_deref(), Some("depth.Z"));
-        assert_eq!(of(&["height.Y", "ratio.Y"]).as_deref(), Some("height.Y"));
-        assert_eq!(of(&["displacement"]).as_deref(), Some("displacement"));
-        assert_eq!(of(&["U", "V"]), None);
-    }
 }

@@ -5,8 +5,7 @@
 
 use std::fmt;
 
-use crate::heightfield::heights::MOST_SAMPLES;
-use crate::heightfield::pattern::Pattern;
+use crate::heightfield::{heights::MOST_SAMPLES, pattern::Pattern};
 
 /// A pattern with everything that decides its heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,50 +103,5 @@ pub(crate) fn read_size(text: &str) -> Result<[u32; 2], String> {
         _ => Err(format!(
             "`{text}` is not a size: width x height, each from 1 to {MOST_SAMPLES}, like 512x256"
         )),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_are_read_as_they_are_written() {
-        let read = |text: &str| {
-            PatternSpec::read(text)
-                .expect("a field")
-                .expect("a good one")
-        };
-        assert_eq!(read("fbm"), PatternSpec::new(Pattern::Fbm));
-        let all = read("ridges:12x7,seed=3,power=1.5");
-        assert_eq!((all.size, all.seed, all.power), ([12, 7], 3, 1.5));
-        for text in [
-            "stones:9x9,power=3",
-            "ridges:12x7,seed=3,power=1.5",
-            "noise:4x4",
-        ] {
-            let spec = read(text);
-            assert_eq!(read(&spec.to_string()), spec);
-        }
-        assert_eq!(read("sine:seed=4").size, [256, 256]);
-        assert!(PatternSpec::read("fmb:1x1").is_none());
-        for bad in [
-            "",
-            "0x5",
-            "5x",
-            "9000x1",
-            "seed=",
-            "seed=-1",
-            "power=9",
-            "power=nan",
-            "size=4",
-            "7",
-        ] {
-            let text = format!("fbm:{bad}");
-            assert!(
-                PatternSpec::read(&text).is_some_and(|r| r.is_err()),
-                "{text}"
-            );
-        }
     }
 }

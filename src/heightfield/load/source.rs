@@ -9,11 +9,9 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
-use crate::heightfield::heights::Heights;
-use crate::heightfield::load::error::LoadError;
-use crate::heightfield::load::file::{Grid, read};
+use crate::heightfield::load::file::read;
 use crate::heightfield::load::pattern_spec::PatternSpec;
-use crate::heightfield::pattern::Pattern;
+use crate::heightfield::{FileError, Heights, pattern::Pattern};
 
 /// How heights are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,11 +43,11 @@ pub struct Loaded {
 ///
 /// # Errors
 /// The argument names nothing, or the file cannot be read or holds no heights.
-pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded, LoadError> {
+pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded, FileError> {
     let path = Path::new(argument.as_ref());
     let shown = path.display().to_string();
     if let Some(named) = path.to_str().and_then(PatternSpec::read) {
-        return generated(named, &shown, options);
+        return generated(named, options).map_err(|why| wrong(&shown, &why));
     }
     let is_path = shown.contains(['/', '\\', '.']) || (!shown.is_empty() && path.exists());
     if !is_path {
@@ -57,45 +55,44 @@ pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded
             "there is no such file or field; fields are {}, and files are PNG, EXR, TIFF or .raw",
             Pattern::ALL.map(Pattern::name).join(", ")
         );
-        return Err(LoadError::argument(&shown, why));
+        return Err(wrong(&shown, &why));
     }
-    let fail = |why: String| LoadError::file(path, why);
-    let Grid {
-        size,
-        mut values,
-        form,
-        note,
-    } = read(path, options.size).map_err(fail)?;
-    into_range(&mut values, size[0] as usize, options.normalize).map_err(fail)?;
-    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
-    Ok(Loaded {
-        name: stem.unwrap_or_else(|| "heights".into()),
-        heights: finished(size, values, options).map_err(fail)?,
-        form,
-        note: note.map(|note| format!("{shown} {note}")),
-    })
+    in_file(path, options).map_err(|why| FileError::file(path, why))
 }
 
-fn generated(
-    named: Result<PatternSpec, String>,
-    argument: &str,
-    options: &LoadOptions,
-) -> Result<Loaded, LoadError> {
-    let fail = |why: String| LoadError::argument(argument, why);
-    let named = named.map_err(fail)?;
+/// The error of an argument that names no heights.
+fn wrong(argument: &str, why: &str) -> FileError {
+    // A long text is not a name, and need not be repeated in full.
+    let argument: String = argument.chars().take(80).collect();
+    FileError::Usage(format!("{argument}: {why}"))
+}
+
+fn generated(named: Result<PatternSpec, String>, options: &LoadOptions) -> Result<Loaded, String> {
+    let named = named?;
+    let name = named.field.name();
     if options.size.is_some() {
-        let name = named.field.name();
-        let why = format!(
+        return Err(format!(
             "is a field; give its size after a colon like {name}:512x512 (--size is for raw files)"
-        );
-        return Err(fail(why));
+        ));
     }
     let values = named.field.heights(named.size, named.seed, named.power);
     Ok(Loaded {
-        name: named.field.name().into(),
-        heights: finished(named.size, values, options).map_err(fail)?,
+        name: name.into(),
+        heights: finished(named.size, values, options)?,
         form: named.to_string(),
         note: None,
+    })
+}
+
+fn in_file(path: &Path, options: &LoadOptions) -> Result<Loaded, String> {
+    let mut grid = read(path, options.size)?;
+    into_range(&mut grid.values, grid.size[0] as usize, options.normalize)?;
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+    Ok(Loaded {
+        name: stem.unwrap_or_else(|| "heights".into()),
+        heights: finished(grid.size, grid.values, options)?,
+        form: grid.form,
+        note: grid.note.map(|note| format!("{} {note}", path.display())),
     })
 }
 

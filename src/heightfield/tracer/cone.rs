@@ -1,11 +1,8 @@
 //! Cones of a map: how far one lets a ray go on, and whether a map fits a tracer.
 //! Twin: `wgsl/heightfield/tracer/cone.wgsl`.
 
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::contract::{LocalRay, TraceError};
-use crate::heightfield::tracer::grid::{FAR, GridRay};
-use crate::heightfield::tracer::kind::TracerKind;
+use crate::heightfield::tracer::{GridRay, LocalRay, TraceError, TracerKind, grid::FAR};
+use crate::heightfield::{ConeMap, HeightSurface};
 
 /// The share of a ratio, and of the way that it gives, which is used. Ways are rounded by
 /// about 1e-15 of their length here and by 1e-7 in f32; the shader has shares of its own.
@@ -45,11 +42,7 @@ pub fn check_map(
         return Err(TraceError::Kind { tracer, kind });
     }
     let heights = surface.heights();
-    let [w, h] = if kind.over_cells() {
-        surface.cells()
-    } else {
-        heights.size()
-    };
+    let [w, h] = kind.places(heights.size(), heights.wrap(), surface.patches());
     let cones = w as usize * h as usize * kind.channels();
     let debug = |value: &dyn std::fmt::Debug| format!("{value:?}");
     for (what, wanted, found) in [

@@ -6,16 +6,19 @@
 //! `wgsl/heightfield/tracer/NAME.wgsl`, so that one can replace another.
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::base::shader::Module;
 pub use crate::base::work::Step;
-use crate::base::work::Work;
-use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::height_surface::{HeightSurface, TracerParameters};
-use crate::heightfield::tracer::grid::{GridRay, grid_begin};
+use crate::base::{shader::Module, work::Work};
+use crate::heightfield::conemap::generate::mips::stored;
+use crate::heightfield::tracer::{
+    GridRay, cones::Lookup, grid::grid_begin, reference::Reference, settings::TracerSettings,
+    walk_mip::NodeCones,
+};
+use crate::heightfield::{ConeMap, HeightSurface, MapKind, height_surface::TracerParameters};
 
 /// A ray in the surface's own units: x and y in texels, z in heights. `axis` is not of unit
 /// length; s is the parameter of the caller's ray.
@@ -116,58 +119,94 @@ impl Trace {
     }
 }
 
-/// A way to find the first hit of a ray.
-pub trait Tracer: Debug + Send + Sync {
+/// A tracer of one surface: its method, and all that the method reads.
+#[derive(Clone, Debug)]
+pub struct Tracer {
     /// The surface that it traces.
-    fn surface(&self) -> &HeightSurface;
+    pub surface: Arc<HeightSurface>,
+    /// Its cones; [`ConeMap::none`] for a method without cones.
+    pub map: Arc<ConeMap>,
+    /// The cones of nodes, if the method takes those.
+    pub nodes: Option<NodeCones>,
+    /// How ratios are read between the samples.
+    pub lookup: Lookup,
+    /// Its numbers in the uniform.
+    pub numbers: TracerParameters,
+    /// How it finds the first hit of a ray.
+    pub method: &'static dyn Method,
+}
 
-    /// Starts a ray. Nothing before `from` or beyond `to` counts.
-    fn begin(&self, ray: &LocalRay, from: f64, to: f64) -> Trace {
-        grid_begin(self.surface(), ray, from, to)
+/// A way to find the first hit of a ray.
+pub trait Method: Debug + Sync {
+    /// The numbers that it needs: those of a preset, or its own. `pixel` is the distance from
+    /// the eye at which a texel is as wide as a pixel.
+    fn numbers(&self, _: &TracerSettings, _pixel: f64) -> TracerParameters {
+        TracerParameters::default()
     }
 
+    /// Completes the state of a ray that starts.
+    fn begin(&self, _: &Tracer, _: &LocalRay, _: &mut Trace) {}
+
     /// What a step does with a ray that is moving.
-    fn advance(&self, grid: &mut GridRay<'_>, work: &mut Work) -> Step;
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Work) -> Step;
+
+    /// The WGSL modules of its own.
+    fn modules(&self, tracer: &Tracer) -> Vec<Module>;
+
+    /// The ratios to bind, by the names of the WGSL variables.
+    fn ratios(&self, tracer: &Tracer) -> Vec<(&'static str, Vec<u8>)> {
+        vec![("ratios", stored(&tracer.map.ratios))]
+    }
+}
+
+impl Tracer {
+    /// The reference tracer of a surface.
+    pub fn reference(surface: Arc<HeightSurface>) -> Self {
+        Self {
+            surface,
+            map: Arc::new(ConeMap::none()),
+            nodes: None,
+            lookup: Lookup::default(),
+            numbers: TracerParameters::default(),
+            method: &Reference,
+        }
+    }
+
+    /// Starts a ray. Nothing before `from` or beyond `to` counts.
+    pub fn begin(&self, ray: &LocalRay, from: f64, to: f64) -> Trace {
+        let mut trace = grid_begin(&self.surface, ray, from, to);
+        self.method.begin(self, ray, &mut trace);
+        trace
+    }
 
     /// One step of bounded work; a ray that has ended stays as it is. `work` gains one
     /// evaluation, and an iteration for each round of refinement.
-    fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+    pub fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
         if trace.state != Step::Moving {
             return trace.state;
         }
         work.evaluations += 1;
-        let surface = self.surface();
+        let surface = &self.surface;
         let mut grid = GridRay {
             surface,
             ray,
             trace,
         };
-        self.advance(&mut grid, work)
+        self.method.advance(self, &mut grid, work)
     }
-
-    /// The cone map, for a tracer that uses one.
-    fn map(&self) -> Option<&ConeMap> {
-        None
-    }
-
-    /// Its numbers in the uniform.
-    fn parameters(&self) -> TracerParameters {
-        TracerParameters::default()
-    }
-
-    /// The WGSL modules of its own.
-    fn own_modules(&self) -> Vec<Module>;
 
     /// All WGSL modules to join, those of the surface included.
-    fn modules(&self) -> Vec<Module> {
-        let mut all = self.surface().modules();
-        all.extend(self.own_modules());
+    pub fn modules(&self) -> Vec<Module> {
+        let mut all = self.surface.modules();
+        all.extend(self.method.modules(self));
         all
     }
 
     /// Bytes to bind, by the names of the WGSL variables.
-    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
-        self.surface().buffers(self.map(), self.parameters())
+    pub fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
+        let mut all = self.surface.buffers(&self.map, self.numbers);
+        all.extend(self.method.ratios(self));
+        all
     }
 }
 

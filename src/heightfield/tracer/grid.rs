@@ -11,11 +11,11 @@
 
 use glam::DVec3;
 
-use crate::heightfield::height_surface::{HeightSurface, Node};
 use crate::heightfield::patch::{CellRay, patch_hit};
-use crate::heightfield::tracer::contract::{
+use crate::heightfield::tracer::{
     BASE, FACE_BITS, LocalRay, SURFACE, Step, Trace, WALL_X_LOW, WALL_Y_LOW,
 };
+use crate::heightfield::{HeightSurface, height_surface::Node};
 
 /// A parameter beyond every other, and still finite.
 pub const FAR: f64 = 1e30;

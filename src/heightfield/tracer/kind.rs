@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use crate::base::named::named_enum;
-use crate::heightfield::conemap::ConeMap;
+use crate::heightfield::HeightSurface;
 use crate::heightfield::conemap::MapKind::{self, Relaxed, Samples};
-use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::cone::check_map;
-use crate::heightfield::tracer::contract::{TraceError, Tracer};
 use crate::heightfield::tracer::settings::{Supply, TracerSettings};
-use crate::heightfield::tracer::{cones, linear, max_mip, relaxed, walk, walk_mip};
+use crate::heightfield::tracer::walk_mip::{WalkMip, node_cones};
+use crate::heightfield::tracer::{
+    Method, TraceError, Tracer, cone::check_map, cones, linear::LinearBinary,
+    max_mip::MaxMipTracer, relaxed::WalkRelaxed, walk::Walk,
+};
 
 /// How well a tracer finds the first hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,46 +48,20 @@ pub struct TracerFacts {
     pub kinds: &'static [MapKind],
     /// What limits its steps.
     pub steps: Steps,
-    make: Make,
+    method: &'static dyn Method,
 }
 
-/// Makes a tracer.
-type Make = fn(&Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError>;
-
-fn facts(accuracy: Accuracy, kinds: &'static [MapKind], steps: Steps, make: Make) -> TracerFacts {
+fn facts(
+    accuracy: Accuracy,
+    kinds: &'static [MapKind],
+    steps: Steps,
+    method: &'static dyn Method,
+) -> TracerFacts {
     TracerFacts {
         accuracy,
         kinds,
         steps,
-        make,
-    }
-}
-
-/// What a tracer is made of.
-#[derive(Debug)]
-pub struct Parts<'a> {
-    /// The tracer.
-    pub kind: TracerKind,
-    /// What it traces.
-    pub surface: &'a Arc<HeightSurface>,
-    /// The cones, if there are any.
-    pub cones: Option<&'a Supply>,
-    /// The numbers that a preset gives it.
-    pub settings: &'a TracerSettings,
-    /// The distance from the eye at which a texel is as wide as a pixel.
-    pub pixel: f64,
-}
-
-impl Parts<'_> {
-    /// The cone map, after a check that the tracer can use it.
-    ///
-    /// # Errors
-    /// There is none, it is of another kind, or it was made for another surface.
-    pub fn map(&self) -> Result<Arc<ConeMap>, TraceError> {
-        let missing = TraceError::Missing(self.kind.name());
-        let map = &self.cones.ok_or(missing)?.map;
-        check_map(self.kind, self.surface, map)?;
-        Ok(map.clone())
+        method,
     }
 }
 
@@ -94,53 +69,35 @@ named_enum! {
     /// A way to find where a ray first meets a height surface.
     pub enum TracerKind: TracerFacts {
         /// The cone walk.
-        Walk = "walk" => facts(Exact, &[MapKind::Walk], Cells, walk::make),
+        Walk = "walk" => facts(Exact, &[MapKind::Walk], Cells, &Walk),
         /// The cone walk with relaxed cones.
-        WalkRelaxed = "walk-relaxed" => facts(Exact, &[MapKind::WalkRelaxed], Cells, relaxed::make),
+        WalkRelaxed = "walk-relaxed" => facts(Exact, &[MapKind::WalkRelaxed], Cells, &WalkRelaxed),
         /// The cone walk over nodes as wide as a pixel, with the cones of cells.
-        WalkMip = "walk-mip" => facts(Pixel, &[MapKind::Walk], Cells, walk_mip::make),
+        WalkMip = "walk-mip" => facts(Pixel, &[MapKind::Walk], Cells, &WalkMip),
         /// The cone walk over nodes as wide as a pixel, with the cones of nodes.
-        ConeMip = "cone-mip" => facts(Pixel, &[MapKind::Walk], Cells, walk_mip::make_with_nodes),
+        ConeMip = "cone-mip" => facts(Pixel, &[MapKind::Walk], Cells, &WalkMip),
         /// Descent of the pyramid of maxima.
-        MaxMip = "max-mip" => facts(Exact, &[], Pyramid, max_mip::make),
+        MaxMip = "max-mip" => facts(Exact, &[], Pyramid, &MaxMipTracer),
         /// Equal steps, then bisection (Policarpo, Oliveira, Comba 2005).
-        LinearBinary = "linear-binary" => facts(Approximate, &[], Divided(32), linear::make),
+        LinearBinary = "linear-binary" => facts(Approximate, &[], Divided(32), &LinearBinary),
         /// Cone steps until the surface, with the exact solve of every patch on the way.
-        CsmExact = "csm-exact" =>
-            facts(Approximate, &[Samples], Cells, |p| cones::make(p, cones::CSM_EXACT)),
+        CsmExact = "csm-exact" => facts(Approximate, &[Samples], Cells, &cones::CSM_EXACT),
         /// As many cone steps as the view needs. The paper shows its adaptive version with 20.
-        CsmLoop = "csm-loop" =>
-            facts(Approximate, &[Samples], Limited(20), |p| cones::make(p, cones::CSM_LOOP)),
+        CsmLoop = "csm-loop" => facts(Approximate, &[Samples], Limited(20), &cones::CSM_LOOP),
         /// The same number of cone steps for every ray: the paper's fixed version has 10.
-        CsmFixed = "csm-fixed" =>
-            facts(Approximate, &[Samples], Limited(10), |p| cones::make(p, cones::SECANT)),
+        CsmFixed = "csm-fixed" => facts(Approximate, &[Samples], Limited(10), &cones::SECANT),
         /// Cone steps that are stretched, then bisection.
-        CsmScaled = "csm-scaled" =>
-            facts(Approximate, &[Samples], Cells, |p| cones::make(p, cones::CSM_SCALED)),
+        CsmScaled = "csm-scaled" => facts(Approximate, &[Samples], Cells, &cones::CSM_SCALED),
         /// Cone steps with one cone for each of four sides.
-        Quad = "quad" =>
-            facts(Approximate, &[MapKind::Quad], Cells, |p| cones::make(p, cones::SECANT)),
+        Quad = "quad" => facts(Approximate, &[MapKind::Quad], Cells, &cones::SECANT),
         /// Relaxed cones, then bisection. Listing 18-3 has 15 cone steps.
-        RcsBinary = "rcs-binary" =>
-            facts(Approximate, &[Relaxed], Limited(15), |p| cones::make(p, cones::RCS_BINARY)),
+        RcsBinary = "rcs-binary" => facts(Approximate, &[Relaxed], Limited(15), &cones::RCS_BINARY),
         /// Any cones over samples, then the secant method.
-        Secant = "secant" =>
-            facts(Approximate, &[Samples, MapKind::Quad, Relaxed], Cells, |p| cones::make(p, cones::SECANT)),
+        Secant = "secant" => facts(Approximate, &[Samples, MapKind::Quad, Relaxed], Cells, &cones::SECANT),
     }
 }
 
 impl TracerKind {
-    /// Every tracer with its word.
-    pub const WORDS: [(&str, Self); Self::ALL.len()] = {
-        let mut words = [("", Self::Walk); Self::ALL.len()];
-        let mut i = 0;
-        while i < words.len() {
-            words[i] = (Self::ALL[i].name(), Self::ALL[i]);
-            i += 1;
-        }
-        words
-    };
-
     /// Whether it needs a cone map.
     pub fn needs_map(self) -> bool {
         !self.facts().kinds.is_empty()
@@ -157,13 +114,23 @@ impl TracerKind {
         cones: Option<&Supply>,
         settings: &TracerSettings,
         pixel: f64,
-    ) -> Result<Arc<dyn Tracer>, TraceError> {
-        (self.facts().make)(&Parts {
-            kind: self,
-            surface,
-            cones,
-            settings,
-            pixel,
-        })
+    ) -> Result<Arc<Tracer>, TraceError> {
+        let TracerFacts { kinds, method, .. } = self.facts();
+        let mut tracer = Tracer {
+            lookup: settings.lookup,
+            numbers: method.numbers(settings, pixel),
+            method,
+            ..Tracer::reference(surface.clone())
+        };
+        if !kinds.is_empty() {
+            let cones = cones.ok_or(TraceError::Missing(self.name()))?;
+            check_map(self, surface, &cones.map)?;
+            tracer.map = cones.map.clone();
+            if self == Self::ConeMip {
+                let nodes = cones.nodes.clone();
+                tracer.nodes = nodes.or_else(|| Some(node_cones(surface, &cones.map)));
+            }
+        }
+        Ok(Arc::new(tracer))
     }
 }

@@ -7,35 +7,16 @@
 //! it goes on to where it comes down to the maximum, and looks at the child there. In a cell it
 //! solves the patch. The pyramid may have any size, and each tile begins one of its own.
 
-use std::sync::Arc;
-
-use crate::base::shader::Module;
-use crate::base::work::Work;
-use crate::heightfield::height_surface::{HeightSurface, Node};
+use crate::base::{shader::Module, work::Work};
+use crate::heightfield::height_surface::Node;
 use crate::heightfield::tracer::{
-    GridRay, LocalRay, Parts, Step, Trace, TraceError, Tracer, cone::WALK_TRUST, grid::grid_begin,
+    GridRay, LocalRay, Method, Step, Trace, Tracer, cone::WALK_TRUST,
 };
 use crate::wgsl;
 
 /// Descent of the pyramid of maxima.
 #[derive(Debug)]
-pub struct MaxMipTracer {
-    surface: Arc<HeightSurface>,
-}
-
-/// Makes the tracer.
-pub fn make(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
-    Ok(Arc::new(MaxMipTracer {
-        surface: parts.surface.clone(),
-    }))
-}
-
-impl MaxMipTracer {
-    /// The coarsest level.
-    fn top(&self) -> u32 {
-        self.surface.maxima().levels.len() as u32 - 1
-    }
-}
+pub struct MaxMipTracer;
 
 /// Whether the line by which the ray leaves a node also ends a node of the next level, or a tile.
 fn ends_parent(grid: &GridRay<'_>, axis: usize, node: &Node) -> bool {
@@ -44,18 +25,12 @@ fn ends_parent(grid: &GridRay<'_>, axis: usize, node: &Node) -> bool {
     local & ((2 << node.level) - 1) == 0
 }
 
-impl Tracer for MaxMipTracer {
-    fn surface(&self) -> &HeightSurface {
-        &self.surface
+impl Method for MaxMipTracer {
+    fn begin(&self, tracer: &Tracer, _: &LocalRay, trace: &mut Trace) {
+        trace.level = tracer.surface.maxima().coarsest();
     }
 
-    fn begin(&self, ray: &LocalRay, from: f64, to: f64) -> Trace {
-        let mut trace = grid_begin(&self.surface, ray, from, to);
-        trace.level = self.top();
-        trace
-    }
-
-    fn advance(&self, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+    fn advance(&self, _: &Tracer, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
         let node = grid.surface.node(grid.trace.cell, grid.trace.level);
         let over = grid.over(&node);
         if over.gap <= 0.0 {
@@ -79,13 +54,13 @@ impl Tracer for MaxMipTracer {
             return grid.end();
         }
         grid.pass(&node, over.exit, over.axis);
-        if node.level < self.top() && ends_parent(grid, over.axis, &node) {
+        if node.level < grid.surface.maxima().coarsest() && ends_parent(grid, over.axis, &node) {
             grid.trace.level += 1;
         }
         Step::Moving
     }
 
-    fn own_modules(&self) -> Vec<Module> {
+    fn modules(&self, _: &Tracer) -> Vec<Module> {
         vec![wgsl!("heightfield/tracer/max_mip.wgsl")]
     }
 }

@@ -15,8 +15,8 @@ pub mod walk;
 pub mod walk_mip;
 
 pub use contract::{
-    BASE, FACE_BITS, LocalRay, SURFACE, Step, Trace, TraceError, TraceHit, Tracer, WALL_X_HIGH,
-    WALL_X_LOW, WALL_Y_HIGH, WALL_Y_LOW,
+    BASE, FACE_BITS, LocalRay, Method, SURFACE, Step, Trace, TraceError, TraceHit, Tracer,
+    WALL_X_HIGH, WALL_X_LOW, WALL_Y_HIGH, WALL_Y_LOW,
 };
 pub use grid::{GridRay, Over};
-pub use kind::{Accuracy, Parts, Steps, TracerKind};
+pub use kind::{Accuracy, Steps, TracerKind};

@@ -4,32 +4,15 @@
 //! measured against it, and it is tested against closed forms. It has no shader of its own: on
 //! a GPU the cone walk with ratios of 0 visits the same cells.
 
-use std::sync::Arc;
-
-use crate::base::shader::Module;
-use crate::base::work::Work;
-use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::{GridRay, Step, Tracer};
+use crate::base::{shader::Module, work::Work};
+use crate::heightfield::tracer::{GridRay, Method, Step, Tracer};
 
 /// Solves cell by cell.
-#[derive(Clone, Debug)]
-pub struct ReferenceTracer {
-    surface: Arc<HeightSurface>,
-}
+#[derive(Debug)]
+pub struct Reference;
 
-impl ReferenceTracer {
-    /// The reference tracer of a surface.
-    pub fn new(surface: Arc<HeightSurface>) -> Self {
-        Self { surface }
-    }
-}
-
-impl Tracer for ReferenceTracer {
-    fn surface(&self) -> &HeightSurface {
-        &self.surface
-    }
-
-    fn advance(&self, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+impl Method for Reference {
+    fn advance(&self, _: &Tracer, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
         let node = grid.surface.node(grid.trace.cell, 0);
         let over = grid.over(&node);
         if grid.solve(over.to) {
@@ -38,7 +21,7 @@ impl Tracer for ReferenceTracer {
         grid.leave(&node, &over, over.exit)
     }
 
-    fn own_modules(&self) -> Vec<Module> {
+    fn modules(&self, _: &Tracer) -> Vec<Module> {
         Vec::new()
     }
 }

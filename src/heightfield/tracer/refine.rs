@@ -9,37 +9,18 @@
 //! point near a box does not tell whether the ray meets its top or its side.
 
 use crate::base::work::{Step, Work};
-use crate::heightfield::heights::Patches;
-use crate::heightfield::tracer::grid::GridRay;
+use crate::heightfield::Patches;
+use crate::heightfield::tracer::GridRay;
 
 /// How a bracket becomes a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refine {
-    /// A number of bisections; the hit is the middle of the bracket that is left.
-    Binary(u32),
-    /// A number of secants (regula falsi): the hit is where the line between both ends crosses.
-    Secant(u32),
+    /// Bisections; the hit is the middle of the bracket that is left.
+    Binary,
+    /// Secants (regula falsi): the hit is where the line between both ends crosses.
+    Secant,
     /// Bisections until the cells are known, then the exact solve of their patches.
     Settle,
-}
-
-impl Refine {
-    /// Its rounds, if it has a number of them.
-    pub fn rounds(self) -> u32 {
-        match self {
-            Self::Binary(rounds) | Self::Secant(rounds) => rounds,
-            Self::Settle => 0,
-        }
-    }
-
-    /// The same with another number of rounds, if it has one.
-    pub fn with_rounds(self, own: Option<u32>) -> Self {
-        match self {
-            Self::Binary(rounds) => Self::Binary(own.unwrap_or(rounds)),
-            Self::Secant(rounds) => Self::Secant(own.unwrap_or(rounds)),
-            Self::Settle => Self::Settle,
-        }
-    }
 }
 
 /// Bisections of a bracket that settles. It begins with at most 2^16 cells and ends with a
@@ -56,12 +37,18 @@ pub fn refine_over(grid: &GridRay<'_>, s: f64) -> f64 {
 }
 
 /// Marks the hit in a bracket `[low, high]`: the ray is above the surface at `low`, and not at
-/// `high`.
-pub fn refine(grid: &mut GridRay<'_>, bracket: [f64; 2], how: Refine, work: &mut Work) -> Step {
+/// `high`. Settling takes as many rounds as it needs.
+pub fn refine(
+    grid: &mut GridRay<'_>,
+    bracket: [f64; 2],
+    how: Refine,
+    rounds: u32,
+    work: &mut Work,
+) -> Step {
     let (left, at) = match how {
         Refine::Settle => (bracket, bracket[1]),
-        Refine::Binary(rounds) => refine_binary(grid, bracket, rounds, work),
-        Refine::Secant(rounds) => refine_secant(grid, bracket, rounds, work),
+        Refine::Binary => refine_binary(grid, bracket, rounds, work),
+        Refine::Secant => refine_secant(grid, bracket, rounds, work),
     };
     if how == Refine::Settle || grid.surface.patches() == Patches::Boxes {
         return refine_settle(grid, left, work);

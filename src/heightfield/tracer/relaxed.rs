@@ -9,33 +9,14 @@
 //! offset of the walk.) A rising ray may come out again anywhere. It goes from cell to cell, and
 //! over nodes of the pyramid of maxima that lie under it.
 
-use std::sync::Arc;
-
-use crate::base::shader::Module;
-use crate::base::work::Work;
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::{
-    GridRay, Parts, Step, TraceError, Tracer,
-    cone::cone_end,
-    refine::{Refine, refine, refine_over},
-};
+use crate::base::{shader::Module, work::Work};
+use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
+use crate::heightfield::tracer::{GridRay, Method, Step, Tracer, cone::cone_end};
 use crate::wgsl;
 
 /// The cone walk with relaxed cones.
 #[derive(Debug)]
-pub struct WalkRelaxed {
-    surface: Arc<HeightSurface>,
-    map: Arc<ConeMap>,
-}
-
-/// Makes the tracer.
-pub fn make(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
-    Ok(Arc::new(WalkRelaxed {
-        surface: parts.surface.clone(),
-        map: parts.map()?,
-    }))
-}
+pub struct WalkRelaxed;
 
 /// A step of a rising ray that meets nothing in its cell: to the exit of the largest node that
 /// lies under it, or to its end if the whole surface lies under it.
@@ -52,12 +33,8 @@ fn relaxed_rise(grid: &mut GridRay<'_>) -> Step {
     grid.leave(&node, &over, over.exit)
 }
 
-impl Tracer for WalkRelaxed {
-    fn surface(&self) -> &HeightSurface {
-        &self.surface
-    }
-
-    fn advance(&self, grid: &mut GridRay<'_>, work: &mut Work) -> Step {
+impl Method for WalkRelaxed {
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Work) -> Step {
         let node = grid.surface.node(grid.trace.cell, 0);
         let over = grid.over(&node);
         if over.gap <= 0.0 && grid.solve(over.to) {
@@ -66,24 +43,20 @@ impl Tracer for WalkRelaxed {
         if grid.ray.axis.z > 0.0 {
             return relaxed_rise(grid);
         }
-        let ratio = self.map.ratios[grid.surface.number(grid.trace.cell) as usize];
-        let next = cone_end(grid, ratio, over.height, self.map.offset);
+        let ratio = tracer.map.ratios[grid.surface.number(grid.trace.cell) as usize];
+        let next = cone_end(grid, ratio, over.height, tracer.map.offset);
         let (exit, end) = (over.exit, grid.trace.end);
         if next > exit && exit < end {
             let grounded = next >= end && grid.trace.falls;
             // The ray meets nothing in its cell, so that the bracket may begin at the exit.
             if grounded || refine_over(grid, next.min(end)) <= 0.0 {
-                return refine(grid, [exit, next.min(end)], Refine::Settle, work);
+                return refine(grid, [exit, next.min(end)], Refine::Settle, 0, work);
             }
         }
         grid.leave(&node, &over, next)
     }
 
-    fn map(&self) -> Option<&ConeMap> {
-        Some(&self.map)
-    }
-
-    fn own_modules(&self) -> Vec<Module> {
+    fn modules(&self, _: &Tracer) -> Vec<Module> {
         vec![
             wgsl!("heightfield/tracer/cone.wgsl"),
             wgsl!("heightfield/tracer/refine.wgsl"),

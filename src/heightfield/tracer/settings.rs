@@ -5,28 +5,21 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::base::key::{AutoCount, AutoNumber, Fault, Key, Number, Text, Word};
+use crate::base::key::{Fault, Key, auto_count, auto_number, number, text, word};
 use crate::heightfield::conemap::file::{MapUse, read_map};
-use crate::heightfield::conemap::generate::cpu::generate;
-use crate::heightfield::conemap::generate::generator::{
-    GenerateError, Generator, LEAST_OFFSET, MOST_OFFSET, Options,
-};
-use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::height_surface::{HeightSurface, MOST_LEVELS};
-use crate::heightfield::heights::{Heights, Patches};
-use crate::heightfield::tracer::cones::Lookup;
-use crate::heightfield::tracer::kind::Steps;
+use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
+use crate::heightfield::conemap::generate::{GenerateError, Generator, Options, cpu::generate};
 use crate::heightfield::tracer::walk_mip::{NodeCones, node_cones};
-use crate::heightfield::tracer::{Tracer, TracerKind};
+use crate::heightfield::tracer::{Steps, Tracer, TracerKind, cones::Lookup};
+use crate::heightfield::{
+    ConeMap, HeightSurface, Heights, MapKind, Patches, height_surface::MOST_LEVELS,
+};
 use crate::keys;
 
 /// Most steps that a tracer may count itself: as many as a shadow may have.
 const MOST_STEPS: u32 = 2048;
 /// Most rounds of refinement. After 32 bisections a bracket is below the resolution of f32.
 const MOST_ROUNDS: u32 = 32;
-
-/// The words of `lookup`.
-const LOOKUPS: &[(&str, Lookup)] = &[("bilinear", Lookup::Bilinear), ("nearest", Lookup::Nearest)];
 
 /// Makes cones, on the CPU or on a device.
 pub type Make<'a> =
@@ -50,18 +43,18 @@ pub(crate) fn without_cones(
     patches: Patches,
     options: &Options,
 ) -> Result<ConeMap, GenerateError> {
-    let (size, offset) = if generator.over_cells() {
-        (heights.cells(patches), options.offset)
-    } else {
-        (heights.size(), 0.0)
-    };
-    let places = size[0] as usize * size[1] as usize;
+    let (kind, wrap) = (generator.kind(), heights.wrap());
+    let [w, h] = kind.places(heights.size(), wrap, patches);
     Ok(ConeMap {
-        kind: generator.kind(),
-        size,
-        wrap: heights.wrap(),
-        ratios: vec![0.0; places * generator.channels()],
-        offset,
+        kind,
+        size: [w, h],
+        wrap,
+        ratios: vec![0.0; w as usize * h as usize * kind.channels()],
+        offset: if kind.over_cells() {
+            options.offset
+        } else {
+            0.0
+        },
     })
 }
 
@@ -155,21 +148,21 @@ impl TracerSettings {
     /// The keys of the tracer in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
-            "tracer" = Word(&mut self.tracer, &TracerKind::WORDS),
+            "tracer" = word(&mut self.tracer, &TracerKind::WORDS),
                 "how rays find the surface; walk, walk-relaxed and max-mip find every first hit, walk-mip and cone-mip are off by at most a pixel";
-            "map" = Text(&mut self.map),
+            "map" = text(&mut self.map),
                 "auto, a generator's name, or the file of a cone map";
-            "lookup" = Word(&mut self.lookup, LOOKUPS),
+            "lookup" = word(&mut self.lookup, &Lookup::WORDS),
                 "how ratios are read between samples";
-            "tracer_steps" = AutoCount(&mut self.steps, 1, MOST_STEPS),
+            "tracer_steps" = auto_count(&mut self.steps, 1, MOST_STEPS),
                 "steps of a tracer that counts its own";
-            "tracer_rounds" = AutoCount(&mut self.rounds, 1, MOST_ROUNDS),
+            "tracer_rounds" = auto_count(&mut self.rounds, 1, MOST_ROUNDS),
                 "rounds of its refinement";
-            "stretch" = AutoNumber(&mut self.stretch, 0.01, 100.0),
+            "stretch" = auto_number(&mut self.stretch, 0.01, 100.0),
                 "factor on the steps that cones give";
-            "lod" = AutoNumber(&mut self.lod, 0.0, 1e6),
+            "lod" = auto_number(&mut self.lod, 0.0, 1e6),
                 "distance at which a texel is as wide as a pixel to walk-mip and cone-mip, and csm-loop has half its steps; 0 for never; auto follows the camera for the first two and is never for csm-loop";
-            "offset" = Number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
+            "offset" = number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
                 "offset of the walks' cones when they are made, in texels";
         ]
     }
@@ -260,8 +253,7 @@ impl TracerSettings {
             None => self.read(folder, surface)?,
         };
         if self.tracer == TracerKind::ConeMip {
-            let nodes = node_cones(surface, &supply.map).map_err(|e| fault(e.to_string()))?;
-            supply.nodes = Some(nodes);
+            supply.nodes = Some(node_cones(surface, &supply.map));
         }
         Ok(Some(supply))
     }
@@ -312,7 +304,7 @@ impl TracerSettings {
         surface: &Arc<HeightSurface>,
         cones: Option<&Supply>,
         pixel: f64,
-    ) -> Result<Arc<dyn Tracer>, Fault> {
+    ) -> Result<Arc<Tracer>, Fault> {
         let made = self.tracer.make(surface, cones, self, pixel);
         made.map_err(|e| fault(e.to_string()))
     }

@@ -15,51 +15,27 @@
 //! that is farther. The patch of a cell is solved if the ray comes down to A in it. The offset
 //! makes cones wider: it uses that a step always reaches the exit.
 
-use std::sync::Arc;
-
-use crate::base::shader::Module;
-use crate::base::work::Work;
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::height_surface::HeightSurface;
-use crate::heightfield::tracer::{GridRay, Parts, Step, TraceError, Tracer, cone::cone_end};
+use crate::base::{shader::Module, work::Work};
+use crate::heightfield::tracer::{GridRay, Method, Step, Tracer, cone::cone_end};
 use crate::wgsl;
 
 /// The cone walk over cells.
 #[derive(Debug)]
-pub struct Walk {
-    surface: Arc<HeightSurface>,
-    map: Arc<ConeMap>,
-}
+pub struct Walk;
 
-/// Makes the tracer.
-pub fn make(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
-    Ok(Arc::new(Walk {
-        surface: parts.surface.clone(),
-        map: parts.map()?,
-    }))
-}
-
-impl Tracer for Walk {
-    fn surface(&self) -> &HeightSurface {
-        &self.surface
-    }
-
-    fn advance(&self, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+impl Method for Walk {
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
         let node = grid.surface.node(grid.trace.cell, 0);
         let over = grid.over(&node);
         if over.gap <= 0.0 && grid.solve(over.to) {
             return Step::Hit;
         }
-        let ratio = self.map.ratios[grid.surface.number(grid.trace.cell) as usize];
-        let next = cone_end(grid, ratio, over.height, self.map.offset);
+        let ratio = tracer.map.ratios[grid.surface.number(grid.trace.cell) as usize];
+        let next = cone_end(grid, ratio, over.height, tracer.map.offset);
         grid.leave(&node, &over, next)
     }
 
-    fn map(&self) -> Option<&ConeMap> {
-        Some(&self.map)
-    }
-
-    fn own_modules(&self) -> Vec<Module> {
+    fn modules(&self, _: &Tracer) -> Vec<Module> {
         vec![
             wgsl!("heightfield/tracer/cone.wgsl"),
             wgsl!("heightfield/tracer/walk.wgsl"),

@@ -19,66 +19,27 @@
 
 use std::sync::Arc;
 
-use bytemuck::cast_slice;
-
-use crate::base::shader::Module;
-use crate::base::work::Work;
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, rounded_down};
-use crate::heightfield::height_surface::{HeightSurface, Node, TracerParameters};
-use crate::heightfield::tracer::{
-    GridRay, Over, Parts, Step, TraceError, Tracer, TracerKind,
-    cone::{WALK_TRUST, check_map, cone_end},
-};
+use crate::base::{shader::Module, work::Work};
+use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, stored};
+use crate::heightfield::height_surface::{Node, TracerParameters};
+use crate::heightfield::tracer::cone::{WALK_TRUST, cone_end};
+use crate::heightfield::tracer::{GridRay, Method, Over, Step, Tracer, settings::TracerSettings};
+use crate::heightfield::{ConeMap, HeightSurface};
 use crate::wgsl;
 
 /// The cones of all nodes over a surface, level by level.
 pub type NodeCones = Arc<Vec<ConeLevel>>;
 
-/// Makes the cones of nodes from a cone map of the walk.
-///
-/// # Errors
-/// The map is of another kind, or was made for another surface.
-pub fn node_cones(surface: &HeightSurface, map: &ConeMap) -> Result<NodeCones, TraceError> {
-    check_map(TracerKind::ConeMip, surface, map)?;
+/// Makes the cones of nodes from a cone map of the walk. There are none for a map that was made
+/// for another surface.
+pub fn node_cones(surface: &HeightSurface, map: &ConeMap) -> NodeCones {
     let levels = mips(&surface.maxima().levels[0].max, map);
-    // A map that fits has a ratio for each cell.
-    Ok(Arc::new(levels.unwrap_or_default()))
+    Arc::new(levels.unwrap_or_default())
 }
 
 /// The cone walk over nodes.
 #[derive(Debug)]
-pub struct WalkMip {
-    surface: Arc<HeightSurface>,
-    map: Arc<ConeMap>,
-    /// The cones of nodes, if the tracer takes those.
-    nodes: Option<NodeCones>,
-    /// The parameter at which a texel is as wide as a pixel; 0 for never.
-    lod: f64,
-}
-
-fn with(parts: &Parts<'_>, nodes: Option<NodeCones>) -> Result<Arc<dyn Tracer>, TraceError> {
-    Ok(Arc::new(WalkMip {
-        surface: parts.surface.clone(),
-        map: parts.map()?,
-        nodes,
-        lod: parts.settings.lod.unwrap_or(parts.pixel),
-    }))
-}
-
-/// Makes `walk-mip`.
-pub fn make(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
-    with(parts, None)
-}
-
-/// Makes `cone-mip`.
-pub fn make_with_nodes(parts: &Parts<'_>) -> Result<Arc<dyn Tracer>, TraceError> {
-    let nodes = match parts.cones.and_then(|cones| cones.nodes.clone()) {
-        Some(nodes) => nodes,
-        None => node_cones(parts.surface, &*parts.map()?)?,
-    };
-    with(parts, Some(nodes))
-}
+pub struct WalkMip;
 
 /// The level whose nodes are as wide as a pixel at a parameter, or narrower by less than half.
 /// `lod` is the parameter at which a texel is as wide as a pixel; 0 for never.
@@ -88,8 +49,7 @@ pub fn walk_mip_level(surface: &HeightSurface, lod: f64, s: f64) -> u32 {
     }
     // The conversion takes negative numbers and NaN for 0.
     let texels = (s / lod) as u32;
-    let top = surface.maxima().levels.len() as u32 - 1;
-    texels.max(1).ilog2().min(top)
+    texels.max(1).ilog2().min(surface.maxima().coarsest())
 }
 
 /// Marks the hit of a node: where the ray comes down to its maximum, or at once.
@@ -106,26 +66,27 @@ fn walk_mip_meet(grid: &mut GridRay<'_>, node: &Node, over: &Over) -> Step {
     grid.hit(s)
 }
 
-impl WalkMip {
-    /// Ratio and apex of the cone over a cell in a node.
-    fn cone(&self, cell: [i32; 2], node: &Node) -> (f64, f64) {
-        if let Some(nodes) = &self.nodes {
-            let own = &nodes[node.level as usize];
-            let [x, y] = node.place.map(|i| i as usize);
-            return (own.ratios[y * own.size[0] as usize + x], node.maximum);
-        }
-        let ratio = self.map.ratios[self.surface.number(cell) as usize];
-        (ratio, self.surface.apex(cell))
+/// Ratio and apex of the cone over the ray's cell in a node.
+fn cone(tracer: &Tracer, cell: [i32; 2], node: &Node) -> (f64, f64) {
+    if let Some(nodes) = &tracer.nodes {
+        let own = &nodes[node.level as usize];
+        let [x, y] = node.place.map(|i| i as usize);
+        return (own.ratios[y * own.size[0] as usize + x], node.maximum);
     }
+    let ratio = tracer.map.ratios[tracer.surface.number(cell) as usize];
+    (ratio, tracer.surface.apex(cell))
 }
 
-impl Tracer for WalkMip {
-    fn surface(&self) -> &HeightSurface {
-        &self.surface
+impl Method for WalkMip {
+    fn numbers(&self, settings: &TracerSettings, pixel: f64) -> TracerParameters {
+        TracerParameters {
+            lod: settings.lod.unwrap_or(pixel),
+            ..TracerParameters::default()
+        }
     }
 
-    fn advance(&self, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
-        grid.trace.level = walk_mip_level(grid.surface, self.lod, grid.trace.s);
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+        grid.trace.level = walk_mip_level(grid.surface, tracer.numbers.lod, grid.trace.s);
         let node = grid.surface.node(grid.trace.cell, grid.trace.level);
         let over = grid.over(&node);
         if over.gap <= 0.0 {
@@ -136,42 +97,26 @@ impl Tracer for WalkMip {
                 return Step::Hit;
             }
         }
-        let (ratio, apex) = self.cone(grid.trace.cell, &node);
+        let (ratio, apex) = cone(tracer, grid.trace.cell, &node);
         let height = grid.ray.height(grid.trace.s) - apex;
-        let next = cone_end(grid, ratio, height, self.map.offset);
+        let next = cone_end(grid, ratio, height, tracer.map.offset);
         grid.leave(&node, &over, next)
     }
 
-    fn map(&self) -> Option<&ConeMap> {
-        Some(&self.map)
-    }
-
-    fn parameters(&self) -> TracerParameters {
-        TracerParameters {
-            lod: self.lod,
-            ..TracerParameters::default()
-        }
-    }
-
-    fn own_modules(&self) -> Vec<Module> {
+    fn modules(&self, tracer: &Tracer) -> Vec<Module> {
+        let nodes = f64::from(u8::from(tracer.nodes.is_some()));
         vec![
             wgsl!("heightfield/tracer/cone.wgsl"),
-            wgsl!(
-                "heightfield/tracer/walk_mip.wgsl",
-                "WALK_MIP_NODES" = f64::from(u8::from(self.nodes.is_some())),
-            ),
+            wgsl!("heightfield/tracer/walk_mip.wgsl", "WALK_MIP_NODES" = nodes),
         ]
     }
 
-    fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
-        let mut all = self.surface.buffers(Some(&self.map), self.parameters());
-        if let Some(nodes) = &self.nodes {
-            // Level after level, as the maxima are stored.
-            let ratios = nodes.iter().flat_map(|level| &level.ratios);
-            let ratios: Vec<f32> = ratios.map(|r| rounded_down(*r)).collect();
-            all.retain(|(name, _)| *name != "ratios");
-            all.push(("ratios", cast_slice(&ratios).to_vec()));
-        }
-        all
+    fn ratios(&self, tracer: &Tracer) -> Vec<(&'static str, Vec<u8>)> {
+        // Level after level, as the maxima are stored.
+        let ratios = match &tracer.nodes {
+            Some(nodes) => stored(nodes.iter().flat_map(|level| &level.ratios)),
+            None => stored(&tracer.map.ratios),
+        };
+        vec![("ratios", ratios)]
     }
 }

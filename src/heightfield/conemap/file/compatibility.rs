@@ -9,10 +9,8 @@
 
 use std::path::Path;
 
-use crate::heightfield::conemap::MapKind;
-use crate::heightfield::conemap::file::error::MapError;
-use crate::heightfield::conemap::file::map_file::{MapFile, digest, places};
-use crate::heightfield::heights::{Heights, Patches, wrap_name};
+use crate::heightfield::conemap::file::{MapFile, digest};
+use crate::heightfield::{FileError, Heights, MapKind, Patches, heights::wrap_name};
 
 /// What a map shall be used for.
 #[derive(Clone, Copy, Debug)]
@@ -36,14 +34,9 @@ impl MapFile {
     ///
     /// # Errors
     /// It is of another kind, wraps another way, or was made for other heights.
-    pub fn check_use(&self, path: &Path, wanted: &MapUse<'_>) -> Result<(), MapError> {
-        match self.misfit(wanted) {
-            None => Ok(()),
-            Some(why) => Err(MapError::Misfit {
-                path: path.display().to_string(),
-                why,
-            }),
-        }
+    pub fn check_use(&self, path: &Path, wanted: &MapUse<'_>) -> Result<(), FileError> {
+        let misfit = self.misfit(wanted);
+        misfit.map_or(Ok(()), |why| Err(FileError::file(path, why)))
     }
 
     fn misfit(&self, wanted: &MapUse<'_>) -> Option<String> {
@@ -81,7 +74,7 @@ impl MapFile {
                 wanted.patches.surface()
             ));
         }
-        if self.map.size != places(samples, self.map.wrap, kind, self.label.patches) {
+        if self.map.size != kind.places(samples, self.map.wrap, self.label.patches) {
             return Some("it has another number of cones than the heights have places".into());
         }
         self.other_heights(heights)

@@ -6,16 +6,14 @@
 use std::io::{BufRead, Cursor, Seek};
 use std::path::Path;
 
-use crate::heightfield::conemap::file::encode::SIDES;
-use crate::heightfield::conemap::file::error::MapError;
-use crate::heightfield::conemap::file::format::{Bits, Layout, MapFormat, RatioScale, Slopes};
-use crate::heightfield::conemap::file::label::{self, KEYWORD, ParsedLabel};
-use crate::heightfield::conemap::file::map_file::{Label, MapFile, ShadingChannel, scale};
-use crate::heightfield::conemap::file::rounding::Ratios;
-use crate::heightfield::conemap::{ConeMap, MapKind, WIDEST};
-use crate::heightfield::heights::Patches;
+use crate::heightfield::conemap::file::label::{self, KEYWORD};
+use crate::heightfield::conemap::file::{
+    Bits, Label, Layout, MapFile, MapFormat, RatioScale, Ratios, ShadingChannel, Slopes,
+    encode::SIDES, map_file::scale,
+};
 use crate::heightfield::raster::open::{Format, format_of, open};
 use crate::heightfield::raster::{exr, png};
+use crate::heightfield::{ConeMap, FileError, MapKind, Patches, conemap::WIDEST};
 
 /// What a file without a label contains.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,8 +32,8 @@ pub struct ForeignFormat {
 ///
 /// # Errors
 /// The file cannot be read at all.
-pub fn has_map(path: &Path) -> Result<bool, MapError> {
-    let fail = |why: String| MapError::file(path, why);
+pub fn has_map(path: &Path) -> Result<bool, FileError> {
+    let fail = |why: String| FileError::file(path, why);
     let mut opened = open(path).map_err(fail)?;
     Ok(match opened.format {
         // A broken file is not a map; reading it as heights reports what is broken.
@@ -49,7 +47,7 @@ pub fn has_map(path: &Path) -> Result<bool, MapError> {
 ///
 /// # Errors
 /// The file cannot be read, is not a map, or has a label that contradicts itself.
-pub fn read_map(path: &Path) -> Result<MapFile, MapError> {
+pub fn read_map(path: &Path) -> Result<MapFile, FileError> {
     decode(path, None)
 }
 
@@ -57,12 +55,12 @@ pub fn read_map(path: &Path) -> Result<MapFile, MapError> {
 ///
 /// # Errors
 /// As [`read_map`].
-pub fn decode(path: &Path, foreign: Option<&ForeignFormat>) -> Result<MapFile, MapError> {
+pub fn decode(path: &Path, foreign: Option<&ForeignFormat>) -> Result<MapFile, FileError> {
     let read = || {
         let opened = open(path)?;
-        from(opened.file, opened.format, foreign)
+        decode_as(opened.format, opened.file, foreign)
     };
-    read().map_err(|why| MapError::file(path, why))
+    read().map_err(|why| FileError::file(path, why))
 }
 
 /// Reads a map from the bytes of a file, as [`read_map`] does.
@@ -70,12 +68,13 @@ pub fn decode(path: &Path, foreign: Option<&ForeignFormat>) -> Result<MapFile, M
 /// # Errors
 /// In words, without a file's name.
 pub fn decode_bytes(bytes: &[u8]) -> Result<MapFile, String> {
-    from(Cursor::new(bytes), format_of(bytes), None)
+    decode_as(format_of(bytes), Cursor::new(bytes), None)
 }
 
-fn from(
-    file: impl BufRead + Seek,
+/// Reads a map from a file of a format.
+pub(crate) fn decode_as(
     format: Format,
+    file: impl BufRead + Seek,
     foreign: Option<&ForeignFormat>,
 ) -> Result<MapFile, String> {
     match format {
@@ -96,100 +95,106 @@ fn unlabelled(is_png: bool) -> String {
 
 fn from_png(file: impl BufRead + Seek, foreign: Option<&ForeignFormat>) -> Result<MapFile, String> {
     let pixels = png::read(file, 4, KEYWORD)?;
-    let read = match (&pixels.text, foreign) {
+    let mut map_file = match (&pixels.text, foreign) {
         (Some(text), _) => label::read(text)?,
-        (None, Some(foreign)) => assumed_label(foreign, pixels.size)?,
+        (None, Some(foreign)) => assumed(foreign, pixels.size)?,
         (None, None) => return Err(unlabelled(true)),
     };
-    if read.layout == Layout::Full {
+    let layout = map_file.format.layout;
+    if layout == Layout::Full {
         return Err("is a PNG, and its label says EXR; make the map again".into());
     }
-    let channels = read.layout.facts().channels;
+    let channels = layout.facts().channels;
     if pixels.channels != channels {
         return Err(format!(
             "has {} channels, and the layout `{}` has {channels}; was it saved again without alpha?",
             pixels.channels,
-            read.layout.name()
+            layout.name()
         ));
     }
-    check_places(&read, pixels.size)?;
+    check_places(&map_file, pixels.size)?;
     let bits = match pixels.most {
         255 => Bits::Eight,
         _ => Bits::Sixteen,
     };
-    let steps = bits.steps();
+    let ratio = map_file.format.ratio;
     let numbers = Ratios {
-        steps,
-        scaling: read.ratio,
-        scale: read.label.scale,
+        bits,
+        scaling: ratio,
+        scale: map_file.label.scale,
         reread: true,
     };
     let ratios = |channel: usize| pixels.channel(channel).map(|n| numbers.ratio(n)).collect();
-    let heights = |channel: usize| pixels.channel(channel).map(|n| steps.height(n)).collect();
+    let heights = |channel: usize| pixels.channel(channel).map(|n| bits.height(n)).collect();
     let shading = |channel: usize, name| ShadingChannel {
         name,
         shares: heights(channel),
     };
-    let (ratios, heights, shading): (Vec<f64>, Option<Vec<f32>>, Vec<_>) = match read.layout {
-        Layout::Dummer => {
-            let slopes = vec![shading(2, "slope x"), shading(3, "slope y")];
-            (ratios(1), Some(heights(0)), slopes)
-        }
-        Layout::Relief => {
-            let normal = vec![shading(0, "normal x"), shading(1, "normal y")];
-            // Turned as whole numbers, so that heights come back exactly.
-            let depths = pixels.channel(3);
-            let heights = depths.map(|n| steps.height(steps.most - n)).collect();
-            (ratios(2), Some(heights), normal)
-        }
-        Layout::Quad => {
-            let ratios = pixels.numbers.iter().map(|n| numbers.ratio(*n));
-            (ratios.collect(), None, Vec::new())
-        }
-        Layout::Pair | Layout::Full => (ratios(1), Some(heights(0)), Vec::new()),
+    map_file.map.ratios = match layout {
+        Layout::Relief => ratios(2),
+        Layout::Quad => pixels.numbers.iter().map(|n| numbers.ratio(*n)).collect(),
+        _ => ratios(1),
     };
-    let read = ParsedLabel {
-        origin: Some(read.ratio),
-        ..read
+    map_file.heights = match layout {
+        Layout::Quad => None,
+        // Turned as whole numbers, so that heights come back exactly.
+        Layout::Relief => Some(
+            pixels
+                .channel(3)
+                .map(|n| bits.height(bits.most() - n))
+                .collect(),
+        ),
+        _ => Some(heights(0)),
     };
-    Ok(finished(read, bits, pixels.size, ratios, heights, shading))
+    map_file.shading = match layout {
+        Layout::Dummer => vec![shading(2, "slope x"), shading(3, "slope y")],
+        Layout::Relief => vec![shading(0, "normal x"), shading(1, "normal y")],
+        _ => Vec::new(),
+    };
+    map_file.origin = Some(ratio);
+    map_file.format.bits = bits;
+    Ok(map_file)
 }
 
-/// The label that a foreign file would have.
-fn assumed_label(foreign: &ForeignFormat, size: [u32; 2]) -> Result<ParsedLabel, String> {
+/// What the label of a foreign file would say.
+fn assumed(foreign: &ForeignFormat, size: [u32; 2]) -> Result<MapFile, String> {
     if foreign.kind.over_cells() || foreign.layout.lacks(foreign.kind).is_some() {
         return Err(format!(
             "has no label, and cannot be read as such a map in the layout `{}`",
             foreign.layout.name()
         ));
     }
-    Ok(ParsedLabel {
+    let map = ConeMap {
         kind: foreign.kind,
-        layout: foreign.layout,
-        ratio: foreign.ratio,
+        size,
         wrap: foreign.wrap,
         offset: 0.0,
-        origin: None,
+        ratios: Vec::new(),
+    };
+    let format = MapFormat {
+        ratio: foreign.ratio,
         // As Dummer's program writes them, most likely; cones do not depend on it.
         slopes: Slopes::Half,
-        label: Label {
-            samples: size,
-            patches: Patches::Bilinear,
-            scale: scale(size),
-            digest: None,
-            generator: None,
-        },
-    })
+        ..MapFormat::new(foreign.layout)
+    };
+    let label = Label {
+        samples: size,
+        patches: Patches::Bilinear,
+        scale: scale(size),
+        digest: None,
+        generator: None,
+    };
+    Ok(MapFile::bare(map, format, label))
 }
 
 fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
     let head = exr::head(&mut file, KEYWORD)?;
     let text = head.text.as_ref().ok_or_else(|| unlabelled(false))?;
-    let read = label::read(text)?;
-    if read.layout != Layout::Full {
+    let mut map_file = label::read(text)?;
+    if map_file.format.layout != Layout::Full {
         return Err("is an EXR, and its label says PNG; make the map again".into());
     }
-    check_places(&read, head.size)?;
+    check_places(&map_file, head.size)?;
     let mut channel = |name: &str| {
         if !head.channels.iter().any(|c| c == name) {
             let all = head.channels.join(", ");
@@ -210,9 +215,9 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
         }
         Ok(values)
     };
-    let scale = read.label.scale;
+    let (kind, scale) = (map_file.map.kind, map_file.label.scale);
     let ratio = |v: f32| (f64::from(v) * scale).min(WIDEST);
-    let names = if read.kind.channels() == 1 {
+    let names = if kind.channels() == 1 {
         &["ratio"][..]
     } else {
         &SIDES
@@ -220,57 +225,27 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
     let cones: Vec<Vec<f32>> = names.iter().map(|n| channel(n)).collect::<Result<_, _>>()?;
     let places = 0..cones[0].len();
     let ratios = places.flat_map(|i| cones.iter().map(move |cone| ratio(cone[i])));
-    let ratios = ratios.collect();
+    map_file.map.ratios = ratios.collect();
     // Four ratios may come from a PNG, which has no room for heights beside them.
-    let heights = match read.kind {
+    map_file.heights = match kind {
         MapKind::Quad if !head.channels.iter().any(|c| c == "height") => None,
         _ => Some(channel("height")?),
     };
-    if heights.iter().flatten().any(|z| *z > 1.0) {
+    if map_file.heights.iter().flatten().any(|z| *z > 1.0) {
         return Err("holds a height above 1; make the map again".into());
     }
-    let size = head.size;
-    let bits = Bits::Sixteen;
-    Ok(finished(read, bits, size, ratios, heights, Vec::new()))
+    map_file.format.bits = Bits::Sixteen;
+    Ok(map_file)
 }
 
 /// Checks that an image has the size that its label says.
-fn check_places(read: &ParsedLabel, found: [u32; 2]) -> Result<(), String> {
-    let wanted = read.places();
-    if found == wanted {
+fn check_places(map_file: &MapFile, [w, h]: [u32; 2]) -> Result<(), String> {
+    let wanted = map_file.map.size;
+    if wanted == [w, h] {
         return Ok(());
     }
     Err(format!(
-        "is {} x {}, and its label says {} x {}; it was cut or scaled, which makes cones wrong; make the map again",
-        found[0], found[1], wanted[0], wanted[1]
+        "is {w} x {h}, and its label says {} x {}; it was cut or scaled, which makes cones wrong; make the map again",
+        wanted[0], wanted[1]
     ))
-}
-
-fn finished(
-    read: ParsedLabel,
-    bits: Bits,
-    size: [u32; 2],
-    ratios: Vec<f64>,
-    heights: Option<Vec<f32>>,
-    shading: Vec<ShadingChannel>,
-) -> MapFile {
-    MapFile {
-        map: ConeMap {
-            kind: read.kind,
-            size,
-            wrap: read.wrap,
-            offset: read.offset,
-            ratios,
-        },
-        heights,
-        shading,
-        origin: read.origin,
-        format: MapFormat {
-            bits,
-            ratio: read.ratio,
-            slopes: read.slopes,
-            ..MapFormat::new(read.layout)
-        },
-        label: read.label,
-    }
 }

@@ -1,14 +1,13 @@
 //! A cone map to the bytes of a file.
 
-use crate::heightfield::conemap::file::error::MapError;
-use crate::heightfield::conemap::file::format::{Layout, MapFormat, RatioScale, Slopes};
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
-use crate::heightfield::conemap::file::map_file::MapFile;
-use crate::heightfield::conemap::file::rounding::{Ratios, Steps, narrowed, share_down};
 use crate::heightfield::conemap::file::shading::{half, normal_shares, whole};
+use crate::heightfield::conemap::file::{
+    Bits, Layout, MapFile, MapFormat, RatioScale, Ratios, Slopes, narrowed, rounding::share_down,
+};
 use crate::heightfield::conemap::generate::slopes::slopes;
-use crate::heightfield::heights::Heights;
 use crate::heightfield::raster::{exr, png};
+use crate::heightfield::{FileError, Heights};
 
 /// Names of the ratios of the four sides in an EXR: east is +x, south +y, as rows go
 /// down.
@@ -18,9 +17,9 @@ pub(crate) const SIDES: [&str; 4] = ["ratio.E", "ratio.W", "ratio.S", "ratio.N"]
 ///
 /// # Errors
 /// The layout cannot hold such a map.
-pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, MapError> {
+pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, FileError> {
     let layout = format.layout;
-    let fail = |why: String| layout.error(why);
+    let fail = |why: String| layout.error(&why);
     layout.check(file.map.kind)?;
     let mut format = *format;
     if layout == Layout::Full {
@@ -36,7 +35,7 @@ pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, MapError> {
         let channels = layout.facts().channels;
         let pixels = png::Pixels {
             text: Some(text),
-            ..png::Pixels::new(file.map.size, channels, format.bits.steps().most, numbers)
+            ..png::Pixels::new(file.map.size, channels, format.bits.most(), numbers)
         };
         png::write(&mut bytes, &pixels, KEYWORD)
     };
@@ -66,9 +65,9 @@ fn floats(file: &MapFile) -> Vec<(String, Vec<f32>)> {
 
 /// The numbers of a PNG, pixel by pixel.
 fn numbers(file: &MapFile, format: &MapFormat) -> Result<Vec<u16>, String> {
-    let steps = format.bits.steps();
+    let bits = format.bits;
     let ratios = Ratios {
-        steps,
+        bits,
         scaling: format.ratio,
         scale: file.label.scale,
         reread: file.origin == Some(format.ratio),
@@ -83,8 +82,8 @@ fn numbers(file: &MapFile, format: &MapFormat) -> Result<Vec<u16>, String> {
         .heights
         .as_deref()
         .ok_or("needs heights, and the map has none; make it from its heights again")?;
-    let up: Vec<u16> = heights.iter().map(|z| steps.height_up(*z)).collect();
-    let cones = narrowed_all(file, heights, &up, steps);
+    let up: Vec<u16> = heights.iter().map(|z| bits.height_up(*z)).collect();
+    let cones = narrowed_all(file, heights, &up, bits);
     let cones = cones.into_iter().zip(&map.ratios).map(|(r, read)| {
         // A ratio that was narrowed is a fresh one.
         let reread = ratios.reread && r == *read;
@@ -99,8 +98,8 @@ fn numbers(file: &MapFile, format: &MapFormat) -> Result<Vec<u16>, String> {
     Ok(match format.layout {
         Layout::Dummer => {
             let shares = match format.slopes {
-                Slopes::Half => half(&up, map.size, steps),
-                Slopes::Whole => slopes()?.into_iter().map(|s| whole(s, steps)).collect(),
+                Slopes::Half => half(&up, map.size, bits),
+                Slopes::Whole => slopes()?.into_iter().map(|s| whole(s, bits)).collect(),
             };
             let all = both.zip(shares);
             all.flat_map(|((z, r), [x, y])| [z, r, x, y]).collect()
@@ -108,8 +107,8 @@ fn numbers(file: &MapFile, format: &MapFormat) -> Result<Vec<u16>, String> {
         Layout::Relief => {
             let depth = format.depth * file.label.scale;
             let pixel = |((z, r), slope): ((u16, u16), [f32; 2])| {
-                let [x, y] = normal_shares(slope, depth).map(|n| steps.nearest(n));
-                [x, y, r, steps.most - z]
+                let [x, y] = normal_shares(slope, depth).map(|n| bits.nearest(n));
+                [x, y, r, bits.most() - z]
             };
             both.zip(slopes()?).flat_map(pixel).collect()
         }
@@ -118,8 +117,8 @@ fn numbers(file: &MapFile, format: &MapFormat) -> Result<Vec<u16>, String> {
 }
 
 /// Ratios of cones that stay empty when heights rise to their numbers.
-fn narrowed_all(file: &MapFile, heights: &[f32], up: &[u16], steps: Steps) -> Vec<f64> {
-    let rise = |i: usize| f64::from(steps.height(up[i])) - f64::from(heights[i]);
+fn narrowed_all(file: &MapFile, heights: &[f32], up: &[u16], bits: Bits) -> Vec<f64> {
+    let rise = |i: usize| f64::from(bits.height(up[i])) - f64::from(heights[i]);
     let most = (0..up.len()).map(rise).fold(0.0, f64::max);
     let top = heights.iter().copied().fold(0.0, f32::max);
     let nearest = if file.map.kind.over_cells() {

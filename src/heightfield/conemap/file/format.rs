@@ -17,9 +17,7 @@
 //! points.
 
 use crate::base::named::named_enum;
-use crate::heightfield::conemap::MapKind;
-use crate::heightfield::conemap::file::error::MapError;
-use crate::heightfield::conemap::file::rounding::Steps;
+use crate::heightfield::{FileError, MapKind};
 
 /// What is particular to a layout.
 #[derive(Clone, Copy, Debug)]
@@ -67,15 +65,12 @@ impl Layout {
     ///
     /// # Errors
     /// It cannot.
-    pub fn check(self, kind: MapKind) -> Result<(), MapError> {
+    pub fn check(self, kind: MapKind) -> Result<(), FileError> {
         self.lacks(kind).map_or(Ok(()), |why| Err(self.error(why)))
     }
 
-    pub(crate) fn error(self, why: impl Into<String>) -> MapError {
-        MapError::Layout {
-            layout: self.name(),
-            why: why.into(),
-        }
+    pub(crate) fn error(self, why: &str) -> FileError {
+        FileError::Usage(format!("the layout `{}` {why}", self.name()))
     }
 
     /// Why the layout cannot hold a kind of map, if it cannot.
@@ -93,7 +88,7 @@ impl Layout {
     }
 }
 
-/// Bits of a PNG channel.
+/// Bits of a PNG channel, whose whole numbers stand for 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bits {
     /// 0 to 255.
@@ -108,16 +103,6 @@ impl Bits {
         match self {
             Self::Eight => 8,
             Self::Sixteen => 16,
-        }
-    }
-
-    /// The whole numbers of a channel.
-    pub fn steps(self) -> Steps {
-        Steps {
-            most: match self {
-                Self::Eight => u16::from(u8::MAX),
-                Self::Sixteen => u16::MAX,
-            },
         }
     }
 }

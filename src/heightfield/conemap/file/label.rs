@@ -4,11 +4,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::heightfield::conemap::MapKind;
-use crate::heightfield::conemap::file::format::{Layout, MapFormat, RatioScale, Slopes};
-use crate::heightfield::conemap::file::map_file::{Label, MapFile, places, scale};
+use crate::heightfield::conemap::file::map_file::scale;
+use crate::heightfield::conemap::file::{Label, Layout, MapFile, MapFormat, RatioScale, Slopes};
 use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
-use crate::heightfield::heights::{MOST_SAMPLES, Patches, wrap_name, wrap_named};
+use crate::heightfield::heights::{MOST_SAMPLES, wrap_name, wrap_named};
+use crate::heightfield::{ConeMap, MapKind, Patches};
 
 /// Keyword of the text chunk and name of the attribute.
 pub(crate) const KEYWORD: &str = "conemarch cone map";
@@ -69,26 +69,6 @@ pub(crate) fn write(file: &MapFile, format: &MapFormat) -> Result<String, String
     toml::to_string(&text).map_err(|e| e.to_string())
 }
 
-/// What a text says.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct ParsedLabel {
-    pub kind: MapKind,
-    pub layout: Layout,
-    pub ratio: RatioScale,
-    pub wrap: [bool; 2],
-    pub offset: f64,
-    pub slopes: Slopes,
-    pub origin: Option<RatioScale>,
-    pub label: Label,
-}
-
-impl ParsedLabel {
-    /// Places that a map of such heights has along each axis.
-    pub fn places(&self) -> [u32; 2] {
-        places(self.label.samples, self.wrap, self.kind, self.label.patches)
-    }
-}
-
 fn broken(why: &str) -> String {
     format!("has a label that cannot be understood ({why}); make the map again")
 }
@@ -102,11 +82,11 @@ fn word<T>(key: &str, word: &str, named: impl Fn(&str) -> Option<T>) -> Result<T
     named(word).ok_or_else(|| wrong(key, word))
 }
 
-/// Reads a text.
+/// Reads a text: a map that still lacks its numbers.
 ///
 /// # Errors
 /// In words: the text is not a label, or contradicts itself.
-pub(crate) fn read(text: &str) -> Result<ParsedLabel, String> {
+pub(crate) fn read(text: &str) -> Result<MapFile, String> {
     let text: Text = toml::from_str(text).map_err(|e| broken(e.message()))?;
     if text.version != VERSION {
         return Err(format!(
@@ -149,20 +129,27 @@ pub(crate) fn read(text: &str) -> Result<ParsedLabel, String> {
     if text.scale != scale(text.samples) {
         return Err(wrong("scale", &text.scale.to_string()));
     }
-    Ok(ParsedLabel {
+    let map = ConeMap {
         kind,
-        layout,
-        ratio,
+        size: kind.places(text.samples, wrap, patches),
         wrap,
         offset: text.offset,
+        ratios: Vec::new(),
+    };
+    let format = MapFormat {
+        ratio,
         slopes,
+        ..MapFormat::new(layout)
+    };
+    let label = Label {
+        samples: text.samples,
+        patches,
+        scale: text.scale,
+        digest: text.heights_sha256,
+        generator: text.generator,
+    };
+    Ok(MapFile {
         origin,
-        label: Label {
-            samples: text.samples,
-            patches,
-            scale: text.scale,
-            digest: text.heights_sha256,
-            generator: text.generator,
-        },
+        ..MapFile::bare(map, format, label)
     })
 }

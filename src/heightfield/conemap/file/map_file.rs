@@ -2,9 +2,8 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::heightfield::conemap::file::format::{Layout, MapFormat, RatioScale};
-use crate::heightfield::conemap::{ConeMap, MapKind};
-use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::conemap::file::{Layout, MapFormat, RatioScale};
+use crate::heightfield::{ConeMap, Heights, Patches};
 
 /// A channel of a file that is only used for shading, as shares of 0..=1.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +63,18 @@ pub struct MapFile {
 }
 
 impl MapFile {
+    /// A map without heights and shading.
+    pub(crate) fn bare(map: ConeMap, format: MapFormat, label: Label) -> Self {
+        Self {
+            map,
+            heights: None,
+            shading: Vec::new(),
+            origin: None,
+            format,
+            label,
+        }
+    }
+
     /// A fresh map of some heights. `generator` is the word for what made it.
     pub fn new(map: ConeMap, heights: &Heights, patches: Patches, generator: &str) -> Self {
         let (_, places) = heights.places(map.kind.over_cells().then_some(patches));
@@ -75,12 +86,8 @@ impl MapFile {
             generator: Some(generator.into()),
         };
         Self {
-            map,
             heights: Some(places),
-            shading: Vec::new(),
-            origin: None,
-            format: MapFormat::new(Layout::Full),
-            label,
+            ..Self::bare(map, MapFormat::new(Layout::Full), label)
         }
     }
 
@@ -96,17 +103,4 @@ impl MapFile {
 /// Texels that a ratio of 1 in a file means: the longer axis.
 pub(crate) fn scale(samples: [u32; 2]) -> f64 {
     f64::from(samples[0].max(samples[1]))
-}
-
-/// Places of a map along each axis.
-pub(crate) fn places(
-    samples: [u32; 2],
-    wrap: [bool; 2],
-    kind: MapKind,
-    patches: Patches,
-) -> [u32; 2] {
-    match kind.over_cells() {
-        true => crate::heightfield::heights::cells(samples, wrap, patches),
-        false => samples,
-    }
 }

@@ -4,7 +4,6 @@
 mod compatibility;
 mod decode;
 mod encode;
-mod error;
 mod format;
 mod label;
 mod map_file;
@@ -12,9 +11,9 @@ mod rounding;
 mod shading;
 
 pub use compatibility::MapUse;
+pub(crate) use decode::decode_as;
 pub use decode::{ForeignFormat, decode, decode_bytes, has_map, read_map};
 pub use encode::encode;
-pub use error::MapError;
 pub use format::{Bits, Layout, MapFormat, RatioScale, Slopes};
 pub use map_file::{Label, MapFile, ShadingChannel, digest};
-pub use rounding::{Ratios, Steps, narrowed};
+pub use rounding::{Ratios, narrowed};

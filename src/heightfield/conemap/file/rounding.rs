@@ -26,30 +26,31 @@
 //! know. Over the heights that they were made from, relaxed maps stay what they were; over
 //! those in the file, which the papers trace them with, a ray may cross more than once.
 
-use crate::heightfield::conemap::file::format::RatioScale;
+use crate::heightfield::conemap::file::{Bits, RatioScale};
 
-/// A channel of whole numbers that stand for 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Steps {
+impl Bits {
     /// The number that stands for 1.
-    pub most: u16,
-}
+    pub fn most(self) -> u16 {
+        match self {
+            Self::Eight => u16::from(u8::MAX),
+            Self::Sixteen => u16::MAX,
+        }
+    }
 
-impl Steps {
     /// The height that a number stands for: the same as a height map reads.
     pub fn height(self, number: u16) -> f32 {
-        (f64::from(number) / f64::from(self.most)) as f32
+        (f64::from(number) / f64::from(self.most())) as f32
     }
 
     /// The smallest number whose height is no less, for heights in 0..=1.
     pub fn height_up(self, height: f32) -> u16 {
-        let above = (f64::from(height) * f64::from(self.most)).ceil();
-        let mut number = (above as u16).min(self.most);
+        let above = (f64::from(height) * f64::from(self.most())).ceil();
+        let mut number = (above as u16).min(self.most());
         // Decoded heights are rounded to f32, so that the quotient may miss by one.
         while number > 0 && self.height(number - 1) >= height {
             number -= 1;
         }
-        while number < self.most && self.height(number) < height {
+        while number < self.most() && self.height(number) < height {
             number += 1;
         }
         number
@@ -58,7 +59,7 @@ impl Steps {
     /// The nearest number to a share of 0..=1, for shading channels.
     pub fn nearest(self, share: f64) -> u16 {
         // The cast saturates, and NaN becomes 0.
-        (share.clamp(0.0, 1.0) * f64::from(self.most) + 0.5) as u16
+        (share.clamp(0.0, 1.0) * f64::from(self.most()) + 0.5) as u16
     }
 }
 
@@ -66,7 +67,7 @@ impl Steps {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratios {
     /// The numbers.
-    pub steps: Steps,
+    pub bits: Bits,
     /// How they stand for ratios.
     pub scaling: RatioScale,
     /// Texels that a ratio of 1 in the file means.
@@ -78,7 +79,7 @@ pub struct Ratios {
 impl Ratios {
     /// The share of 1 that a number stands for.
     fn share(self, number: u16) -> f64 {
-        let share = f64::from(number) / f64::from(self.steps.most);
+        let share = f64::from(number) / f64::from(self.bits.most());
         match self.scaling {
             RatioScale::Sqrt => share * share,
             RatioScale::Linear => share,
@@ -98,7 +99,7 @@ impl Ratios {
             RatioScale::Sqrt => share.sqrt(),
             RatioScale::Linear => share,
         };
-        let most = self.steps.most;
+        let most = self.bits.most();
         let mut number = (share * f64::from(most)).floor() as u16;
         // The quotient and the root may miss by one either way.
         while number < most && self.share(number + 1) * self.scale <= ratio {

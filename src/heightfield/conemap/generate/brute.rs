@@ -7,11 +7,7 @@
 //! code leaves out the corners beyond two borders.
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::method::{Apex, Method};
-use crate::heightfield::conemap::generate::rings::rings;
-use crate::heightfield::conemap::generate::search::Best;
-use crate::heightfield::conemap::generate::task::MapTask;
+use crate::heightfield::conemap::generate::{Apex, Best, Cost, MapTask, Method, rings};
 use crate::wgsl;
 
 /// The search in rings.
@@ -41,9 +37,6 @@ impl Method for BruteForce {
 
 /// The height at some steps from a place.
 pub fn beside(task: &MapTask<'_>, from: [u32; 2], step: [i64; 2]) -> f64 {
-    let at = |a: usize| {
-        let n = i64::from(task.size[a]);
-        (i64::from(from[a]) + step[a]).rem_euclid(n) as usize
-    };
-    f64::from(task.values[at(1) * task.size[0] as usize + at(0)])
+    let [x, y] = [0, 1].map(|a| i64::from(from[a]) + step[a]);
+    task.heights.at(x, y)
 }

@@ -4,13 +4,11 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::generator::{
-    GenerateError, Generator, NodeCount, Options, Watch,
+use crate::heightfield::conemap::generate::generator::{NodeCount, Watch};
+use crate::heightfield::conemap::generate::{
+    GenerateError, Generator, MapTask, Options, min3x3::min3x3, task::Found,
 };
-use crate::heightfield::conemap::generate::min3x3::min3x3;
-use crate::heightfield::conemap::generate::task::{Found, MapTask};
-use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::{ConeMap, Heights, Patches};
 
 /// Places before the first call of the watch: seconds at most for the slowest generators
 /// on large maps.

@@ -12,7 +12,7 @@
 
 use rayon::prelude::*;
 
-use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::{Heights, Patches};
 
 /// The value of a place that limits nothing: lower than every height.
 pub const NO_LIMIT: f32 = -1.0;
@@ -23,35 +23,22 @@ fn falls([near, x, y, both]: [f64; 4]) -> bool {
     x < near || both < y || y < near || both < x
 }
 
-/// Whether the cell beyond a sample falls somewhere, seen in the direction of a quadrant.
-fn sample_limits(heights: &Heights, x: i64, y: i64, up: [bool; 2]) -> bool {
+/// Whether a place limits relaxed cones in the direction of a quadrant: a sample if the cell
+/// beyond it falls somewhere; a cell if a ray can come out of the surface in it, or on leaving
+/// it.
+fn is_limit(heights: &Heights, cells: Option<Patches>, [x, y]: [i64; 2], up: [bool; 2]) -> bool {
     let [dx, dy] = up.map(|up| if up { 1 } else { -1 });
-    let near = heights.at(x, y);
-    let corners = [
-        near,
-        heights.at(x + dx, y),
-        heights.at(x, y + dy),
-        heights.at(x + dx, y + dy),
-    ];
-    falls(corners)
-}
-
-/// Whether a ray to a quadrant can come out of the surface in a cell, or on leaving it.
-fn cell_limits(heights: &Heights, patches: Patches, x: i64, y: i64, up: [bool; 2]) -> bool {
-    match patches {
-        Patches::Bilinear => {
-            let c = heights.corners(patches, x, y);
+    let beyond = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[i, j]| heights.at(x + i * dx, y + j * dy));
+    match cells {
+        None => falls(beyond),
+        Some(Patches::Bilinear) => {
+            let c = heights.corners(Patches::Bilinear, x, y);
             // The corner that a ray passes first comes first.
             let first = usize::from(!up[0]) + 2 * usize::from(!up[1]);
             falls([c[first], c[first ^ 1], c[first ^ 2], c[first ^ 3]])
         }
-        Patches::Boxes => {
-            // A wall, or an edge, to a lower box.
-            let [dx, dy] = up.map(|up| if up { 1 } else { -1 });
-            let own = heights.at(x, y);
-            let beyond = [(x + dx, y), (x, y + dy), (x + dx, y + dy)];
-            beyond.into_iter().any(|(x, y)| heights.at(x, y) < own)
-        }
+        // A wall, or an edge, to a lower box.
+        Some(Patches::Boxes) => beyond.into_iter().any(|z| z < beyond[0]),
     }
 }
 
@@ -65,12 +52,11 @@ pub fn limits(
 ) -> Vec<f32> {
     let width = heights.places_along(cells)[0] as usize;
     let one = |(i, z): (usize, &f32)| {
-        let (x, y) = ((i % width) as i64, (i / width) as i64);
-        let limits = match cells {
-            Some(patches) => cell_limits(heights, patches, x, y, up),
-            None => sample_limits(heights, x, y, up),
-        };
-        if limits { *z } else { NO_LIMIT }
+        let place = [i % width, i / width].map(|i| i as i64);
+        match is_limit(heights, cells, place, up) {
+            true => *z,
+            false => NO_LIMIT,
+        }
     };
     values.par_iter().enumerate().map(one).collect()
 }

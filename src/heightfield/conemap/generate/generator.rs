@@ -4,11 +4,9 @@ use thiserror::Error;
 
 use crate::base::named::named_enum;
 use crate::heightfield::conemap::MapKind::{self, Relaxed, Samples};
-use crate::heightfield::conemap::generate::brute::BruteForce;
-use crate::heightfield::conemap::generate::method::Method;
-use crate::heightfield::conemap::generate::quick::Quick;
-use crate::heightfield::conemap::generate::relaxed::RaySearch;
-use crate::heightfield::conemap::generate::search;
+use crate::heightfield::conemap::generate::{
+    Method, brute::BruteForce, quick::Quick, relaxed::RaySearch, search,
+};
 
 /// How the cones of a generator compare with the widest that their kind allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

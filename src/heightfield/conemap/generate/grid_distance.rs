@@ -9,7 +9,7 @@
 //! lies on that side. The image in the other direction belongs to another side.
 
 use crate::base::shader::Module;
-use crate::heightfield::heights::Axis;
+use crate::heightfield::{heights::Axis, max_mip::Places};
 use crate::wgsl;
 
 /// Which places bound a cone, by their direction from the apex.
@@ -66,21 +66,7 @@ pub struct GridDistance {
     pub cells: bool,
 }
 
-/// A rectangle of places: the lowest and the highest along each axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Places {
-    /// Lowest.
-    pub low: [u32; 2],
-    /// Highest.
-    pub high: [u32; 2],
-}
-
 impl Places {
-    /// A single place.
-    pub fn one(at: [u32; 2]) -> Self {
-        Self { low: at, high: at }
-    }
-
     /// The lowest and the highest along an axis.
     fn along(self, axis: usize) -> Interval {
         [self.low[axis], self.high[axis]].map(i64::from)

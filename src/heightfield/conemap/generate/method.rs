@@ -1,11 +1,8 @@
 //! What a generator's method of search must provide.
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::generate::grid_distance::Sector;
-use crate::heightfield::conemap::generate::search::Best;
-use crate::heightfield::conemap::generate::task::MapTask;
-use crate::heightfield::conemap::generate::uniform::SearchState;
-use crate::heightfield::heights::{Heights, Patches};
+use crate::heightfield::conemap::generate::{Best, MapTask, SearchState, grid_distance::Sector};
+use crate::heightfield::{Heights, Patches};
 
 /// A place that is searched from: where it is, and the height of its apex.
 #[derive(Clone, Copy, Debug, PartialEq)]

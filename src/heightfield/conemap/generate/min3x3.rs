@@ -5,8 +5,7 @@
 use rayon::prelude::*;
 
 use crate::base::shader::Program;
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::heights::brought_in;
+use crate::heightfield::{ConeMap, heights::brought_in};
 use crate::wgsl;
 
 /// The index of a place along an axis: beyond the ends the last place, or where the axis

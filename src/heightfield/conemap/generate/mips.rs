@@ -8,7 +8,7 @@
 
 use rayon::prelude::*;
 
-use crate::heightfield::conemap::ConeMap;
+use crate::heightfield::ConeMap;
 
 /// One level.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,4 +78,10 @@ pub fn rounded_down(ratio: f64) -> f32 {
     } else {
         nearest
     }
+}
+
+/// Ratios as bytes to bind, each rounded down.
+pub fn stored<'a>(ratios: impl IntoIterator<Item = &'a f64>) -> Vec<u8> {
+    let stored = ratios.into_iter().map(|r| rounded_down(*r));
+    stored.flat_map(f32::to_ne_bytes).collect()
 }

@@ -22,3 +22,11 @@ pub mod search;
 pub mod slopes;
 pub mod task;
 pub mod uniform;
+
+pub use cost::Cost;
+pub use generator::{GenerateError, Generator, Options};
+pub use method::{Apex, Method};
+pub use rings::rings;
+pub use search::Best;
+pub use task::MapTask;
+pub use uniform::SearchState;

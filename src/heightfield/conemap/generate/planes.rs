@@ -11,12 +11,13 @@
 //! linear function `plane(v) - height - n.v / R` is nowhere positive on the node's
 //! rectangle, which its corners decide. n is the direction to the rectangle's centre.
 
-use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::grid_distance::{GridDistance, Places, Sector};
-use crate::heightfield::conemap::generate::method::Apex;
-use crate::heightfield::max_mip::MaxMip;
+use crate::heightfield::conemap::generate::grid_distance::{GridDistance, Sector};
+use crate::heightfield::conemap::generate::{Apex, Cost};
+use crate::heightfield::max_mip::{MipLevel, Places};
+use crate::heightfield::{MaxMip, heights::grid};
 
-/// How far below 0 the maximum of the linear function must be. Rounding is far less for coordinates under ten thousand and gradients that heights of 0..=1 can have.
+/// How far below 0 the maximum of the linear function must be. Rounding is far less for
+/// coordinates under ten thousand and gradients that heights of 0..=1 can have.
 const SURE: f64 = 1e-9;
 
 /// Coefficients of a plane `g[0] x + g[1] y + rest`.
@@ -46,15 +47,13 @@ impl Planes {
     /// Planes over a pyramid, level by level: the mean gradient of the children, and as
     /// high as their planes need it at the corners of their rectangles.
     pub fn new(mip: &MaxMip) -> Self {
-        let mut levels: Vec<(u32, Vec<Plane>)> = Vec::new();
-        for level in 1..mip.levels.len() {
-            let [w, h] = mip.levels[level].size;
-            let nodes = (0..h).flat_map(|y| (0..w).map(move |x| [x, y]));
-            let planes = nodes.map(|node| over_children(mip, &levels, level, node));
-            let planes = planes.collect();
-            levels.push((w, planes));
+        let mut planes = Self { levels: Vec::new() };
+        for (level, MipLevel { size, .. }) in mip.levels.iter().enumerate().skip(1) {
+            let all = grid(*size).map(|node| over_children(mip, &planes, level, node));
+            let all = all.collect();
+            planes.levels.push((size[0], all));
         }
-        Self { levels }
+        planes
     }
 
     /// The plane of a node of level 1 or above.
@@ -115,36 +114,27 @@ fn steps(distance: &GridDistance, a: usize, from: u32, to: Places) -> Option<Ste
     let axis = distance.axes[a];
     let at = f64::from(from);
     let (low, high) = (f64::from(to.low[a]) - at, f64::from(to.high[a]) - at);
-    if !axis.wrap {
-        return Some(Steps {
-            low,
-            high,
-            turn: 0.0,
-        });
-    }
     let n = f64::from(axis.count);
-    let turn = n * (0.5 * (low + high) / n).round();
+    let turn = match axis.wrap {
+        true => n * (0.5 * (low + high) / n).round(),
+        false => 0.0,
+    };
     let (low, high) = (low - turn, high - turn);
     let near = distance.sector == Sector::All && low >= -0.5 * n && high <= 0.5 * n;
-    near.then_some(Steps { low, high, turn })
+    (near || !axis.wrap).then_some(Steps { low, high, turn })
 }
 
-fn over_children(
-    mip: &MaxMip,
-    levels: &[(u32, Vec<Plane>)],
-    level: usize,
-    node: [u32; 2],
-) -> Plane {
+/// The plane of a node, from the planes of the levels below.
+fn over_children(mip: &MaxMip, below: &Planes, level: usize, node: [u32; 2]) -> Plane {
     let size = mip.levels[level - 1].size;
     let all = [0, 1, 2, 3].map(|i| [2 * node[0] + i % 2, 2 * node[1] + i / 2]);
     let exist = |at: &&[u32; 2]| at[0] < size[0] && at[1] < size[1];
-    let below = |[x, y]: [u32; 2]| {
+    let child = |at: [u32; 2]| {
         if level == 1 {
-            let rest = f64::from(mip.levels[0].at(x, y));
+            let rest = f64::from(mip.levels[0].at(at[0], at[1]));
             return Plane { g: [0.0; 2], rest };
         }
-        let (width, planes) = &levels[level - 2];
-        planes[(y * width + x) as usize]
+        below.get(level - 1, at)
     };
     let mut g = [0.0; 2];
     if level == 1 {
@@ -155,7 +145,7 @@ fn over_children(
         let [a, b, c, d] = [z(0), z(1), z(2), z(3)];
         g = [0.5 * (b - a + d - c), 0.5 * (c - a + d - b)];
     } else {
-        let planes: Vec<Plane> = all.iter().filter(exist).map(|at| below(*at)).collect();
+        let planes: Vec<Plane> = all.iter().filter(exist).map(|at| child(*at)).collect();
         for p in &planes {
             g = [0, 1].map(|a| g[a] + p.g[a] / planes.len() as f64);
         }
@@ -163,8 +153,8 @@ fn over_children(
     let mut plane = Plane { g, rest: 0.0 };
     let mut rest = f64::NEG_INFINITY;
     for at in all.iter().filter(exist) {
-        let child = below(*at);
-        let (low, high) = mip.places(level - 1, at[0], at[1]);
+        let child = child(*at);
+        let Places { low, high } = mip.places(level - 1, *at);
         for p in [low, [high[0], low[1]], [low[0], high[1]], high] {
             rest = rest.max(child.at(p) - plane.at(p));
         }

@@ -3,7 +3,7 @@
 
 use crate::base::shader::Program;
 use crate::heightfield::conemap::generate::uniform::PyramidUniform;
-use crate::heightfield::max_mip::{MaxMip, MipLevel};
+use crate::heightfield::{MaxMip, heights::grid, max_mip::MipLevel};
 use crate::wgsl;
 
 /// The tiles of a pyramid of maxima: level n holds, for each of its nodes, the maxima of
@@ -56,8 +56,8 @@ impl Tiles {
     /// The pyramid that tiles hold.
     pub fn unpack(&self, tiles: &[[f32; 4]]) -> MaxMip {
         let level = |n: usize| {
-            let [w, h] = self.levels[n];
-            let value = |x: u32, y: u32| {
+            let size = self.levels[n];
+            let value = |[x, y]: [u32; 2]| {
                 if n + 1 < self.levels.len() {
                     let row = self.levels[n + 1][0];
                     let tile = self.at[n + 1] + (y / 2) * row + x / 2;
@@ -68,13 +68,8 @@ impl Tiles {
                     all.into_iter().fold(f32::NEG_INFINITY, f32::max)
                 }
             };
-            MipLevel {
-                size: [w, h],
-                max: (0..h)
-                    .flat_map(|y| (0..w).map(move |x| (x, y)))
-                    .map(|(x, y)| value(x, y))
-                    .collect(),
-            }
+            let max = grid(size).map(value).collect();
+            MipLevel { size, max }
         };
         // Over a single place there is a tile, but no level above it.
         let count = if self.size == [1, 1] {

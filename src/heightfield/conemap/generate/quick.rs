@@ -18,13 +18,9 @@
 //! wrapping grid, because another image of the same places may be nearer.
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::generate::cost::Cost;
 use crate::heightfield::conemap::generate::grid_distance::{Interval, Neighbour, neighbours, node};
-use crate::heightfield::conemap::generate::method::{Apex, Method};
-use crate::heightfield::conemap::generate::search::Best;
-use crate::heightfield::conemap::generate::task::MapTask;
-use crate::heightfield::conemap::generate::uniform::SearchState;
-use crate::heightfield::heights::{Axis, Heights, Patches};
+use crate::heightfield::conemap::generate::{Apex, Best, Cost, MapTask, Method, SearchState};
+use crate::heightfield::{Heights, Patches, heights::Axis};
 use crate::wgsl;
 
 /// Where the maximum of a neighbour is assumed. The shader knows the rules by their order.

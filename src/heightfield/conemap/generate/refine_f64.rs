@@ -5,8 +5,7 @@
 //! computed as if the CPU had found the place. Where another place costs nearly as much, f32
 //! may have preferred the wrong one; then the place is searched again on the CPU.
 
-use crate::heightfield::conemap::generate::task::MapTask;
-use crate::heightfield::conemap::generate::uniform::SearchState;
+use crate::heightfield::conemap::generate::{MapTask, SearchState};
 
 /// Whether f32 leaves open what bounds any cone of a place.
 pub fn is_ambiguous(task: &MapTask<'_>, found: &[SearchState]) -> bool {
@@ -22,13 +21,11 @@ pub fn refined(task: &MapTask<'_>, index: usize, found: &[SearchState]) -> [f64;
     let cost = task.cost();
     let mut ratios = [0.0; 4];
     for (ratio, s) in ratios.iter_mut().zip(found) {
-        let bounded = s.top >= 0.0;
-        let found = if bounded {
-            task.method.found_cost(task, s, height).min(cost.widest())
-        } else {
-            cost.widest()
-        };
-        *ratio = cost.ratio(found);
+        let mut least = cost.widest();
+        if s.top >= 0.0 {
+            least = least.min(task.method.found_cost(task, s, height));
+        }
+        *ratio = cost.ratio(least);
     }
     ratios
 }

@@ -13,14 +13,10 @@
 //! flatter ones leave a peak sooner; and steps over a long way are many texels each.
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::generate::brute::beside;
-use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::method::{Apex, Method};
-use crate::heightfield::conemap::generate::rings::rings;
-use crate::heightfield::conemap::generate::search::Best;
-use crate::heightfield::conemap::generate::task::MapTask;
-use crate::heightfield::conemap::generate::uniform::SearchState;
-use crate::heightfield::heights::Patches;
+use crate::heightfield::Patches;
+use crate::heightfield::conemap::generate::{
+    Apex, Best, Cost, MapTask, Method, SearchState, brute::beside, rings,
+};
 use crate::wgsl;
 use glam::DVec2;
 

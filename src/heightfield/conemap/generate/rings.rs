@@ -4,10 +4,7 @@
 //! Each place is visited once, at its nearest image where axes wrap (of two equally near, at
 //! the lower one). So no corner beyond two borders is missed, and none counts twice.
 
-use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::method::Apex;
-use crate::heightfield::conemap::generate::search::Best;
-use crate::heightfield::conemap::generate::task::MapTask;
+use crate::heightfield::conemap::generate::{Apex, Best, Cost, MapTask};
 use crate::heightfield::heights::Axis;
 
 /// The least and the greatest step from a place along an axis.

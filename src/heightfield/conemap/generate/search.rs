@@ -11,16 +11,9 @@
 //! keep short ([`planes`](super::planes); only here, as they only save time).
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::falling;
-use crate::heightfield::conemap::generate::grid_distance::{
-    GridDistance, Places, Sector, neighbours,
-};
-use crate::heightfield::conemap::generate::method::{Apex, Method};
-use crate::heightfield::conemap::generate::planes::Planes;
-use crate::heightfield::conemap::generate::task::MapTask;
-use crate::heightfield::heights::{Heights, Patches};
-use crate::heightfield::max_mip::MaxMip;
+use crate::heightfield::conemap::generate::grid_distance::{GridDistance, Sector, neighbours};
+use crate::heightfield::conemap::generate::{Apex, Cost, MapTask, Method, falling, planes::Planes};
+use crate::heightfield::{Heights, MaxMip, Patches};
 use crate::wgsl;
 
 /// Branch and bound.
@@ -139,8 +132,8 @@ impl Search<'_> {
         // Level 0 is done: the siblings of a place are neighbours of it.
         for level in 1..self.mip.levels.len() {
             let own = self.from.place.map(|i| i >> level);
-            let (low, high) = self.mip.places(level, own[0], own[1]);
-            let outside = self.distance.outside(self.from.place, Places { low, high });
+            let block = self.mip.places(level, own);
+            let outside = self.distance.outside(self.from.place, block);
             let Some(steps) = outside else { return };
             if self.cost.of(steps * steps, most) >= best.cost {
                 return;
@@ -164,8 +157,7 @@ impl Search<'_> {
         if rise <= 0.0 {
             return None;
         }
-        let (low, high) = self.mip.places(level, at[0], at[1]);
-        let to = Places { low, high };
+        let to = self.mip.places(level, at);
         let squared = self.distance.squared(self.from.place, to)?;
         let cost = self.cost.of(squared, rise);
         if cost >= best.cost {
@@ -191,8 +183,7 @@ impl Search<'_> {
     fn children(&self, level: usize, parent: [u32; 2], without: Option<[u32; 2]>, best: &mut Best) {
         let size = self.mip.levels[level].size;
         let mut list: [Child; 4] = [(f64::INFINITY, [0; 2]); 4];
-        let mut count = 0;
-        for i in 0..4 {
+        for (i, child) in (0..4).zip(&mut list) {
             let at = [2 * parent[0] + i % 2, 2 * parent[1] + i / 2];
             if at[0] >= size[0] || at[1] >= size[1] || without == Some(at) {
                 continue;
@@ -200,17 +191,14 @@ impl Search<'_> {
             if level == 0 {
                 self.consider(at, best);
             } else if let Some(cost) = self.bound(level, at, best) {
-                // Insertion keeps the cheapest first.
-                let place = list[..count].iter().take_while(|c| c.0 <= cost).count();
-                list.copy_within(place..count, place + 1);
-                list[place] = (cost, at);
-                count += 1;
+                *child = (cost, at);
             }
         }
-        for (cost, at) in &list[..count] {
+        list.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (cost, at) in list {
             // What was found since may have ruled it out.
-            if *cost < best.cost {
-                self.children(level - 1, *at, None, best);
+            if cost < best.cost {
+                self.children(level - 1, at, None, best);
             }
         }
     }

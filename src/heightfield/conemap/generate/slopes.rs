@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::heightfield::heights::Heights;
+use crate::heightfield::Heights;
 
 /// Rise per texel along both axes at each sample, by central differences; at a border
 /// that does not wrap by the difference to the one neighbour that there is.

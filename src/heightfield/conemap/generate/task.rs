@@ -2,15 +2,10 @@
 //! Twin: `wgsl/heightfield/conemap/generate/task.wgsl`.
 
 use crate::base::shader::Program;
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::cost::Cost;
-use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
-use crate::heightfield::conemap::generate::method::{Apex, Method};
-use crate::heightfield::conemap::generate::planes::Planes;
-use crate::heightfield::conemap::generate::search::Best;
-use crate::heightfield::conemap::generate::{min3x3, pyramid};
-use crate::heightfield::heights::{Axis, Heights, Patches};
-use crate::heightfield::max_mip::MaxMip;
+use crate::heightfield::conemap::generate::{
+    Apex, Best, Cost, GenerateError, Generator, Method, Options, planes::Planes,
+};
+use crate::heightfield::{ConeMap, Heights, MaxMip, Patches, heights::Axis};
 use crate::wgsl;
 
 /// A generator with everything that its searches read.
@@ -164,11 +159,4 @@ pub fn program_of(generator: Generator) -> Program {
     let one = Heights::new([1, 1], [false, false], vec![0.0]).expect("one sample is a map");
     let task = MapTask::new(generator, &one, Patches::default(), &Options::default());
     task.expect("the default options are in range").program()
-}
-
-/// Every program that a device makes cone maps with.
-pub fn every_program() -> Vec<Program> {
-    let shared = [pyramid::program(), min3x3::program()];
-    let generators = Generator::ALL.into_iter().map(program_of);
-    shared.into_iter().chain(generators).collect()
 }
