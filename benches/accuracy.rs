@@ -20,6 +20,7 @@ mod common {
     pub mod plans;
     pub mod precision;
     pub mod probe;
+    pub mod programs;
     pub mod random;
     pub mod setups;
     pub mod solved;
