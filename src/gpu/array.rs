@@ -3,9 +3,14 @@
 //! WebGPU promises eight storage buffers to a stage, of 128 MiB each. Textures are more, and a
 //! texture of 8192 x 8192 numbers has 256 MiB.
 
+use std::any::Any;
+use std::sync::Arc;
+
+use crate::base::array::SceneArray;
 use crate::gpu::buffer::uniform;
 use crate::gpu::device::Device;
 use crate::gpu::error::{RenderError, check_room};
+use crate::gpu::kernel::Kernel;
 
 /// Numbers in a row of a texture. `wgsl/heightfield/heights.wgsl` counts on it.
 const ROW: u32 = 8192;
@@ -109,4 +114,54 @@ fn write_rows(device: &Device, texture: &wgpu::Texture, y: u32, bytes: &[u8], wi
         depth_or_array_layers: 1,
     };
     device.queue.write_texture(to, bytes, layout, size);
+}
+
+/// The arrays of the last scene, kept as long as the scene's assets stay the same.
+#[derive(Default)]
+pub struct Arrays(Vec<KeptArray>);
+
+/// An array with what it was made of.
+pub struct KeptArray {
+    /// The WGSL variable.
+    pub name: &'static str,
+    origin: Arc<dyn Any + Send + Sync>,
+    /// The array.
+    pub array: Arc<Array>,
+}
+
+impl Arrays {
+    /// The arrays of a scene: the kept ones, or new ones as the kernels read them. Others are
+    /// dropped. Adds the bytes written to `uploads`.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn keep(
+        &mut self,
+        device: &Device,
+        kernels: &[Arc<Kernel>],
+        scene: Vec<SceneArray>,
+        uploads: &mut usize,
+    ) -> Result<&[KeptArray], RenderError> {
+        let mut old = std::mem::take(&mut self.0);
+        for asked in scene {
+            let same = |kept: &KeptArray| {
+                kept.name == asked.name && Arc::ptr_eq(&kept.origin, &asked.origin)
+            };
+            if let Some(i) = old.iter().position(same) {
+                self.0.push(old.swap_remove(i));
+                continue;
+            }
+            let reader = kernels.iter().find(|k| k.reads(asked.name));
+            // No program may read it: a depth picture has no colours.
+            let Some(reader) = reader else { continue };
+            let bytes = asked.bytes();
+            *uploads += bytes.len();
+            self.0.push(KeptArray {
+                name: asked.name,
+                array: Arc::new(reader.array(device, asked.name, &bytes)?),
+                origin: asked.origin,
+            });
+        }
+        Ok(&self.0)
+    }
 }

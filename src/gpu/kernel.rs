@@ -151,24 +151,21 @@ impl Kernel {
         })
     }
 
-    /// An array of numbers under the name of a variable, as the program reads it: in a buffer or
-    /// in a texture. `None` if the program does not read it.
+    /// Whether the program reads a variable.
+    pub fn reads(&self, name: &str) -> bool {
+        self.bindings.iter().any(|b| b.name == name)
+    }
+
+    /// An array of numbers for a variable, as the program reads it: in a buffer or in a texture.
     ///
     /// # Errors
     /// The device has no room.
-    pub fn array(
-        &self,
-        device: &Device,
-        name: &str,
-        bytes: &[u8],
-    ) -> Result<Option<Array>, RenderError> {
-        let Some(binding) = self.bindings.iter().find(|b| b.name == name) else {
-            return Ok(None);
-        };
-        Ok(Some(match binding.kind {
-            Kind::Storage { .. } => Array::in_buffer(device, name, bytes)?,
-            Kind::Texture { whole } => Array::in_texture(device, name, bytes, whole)?,
-        }))
+    pub fn array(&self, device: &Device, name: &str, bytes: &[u8]) -> Result<Array, RenderError> {
+        let binding = self.bindings.iter().find(|b| b.name == name);
+        match binding.map(|b| b.kind) {
+            Some(Kind::Texture { whole }) => Array::in_texture(device, name, bytes, whole),
+            _ => Array::in_buffer(device, name, bytes),
+        }
     }
 
     /// Bytes per element of a storage array; `None` if the program has no such array.

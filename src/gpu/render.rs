@@ -13,7 +13,7 @@ use crate::gpu::cost::Cost;
 use crate::gpu::device::Device;
 pub use crate::gpu::error::RenderError;
 use crate::gpu::stamps::Stamps;
-use crate::gpu::target::{Needs, Target};
+use crate::gpu::target::{Needs, Parameters, Target};
 use crate::gpu::work::{Counters, Job, Kept, Shared, Work};
 use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
@@ -80,6 +80,7 @@ impl Renderer {
             shared: Arc::new(Shared {
                 device,
                 kernels: Mutex::default(),
+                arrays: Mutex::default(),
                 kept: Mutex::default(),
             }),
         }
@@ -130,25 +131,37 @@ impl Renderer {
         };
         let parameters = parameters(plan, &scene, assets);
         let mut counters = Counters::default();
+        let kernels = &mut *lock(&self.shared.kernels);
+        let known = kernels.len();
+        let mut compile = |program| kernels.get(device, program);
+        let compiled = needs.programs.iter().map(&mut compile);
+        let compiled: Vec<_> = compiled.collect::<Result<_, _>>()?;
+        let arrange = kernels.get(device, &turn::arrange())?;
+        counters.compilations = kernels.len() - known;
+        let arrays = &mut *lock(&self.shared.arrays);
+        let arrays = arrays.keep(
+            device,
+            &compiled,
+            scene.twin().arrays(),
+            &mut counters.uploads,
+        )?;
         let mut kept = std::mem::take(&mut *lock(&self.shared.kept));
         let served = kept.target.take();
-        let served = served.filter(|t| t.serves(&needs, &parameters));
-        let target = if let Some(mut target) = served {
-            counters.uploads = target.rewrite(device, parameters);
-            target
-        } else {
-            counters.uploads = parameters.iter().map(|(_, bytes)| bytes.len()).sum();
-            counters.allocated = true;
-            kept = Kept {
-                costs: vec![Cost::default(); passes.len() + 2],
-                stamps: Stamps::new(device),
-                ..Kept::default()
-            };
-            let kernels = &mut *lock(&self.shared.kernels);
-            let known = kernels.len();
-            let target = Target::new(device, kernels, needs, parameters)?;
-            counters.compilations = kernels.len() - known;
-            target
+        let target = match served.filter(|t| t.serves(&needs, &parameters, arrays)) {
+            Some(mut target) => {
+                counters.uploads += target.rewrite(device, parameters);
+                target
+            }
+            None => {
+                counters.uploads += parameters.iter().map(|(_, b)| b.len()).sum::<usize>();
+                counters.allocated = true;
+                kept = Kept {
+                    costs: vec![Cost::default(); passes.len() + 2],
+                    stamps: Stamps::new(device),
+                    ..Kept::default()
+                };
+                Target::new(device, compiled, arrange, needs, parameters, arrays)?
+            }
         };
         target.begin(device);
         kept.target = Some(target);
@@ -183,15 +196,14 @@ impl Renderer {
 }
 
 /// The parameters of a frame by the names of the WGSL variables.
-fn parameters(plan: &Plan, scene: &AnySolid, assets: &Assets) -> Vec<(String, Vec<u8>)> {
+fn parameters(plan: &Plan, scene: &AnySolid, assets: &Assets) -> Parameters {
     let view = plan.view().uniform();
     let look = Light::of(plan, assets).uniform();
     let frame = [
         ("view_parameters", bytes_of(&view).to_vec()),
         ("look_parameters", bytes_of(&look).to_vec()),
     ];
-    let all = scene.twin().uniforms().into_iter().chain(frame);
-    all.map(|(name, bytes)| (name.to_string(), bytes)).collect()
+    scene.twin().uniforms().into_iter().chain(frame).collect()
 }
 
 /// What a lock holds, also after a panic: nothing half-made is put there.

@@ -9,12 +9,12 @@ use bytemuck::{Zeroable, bytes_of, cast_slice};
 use wgpu::BufferUsages;
 
 use crate::base::shader::Program;
-use crate::gpu::array::Array;
-use crate::gpu::buffer::create;
+use crate::gpu::array::{Array, KeptArray};
+use crate::gpu::buffer::{create, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::error::{RenderError, check_room};
-use crate::gpu::kernel::{Kernel, Kernels};
-use crate::pass::turn::{self, Layout, ListsHead, Stage, Turn};
+use crate::gpu::kernel::Kernel;
+use crate::pass::turn::{Layout, ListsHead, Stage, Turn};
 
 /// What decides a target.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,11 +27,14 @@ pub struct Needs {
     pub pixel_layers: u32,
 }
 
-/// Parameters or an array of the scene, with what it holds.
+/// The parameters of a frame: bytes by the names of the WGSL variables.
+pub type Parameters = Vec<(&'static str, Vec<u8>)>;
+
+/// A buffer of parameters with what it holds.
 struct Parameter {
-    name: String,
+    name: &'static str,
     bytes: Vec<u8>,
-    array: Array,
+    buffer: wgpu::Buffer,
 }
 
 /// A stage: its numbers, its kernel, and the resources of both.
@@ -50,6 +53,7 @@ pub struct Bound {
 pub struct Target {
     needs: Needs,
     parameters: Vec<Parameter>,
+    arrays: Vec<Arc<Array>>,
     /// The turn.
     pub turn: wgpu::Buffer,
     /// The lists of cells.
@@ -75,9 +79,11 @@ impl Target {
     /// A program is wrong, or the device has no room.
     pub fn new(
         device: &Device,
-        kernels: &mut Kernels,
+        compiled: Vec<Arc<Kernel>>,
+        arrange: Arc<Kernel>,
         needs: Needs,
-        parameters: Vec<(String, Vec<u8>)>,
+        parameters: Parameters,
+        scene: &[KeptArray],
     ) -> Result<Self, RenderError> {
         let most = device.most_bound();
         let room = |what: &str, bytes: u64| {
@@ -90,24 +96,12 @@ impl Target {
                 usage,
             ))
         };
-        let kernel = |program: &Program| kernels.get(device, program);
-        let compiled: Vec<_> = needs
-            .programs
-            .iter()
-            .map(kernel)
-            .collect::<Result<_, _>>()?;
-        let arrange = kernels.get(device, &turn::arrange())?;
-        let mut kept = Vec::new();
-        for (name, bytes) in parameters {
-            // Every program that reads it declares it alike.
-            for kernel in &compiled {
-                if let Some(array) = kernel.array(device, &name, &bytes)? {
-                    kept.push(Parameter { name, bytes, array });
-                    break;
-                }
-            }
-        }
-        let parameters = kept;
+        let parameter = |(name, bytes): (&'static str, Vec<u8>)| Parameter {
+            name,
+            buffer: uniform(device, name, &bytes),
+            bytes,
+        };
+        let parameters: Vec<Parameter> = parameters.into_iter().map(parameter).collect();
         let pixels = u64::from(needs.layout.count(1));
         let strides = compiled.iter().filter_map(|k| k.stride("walks"));
         let walk = u64::from(strides.max().unwrap_or(0));
@@ -130,9 +124,15 @@ impl Target {
         ];
         let named = |name: &str| {
             let shared = shared.iter().find(|b| b.0 == name).map(|b| b.1);
-            let own = || parameters.iter().find(|p| p.name == name);
-            let shared = shared.map(wgpu::Buffer::as_entire_binding);
-            shared.or_else(|| own().map(|p| p.array.binding()))
+            let own = || {
+                parameters
+                    .iter()
+                    .find(|p| p.name == name)
+                    .map(|p| &p.buffer)
+            };
+            let buffer = shared.or_else(own).map(wgpu::Buffer::as_entire_binding);
+            let array = || scene.iter().find(|a| a.name == name);
+            buffer.or_else(|| array().map(|a| a.array.binding()))
         };
         let arranged = |stage: &wgpu::Buffer| {
             let with_stage = |name: &str| match name {
@@ -161,6 +161,7 @@ impl Target {
             stages: compiled.into_iter().map(bind).collect::<Result<_, _>>()?,
             needs,
             parameters,
+            arrays: scene.iter().map(|a| a.array.clone()).collect(),
             turn,
             lists,
             cells,
@@ -170,22 +171,28 @@ impl Target {
         })
     }
 
-    /// Whether the target serves a frame: its programs and sizes are the same.
-    pub fn serves(&self, needs: &Needs, parameters: &[(String, Vec<u8>)]) -> bool {
+    /// Whether the target serves a frame: its programs, sizes and arrays are the same.
+    pub fn serves(&self, needs: &Needs, parameters: &Parameters, scene: &[KeptArray]) -> bool {
         let same = |own: &Parameter| {
             let found = parameters.iter().find(|(name, _)| *name == own.name);
             found.is_some_and(|(_, bytes)| own.bytes.len() == bytes.len())
         };
-        self.needs == *needs && self.parameters.iter().all(same)
+        let arrays = self.arrays.iter().zip(scene);
+        self.needs == *needs
+            && self.parameters.iter().all(same)
+            && self.arrays.len() == scene.len()
+            && arrays
+                .map(|(own, a)| Arc::ptr_eq(own, &a.array))
+                .all(|same| same)
     }
 
     /// Rewrites the parameters that differ. Returns the bytes written.
-    pub fn rewrite(&mut self, device: &Device, parameters: Vec<(String, Vec<u8>)>) -> usize {
+    pub fn rewrite(&mut self, device: &Device, parameters: Parameters) -> usize {
         let mut written = 0;
         for (name, bytes) in parameters {
             let mut own = self.parameters.iter_mut();
             if let Some(own) = own.find(|p| p.name == name && p.bytes != bytes) {
-                own.array.write(device, &bytes);
+                device.queue.write_buffer(&own.buffer, 0, &bytes);
                 written += bytes.len();
                 own.bytes = bytes;
             }

@@ -12,6 +12,7 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
+use crate::gpu::array::Arrays;
 use crate::gpu::collect::Parts;
 use crate::gpu::cost::Cost;
 use crate::gpu::device::Device;
@@ -38,6 +39,7 @@ const REPORT: u64 = (size_of::<Turn>() + size_of::<ListsHead>()) as u64 + PAIR;
 pub(super) struct Shared {
     pub device: Arc<Device>,
     pub kernels: Mutex<Kernels>,
+    pub arrays: Mutex<Arrays>,
     pub kept: Mutex<Kept>,
 }
 

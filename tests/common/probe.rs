@@ -60,14 +60,18 @@ impl Probe {
         asked.write(device, questions);
         let told = Buffer::<Numbers>::new(device, "told", questions.len());
         let mut arrays = HashMap::new();
-        for (name, bytes) in &self.parameters {
+        for (name, bytes) in self
+            .parameters
+            .iter()
+            .filter(|(name, _)| kernel.reads(name))
+        {
             let array = kernel.array(device, name, bytes);
             arrays.insert(*name, array.unwrap_or_else(|e| panic!("{e}")));
         }
         let groups = kernel.bind(device, |name| match name {
             "asked" => Some(asked.raw.as_entire_binding()),
             "told" => Some(told.raw.as_entire_binding()),
-            own => Some(arrays.get(own)?.as_ref()?.binding()),
+            own => Some(arrays.get(own)?.binding()),
         });
         let groups = groups.unwrap_or_else(|e| panic!("{e}"));
         let mut encoder = device.device.create_command_encoder(&Default::default());

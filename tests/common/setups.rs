@@ -48,6 +48,8 @@ pub fn probe_of(plan: &Plan, probe: Module) -> Probe {
         probe,
     ]);
     let mut parameters = solid.twin().uniforms();
+    let arrays = solid.twin().arrays();
+    parameters.extend(arrays.iter().map(|array| (array.name, array.bytes())));
     let view = plan.view().uniform();
     parameters.push(("view_parameters", bytes_of(&view).to_vec()));
     Probe {

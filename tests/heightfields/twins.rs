@@ -49,9 +49,11 @@ fn probe_of(tracer: &Tracer) -> Probe {
     modules.push(wgsl!("pass/shared.wgsl"));
     modules.push(wgsl!("pass/counters_off.wgsl"));
     modules.push(probe!("relief"));
+    let arrays = tracer.arrays();
+    let arrays = arrays.iter().map(|array| (array.name, array.bytes()));
     Probe {
         modules,
-        parameters: tracer.buffers(),
+        parameters: arrays.chain([tracer.parameters()]).collect(),
     }
 }
 
