@@ -14,12 +14,12 @@ use crate::gpu::device::Device;
 pub use crate::gpu::error::RenderError;
 use crate::gpu::stamps::Stamps;
 use crate::gpu::target::{Needs, Parameters, Target};
-use crate::gpu::work::{Counters, Job, Kept, Shared, Work};
+use crate::gpu::work::{Job, Kept, Shared, Work};
 use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
 use crate::pass::progress::Watch;
 use crate::pass::{program, turn};
-use crate::picture::frame::Frame;
+use crate::picture::frame::{Frame, Traffic};
 use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Plan};
 use crate::scene::{AnySolid, Assets};
@@ -130,31 +130,31 @@ impl Renderer {
             },
         };
         let parameters = parameters(plan, &scene, assets);
-        let mut counters = Counters::default();
+        let mut traffic = Traffic::default();
         let kernels = &mut *lock(&self.shared.kernels);
         let known = kernels.len();
         let mut compile = |program| kernels.get(device, program);
         let compiled = needs.programs.iter().map(&mut compile);
         let compiled: Vec<_> = compiled.collect::<Result<_, _>>()?;
         let arrange = kernels.get(device, &turn::arrange())?;
-        counters.compilations = kernels.len() - known;
+        traffic.compilations = kernels.len() - known;
         let arrays = &mut *lock(&self.shared.arrays);
         let arrays = arrays.keep(
             device,
             &compiled,
             scene.twin().arrays(),
-            &mut counters.uploads,
+            &mut traffic.uploads,
         )?;
         let mut kept = std::mem::take(&mut *lock(&self.shared.kept));
         let served = kept.target.take();
         let target = match served.filter(|t| t.serves(&needs, &parameters, arrays)) {
             Some(mut target) => {
-                counters.uploads += target.rewrite(device, parameters);
+                traffic.uploads += target.rewrite(device, parameters);
                 target
             }
             None => {
-                counters.uploads += parameters.iter().map(|(_, b)| b.len()).sum::<usize>();
-                counters.allocated = true;
+                traffic.uploads += parameters.iter().map(|(_, b)| b.len()).sum::<usize>();
+                traffic.allocations = 1;
                 kept = Kept {
                     costs: vec![Cost::default(); passes.len() + 2],
                     stamps: Stamps::new(device),
@@ -176,8 +176,9 @@ impl Renderer {
             extras,
             prepared,
         };
-        let frame = Frame::blank(plan, extras);
-        Ok(Work::new(self.shared.clone(), kept, job, frame, counters))
+        let mut frame = Frame::blank(plan, extras);
+        frame.traffic = Some(traffic);
+        Ok(Work::new(self.shared.clone(), kept, job, frame))
     }
 
     /// Renders a plan: [`Renderer::begin`] and [`Work::finish`].
