@@ -290,7 +290,8 @@ fn strides_of(module: &naga::Module) -> Vec<(String, u32)> {
 
 fn layout_entry(b: &Binding) -> wgpu::BindGroupLayoutEntry {
     let ty = match b.kind {
-        // Parameters are storage too: see [`crate::gpu::device::STORAGE_BUFFERS`].
+        // Parameters are storage too, as lavapipe of Mesa 22 inlines uniform buffers that steer
+        // branches, at times beyond its stack.
         Kind::Storage { read_only } => wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Storage { read_only },
             has_dynamic_offset: false,
