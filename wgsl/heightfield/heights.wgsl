@@ -30,7 +30,7 @@ override RELIEF_BOXES: bool;
 @group(0) @binding(4) var<storage, read> relief_parameters: ReliefUniform;
 @group(0) @binding(5) var heights: texture_2d<f32>;
 @group(0) @binding(6) var ratios: texture_2d<f32>;
-/// In a buffer: software Vulkan takes a third longer over cones that read it from a texture.
+/// In a buffer: cones read little else, and software Vulkan reads textures more slowly.
 @group(0) @binding(7) var<storage, read> maxima: array<f32>;
 var<private> relief: ReliefUniform;
 
