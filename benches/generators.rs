@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use conemarch::gpu::conemap::generate::Maker;
-use conemarch::gpu::device::{Adapters, Choice, Device, PROMISED_BUFFERS};
+use conemarch::gpu::device::{Adapters, Choice, Device};
 use conemarch::heightfield::conemap::ConeMap;
 use conemarch::heightfield::conemap::generate::cpu;
 use conemarch::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
@@ -155,7 +155,7 @@ fn open() -> Result<Device> {
     let adapters = Adapters::find();
     let found = adapters.choose(&Choice::Auto)?;
     let (adapter, _) = found.context("there is no adapter")?;
-    Ok(Device::open(adapter, PROMISED_BUFFERS)?)
+    Ok(Device::open(adapter)?)
 }
 
 /// Steps along each ray of Listing 18-2 in the paper on quick maps (section 4.1).

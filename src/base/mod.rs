@@ -1,5 +1,6 @@
 //! The ground that all other rooms stand on.
 //!
+//! - [`array`]: arrays of numbers that a device keeps from frame to frame
 //! - [`key`]: the keys of presets
 //! - [`shader`]: WGSL programs joined from files
 //! - [`view`]: the camera's rays and cones
@@ -7,6 +8,7 @@
 //! - [`work`]: what a pixel is, and what it cost
 //! - [`srgb`]: linear colours to and from sRGB
 
+pub mod array;
 pub mod cone;
 pub mod key;
 pub mod named;

@@ -28,10 +28,6 @@ pub struct ViewUniform {
     pub pad: f32,
     /// Width and height of the full image in pixels.
     pub size: [u32; 2],
-    /// First pixel of the block.
-    pub block_origin: [u32; 2],
-    /// Width and height of the block in pixels.
-    pub block_size: [u32; 2],
     /// Unused.
     pub pad2: [u32; 2],
 }
@@ -112,8 +108,8 @@ impl View {
         }
     }
 
-    /// The values of the WGSL struct, for one block of the image.
-    pub fn uniform(&self, origin: [u32; 2], block: [u32; 2]) -> ViewUniform {
+    /// The values of the WGSL struct.
+    pub fn uniform(&self) -> ViewUniform {
         ViewUniform {
             right: self.right.as_vec3(),
             pixel: self.pixel as f32,
@@ -121,8 +117,6 @@ impl View {
             slack: CHORD_SLACK as f32,
             forward: self.forward.as_vec3(),
             size: self.size,
-            block_origin: origin,
-            block_size: block,
             ..Zeroable::zeroed()
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::cpu;
 use crate::gpu::RenderError;
-use crate::gpu::device::{Adapters, Choice, Device, DeviceError, STORAGE_BUFFERS};
+use crate::gpu::device::{Adapters, Choice, Device, DeviceError};
 use crate::gpu::render::Renderer;
 use crate::pass::progress::Watch;
 use crate::picture::frame::Frame;
@@ -45,27 +45,22 @@ impl Executor {
     /// # Errors
     /// No adapter matches, or it does not open. `auto` then takes the CPU executor.
     pub fn open(choice: &Choice) -> Result<(Self, String), DeviceError> {
-        Self::open_with(choice, STORAGE_BUFFERS, true)
+        Self::open_with(choice, true)
     }
 
-    /// As [`Executor::open`], for programs that bind up to so many storage buffers: cone maps
-    /// need fewer than pictures. `auto` takes a software adapter only if `software` is set.
+    /// As [`Executor::open`]. `auto` takes a software adapter only if `software` is set.
     ///
     /// # Errors
     /// As [`Executor::open`].
-    pub fn open_with(
-        choice: &Choice,
-        storage_buffers: u32,
-        software: bool,
-    ) -> Result<(Self, String), DeviceError> {
+    pub fn open_with(choice: &Choice, software: bool) -> Result<(Self, String), DeviceError> {
         let (device, why) = match choice {
             Choice::Cpu => (None, "as asked".into()),
-            Choice::Auto => match Adapters::find().open_first(storage_buffers, software) {
+            Choice::Auto => match Adapters::find().open_first(software) {
                 Ok((device, why)) => (Some(device), why),
                 Err(why) => (None, why),
             },
             choice => match Adapters::find().choose(choice)? {
-                Some((adapter, why)) => (Some(Device::open(adapter, storage_buffers)?), why),
+                Some((adapter, why)) => (Some(Device::open(adapter)?), why),
                 None => (None, "as there is no adapter".into()),
             },
         };

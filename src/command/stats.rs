@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::command::executor::Executor;
 use crate::command::sink::shown;
-use crate::picture::frame::{Frame, PassFigures};
+use crate::picture::frame::{Frame, PassFigures, Traffic};
 use crate::plan::{Pass, Plan};
 
 /// One render.
@@ -38,6 +38,9 @@ pub struct Stats {
     pub unconverged: f64,
     /// Share of pixels whose shadow's ray did, 0..1.
     pub undecided: f64,
+    /// How the host and the device worked together.
+    #[serde(flatten)]
+    pub traffic: Option<Traffic>,
 }
 
 impl Stats {
@@ -59,6 +62,7 @@ impl Stats {
             sky,
             unconverged,
             undecided: undecided(frame),
+            traffic: frame.traffic,
         }
     }
 }

@@ -1,161 +1,203 @@
 //! Copies what the device made of a block into the frame of the whole picture.
 
-use std::collections::HashMap;
-use std::rc::Rc;
-
-use bytemuck::Pod;
-
 use crate::base::work::{State, Work};
-use crate::gpu::buffer::Buffer;
-use crate::gpu::device::Device;
-use crate::gpu::error::RenderError;
-use crate::gpu::job::Job;
+use crate::gpu::device::{Device, DeviceError};
+use crate::gpu::staging::Staging;
+use crate::gpu::target::Target;
+use crate::pass::turn::Layout;
 use crate::picture::frame::Frame;
-use crate::plan::Pass;
+use crate::plan::{Extras, Pass};
 
-/// The buffers of a block by the names of their variables. What a pass writes is also there by
-/// its name and the number of the pass.
-pub type Bound = HashMap<String, Rc<wgpu::Buffer>>;
-
-/// A state that no shader writes. It marks cells that were not visited.
-pub const UNWRITTEN: u32 = u32::MAX;
-
-/// Copies a block's layers into the frame.
-///
-/// # Errors
-/// The device is lost, or it left cells unvisited.
-pub fn collect(
-    device: &Device,
-    job: &Job<'_>,
-    passes: &[Pass],
-    bound: &Bound,
-    frame: &mut Frame,
-) -> Result<(), RenderError> {
-    let mut parents: Option<Vec<u32>> = None;
-    for (at, pass) in passes.iter().enumerate() {
-        let divisor = match pass {
-            Pass::March(level) => level.divisor,
-            Pass::Trace => 1,
-            Pass::Color | Pass::Prepare(_) => continue,
-        };
-        let to = Target::new(job, divisor);
-        let states: Vec<u32> = to.read(device, bound, &format!("state {at}"))?;
-        let missing = unvisited(&states, to.cells, parents.as_deref());
-        if missing > 0 {
-            return Err(RenderError::Unwritten {
-                device: device.info.name.clone(),
-                pass: pass.name(),
-                cells: missing,
-            });
-        }
-        let tally: Vec<[u32; 2]> = to.read(device, bound, &format!("tally {at}"))?;
-        let work = |[evaluations, iterations]: [u32; 2]| Work {
-            evaluations,
-            iterations,
-        };
-        let work: Vec<Work> = tally.into_iter().map(work).collect();
-        if !work.is_empty() {
-            let figures = &mut frame.passes[at];
-            let sum = |f: fn(&Work) -> u32| work.iter().map(|w| u64::from(f(w))).sum::<u64>();
-            *figures.evaluations.get_or_insert(0) += sum(|w| w.evaluations);
-            *figures.iterations.get_or_insert(0) += sum(|w| w.iterations);
-        }
-        let codes: Vec<u8> = states.iter().copied().map(seen).collect();
-        if *pass == Pass::Trace {
-            let mut depth: Vec<f32> = to.read(device, bound, &format!("front {at}"))?;
-            for (t, _) in depth.iter_mut().zip(&codes).filter(|(_, s)| is_sky(**s)) {
-                *t = f32::INFINITY;
-            }
-            to.copy(&depth, &mut frame.depth);
-            to.copy(&codes, &mut frame.state);
-            to.copy(&work, &mut frame.work);
-        } else {
-            let layer = &mut frame.levels[at];
-            to.copy(&work, &mut layer.work);
-            if job.extras.levels {
-                let mut fronts: Vec<f32> = to.read(device, bound, &format!("front {at}"))?;
-                let all = fronts.iter_mut().zip(&states);
-                for (front, _) in all.filter(|(_, s)| **s == UNWRITTEN) {
-                    *front = f32::MAX;
-                }
-                to.copy(&fronts, &mut layer.front);
-                to.copy(&codes, &mut layer.state);
-            }
-        }
-        parents = Some(states);
-    }
-    let to = Target::new(job, 1);
-    let rgb = |[r, g, b, _]: [f32; 4]| [r, g, b];
-    let pixels: Vec<[f32; 4]> = to.read(device, bound, "radiance")?;
-    frame.undecided += pixels.iter().filter(|p| p[3] == 0.0).count();
-    let radiance: Vec<_> = pixels.into_iter().map(rgb).collect();
-    to.copy(&radiance, &mut frame.radiance);
-    if job.extras.normals {
-        let normals = to.read(device, bound, "normals")?;
-        let normals: Vec<_> = normals.into_iter().map(rgb).collect();
-        to.copy(&normals, &mut frame.normal);
-    }
-    Ok(())
+/// Which values of a block are read, in words: where each part starts, and how long it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Parts {
+    depth: Range,
+    state: Range,
+    tally: Range,
+    level_states: Range,
+    level_fronts: Range,
+    pixels: Range,
 }
 
-/// Number of cells that were not visited although their parent is not sky, or visited although
-/// it is. Without parents every cell must be visited.
-fn unvisited(states: &[u32], cells: [u32; 2], parents: Option<&[u32]>) -> usize {
-    let width = cells[0] as usize;
-    let parent_width = width.div_ceil(2);
-    let wrong = |(i, state): (usize, &u32)| {
-        let wanted = parents.is_none_or(|p| {
-            let parent = p[(i / width / 2) * parent_width + i % width / 2];
-            !is_sky(seen(parent))
-        });
-        wanted == State::from_code(*state).is_none()
-    };
-    states.iter().enumerate().filter(|c| wrong(*c)).count()
+/// A part of the values of all cells, in words.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Range {
+    at: u32,
+    words: u32,
+}
+
+impl Range {
+    fn between(at: u32, end: u32) -> Self {
+        Self {
+            at,
+            words: end - at,
+        }
+    }
+
+    fn only_if(self, wanted: bool) -> Self {
+        if wanted { self } else { Self::default() }
+    }
+}
+
+impl Parts {
+    /// What a frame with these extras holds of a block.
+    pub fn new(layout: &Layout, extras: Extras) -> Self {
+        let area = layout.count(1);
+        let (tally, front) = (layout.tally(1), layout.front(1));
+        let layers = 1 + u32::from(extras.normals);
+        Self {
+            depth: Range::between(front, front + area),
+            state: Range::between(0, area),
+            tally: Range::between(tally, front).only_if(extras.count),
+            level_states: Range::between(area, tally).only_if(extras.levels),
+            level_fronts: Range::between(front + area, layout.mark()).only_if(extras.levels),
+            pixels: Range::between(0, 4 * layers * area).only_if(!extras.depth_only),
+        }
+    }
+
+    fn of_cells(&self) -> [Range; 5] {
+        [
+            self.depth,
+            self.state,
+            self.tally,
+            self.level_states,
+            self.level_fronts,
+        ]
+    }
+
+    /// Bytes of all parts.
+    pub fn bytes(&self) -> u64 {
+        let words = self.of_cells().map(|r| u64::from(r.words));
+        4 * (words.iter().sum::<u64>() + u64::from(self.pixels.words))
+    }
+
+    /// The ranges to copy from the buffers of a target, in order.
+    pub fn ranges<'a>(&self, target: &'a Target) -> Vec<(&'a wgpu::Buffer, u64, u64)> {
+        let range = |buffer, r: Range| (buffer, 4 * u64::from(r.at), 4 * u64::from(r.words));
+        let cells = self.of_cells().map(|r| range(&target.cells, r));
+        let pixels = range(&target.pixels, self.pixels);
+        cells.into_iter().chain([pixels]).collect()
+    }
+
+    /// Copies the parts into the frame.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn collect(
+        &self,
+        device: &Device,
+        from: &Staging,
+        layout: &Layout,
+        passes: &[Pass],
+        frame: &mut Frame,
+    ) -> Result<(), DeviceError> {
+        let mut at = 0;
+        let mut next = |r: Range| {
+            let start = at;
+            at += 4 * r.words as usize;
+            start
+        };
+        let starts = self.of_cells().map(&mut next);
+        let pixels_at = next(self.pixels);
+        let words = |i: usize| -> Result<Vec<u32>, DeviceError> {
+            from.read(device, starts[i], self.of_cells()[i].words as usize)
+        };
+        let whole = Place::new(layout, 1, frame.size[0]);
+        let states = words(1)?;
+        let mut depth: Vec<f32> = from.read(device, starts[0], self.depth.words as usize)?;
+        for (t, s) in depth.iter_mut().zip(&states) {
+            if is_sky(*s) {
+                *t = f32::INFINITY;
+            }
+        }
+        let codes: Vec<u8> = states.iter().map(|s| code(*s)).collect();
+        whole.copy(&depth, &mut frame.depth);
+        whole.copy(&codes, &mut frame.state);
+        let tally: Vec<[u32; 2]> = from.read(device, starts[2], self.tally.words as usize / 2)?;
+        let level_states = words(3)?;
+        let fronts: Vec<f32> = from.read(device, starts[4], self.level_fronts.words as usize)?;
+        for (i, pass) in passes.iter().enumerate().filter(|(_, p)| p.marches()) {
+            let divisor = match pass {
+                Pass::March(level) => level.divisor,
+                _ => 1,
+            };
+            let place = Place::new(layout, divisor, frame.size[0]);
+            let first = layout.state(divisor) as usize;
+            let cells = first..first + layout.count(divisor) as usize;
+            let work = tally.get(cells.clone()).unwrap_or_default();
+            let work: Vec<Work> = work.iter().map(|w| work_of(*w)).collect();
+            if !work.is_empty() {
+                let figures = &mut frame.passes[i];
+                let sum = |f: fn(&Work) -> u32| work.iter().map(|w| u64::from(f(w))).sum::<u64>();
+                *figures.evaluations.get_or_insert(0) += sum(|w| w.evaluations);
+                *figures.iterations.get_or_insert(0) += sum(|w| w.iterations);
+            }
+            if divisor == 1 {
+                place.copy(&work, &mut frame.work);
+                continue;
+            }
+            let layer = &mut frame.levels[i];
+            place.copy(&work, &mut layer.work);
+            let area = layout.count(1) as usize;
+            let cells = cells.start - area..cells.end - area;
+            let Some(states) = level_states.get(cells.clone()) else {
+                continue;
+            };
+            let mut fronts = fronts[cells].to_vec();
+            for (front, state) in fronts.iter_mut().zip(states) {
+                if State::from_code(*state).is_none() {
+                    *front = f32::MAX;
+                }
+            }
+            place.copy(&fronts, &mut layer.front);
+            let codes: Vec<u8> = states.iter().map(|s| code(*s)).collect();
+            place.copy(&codes, &mut layer.state);
+        }
+        let pixels: Vec<[f32; 4]> = from.read(device, pixels_at, self.pixels.words as usize / 4)?;
+        let (light, normals) = pixels.split_at(pixels.len().min(codes.len()));
+        let rgb = |p: &[[f32; 4]]| {
+            p.iter()
+                .map(|[r, g, b, _]| [*r, *g, *b])
+                .collect::<Vec<_>>()
+        };
+        frame.undecided += light.iter().filter(|p| p[3] == 0.0).count();
+        whole.copy(&rgb(light), &mut frame.radiance);
+        whole.copy(&rgb(normals), &mut frame.normal);
+        Ok(())
+    }
+}
+
+fn work_of([evaluations, iterations]: [u32; 2]) -> Work {
+    Work {
+        evaluations,
+        iterations,
+    }
 }
 
 /// A state in a frame. Cells that were not visited are sky, as their parents are.
-fn seen(state: u32) -> u8 {
-    if state == UNWRITTEN {
-        State::Sky as u8
-    } else {
-        state as u8
-    }
+fn code(state: u32) -> u8 {
+    State::from_code(state).unwrap_or(State::Sky) as u8
 }
 
-fn is_sky(code: u8) -> bool {
-    code == State::Sky as u8
+fn is_sky(state: u32) -> bool {
+    code(state) == State::Sky as u8
 }
 
 /// The place of a block in a layer of the whole image.
-struct Target {
+struct Place {
     origin: [u32; 2],
     cells: [u32; 2],
     width: u32,
 }
 
-impl Target {
-    /// The place of a job's block in the layer of a divisor.
-    fn new(job: &Job<'_>, divisor: u32) -> Self {
+impl Place {
+    /// The place of a block in the layer of a divisor of an image so many pixels wide.
+    fn new(layout: &Layout, divisor: u32, width: u32) -> Self {
         Self {
-            origin: job.block.origin.map(|o| o / divisor),
-            cells: job.cells(divisor),
-            width: job.plan.size[0].div_ceil(divisor),
+            origin: layout.block.origin.map(|o| o / divisor),
+            cells: layout.cells(divisor),
+            width: width.div_ceil(divisor),
         }
-    }
-
-    /// The block's values of a buffer; none if there is no such buffer.
-    fn read<T: Pod>(
-        &self,
-        device: &Device,
-        bound: &Bound,
-        name: &str,
-    ) -> Result<Vec<T>, RenderError> {
-        let Some(raw) = bound.get(name) else {
-            return Ok(Vec::new());
-        };
-        let count = self.cells[0] as usize * self.cells[1] as usize;
-        let buffer = Buffer::<T>::over((**raw).clone(), count);
-        Ok(buffer.read(device, count)?)
     }
 
     fn copy<T: Copy>(&self, from: &[T], to: &mut [T]) {

@@ -6,15 +6,6 @@ use std::time::Duration;
 use thiserror::Error;
 use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Features, Instance, Limits};
 
-/// The number of storage buffers that a pass over pixels may bind. WebGPU promises half as
-/// many, desktop adapters have more. Parameters are storage buffers too, as lavapipe of Mesa 22
-/// inlines uniform buffers that steer branches, at times beyond its stack. A cone level over a
-/// painted heightfield with four cones per sample binds the most.
-pub const STORAGE_BUFFERS: u32 = 16;
-
-/// The number of storage buffers that WebGPU promises. Generators of cone maps need no more.
-pub const PROMISED_BUFFERS: u32 = 8;
-
 /// What can go wrong with a device.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum DeviceError {
@@ -101,7 +92,8 @@ impl Adapters {
     pub fn find() -> Self {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = Backends::VULKAN | Backends::METAL | Backends::DX12;
-        // This program never dispatches indirectly, and the validation for that costs time.
+        // The validation of indirect dispatches costs time. The sizes of these are bounded in
+        // `wgsl/pass/arrange.wgsl`.
         descriptor.flags = wgpu::InstanceFlags::default()
             .difference(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
         let instance = Instance::new(descriptor);
@@ -137,20 +129,15 @@ impl Adapters {
         all.into_iter().map(|a| (a, of(a).1)).collect()
     }
 
-    /// Opens the first adapter in order that opens for so many storage buffers, with the
-    /// reason to choose it. Software adapters count only if `software` is set.
+    /// Opens the first adapter in order that opens, with the reason to choose it. Software adapters count only if `software` is set.
     ///
     /// # Errors
     /// Why no adapter was opened.
-    pub fn open_first(
-        &self,
-        storage_buffers: u32,
-        software: bool,
-    ) -> Result<(Device, String), String> {
+    pub fn open_first(&self, software: bool) -> Result<(Device, String), String> {
         let mut failed = None;
         let serves = |a: &&Adapter| software || a.get_info().device_type != DeviceType::Cpu;
         for (adapter, why) in self.in_order().into_iter().filter(|(a, _)| serves(a)) {
-            match Device::open(adapter, storage_buffers) {
+            match Device::open(adapter) {
                 Ok(device) => return Ok((device, failed.unwrap_or_else(|| why.to_string()))),
                 Err(e) => {
                     let name = adapter.get_info().name;
@@ -225,39 +212,29 @@ pub struct Device {
 }
 
 impl Device {
-    /// Fills a buffer with zeros.
-    pub fn clear(&self, buffer: &wgpu::Buffer) {
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.clear_buffer(buffer, 0, None);
-        self.queue.submit([encoder.finish()]);
-    }
-
-    /// Opens an adapter for programs that bind up to so many storage buffers. Timestamps and
-    /// f64 are on if the adapter has them.
+    /// Opens an adapter. Its programs need no more than what WebGPU promises, but buffers may be
+    /// as large as the adapter allows. Timestamps and f64 are on if the adapter has them.
     ///
     /// # Errors
-    /// It has fewer storage buffers, or does not open.
-    pub fn open(adapter: &Adapter, storage_buffers: u32) -> Result<Self, DeviceError> {
+    /// It does not open.
+    pub fn open(adapter: &Adapter) -> Result<Self, DeviceError> {
+        let limits = adapter.limits();
+        let larger = Limits {
+            max_buffer_size: limits.max_buffer_size,
+            max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+            ..Limits::default()
+        };
+        Self::open_with(adapter, larger)
+    }
+
+    /// As [`Device::open`], with other limits.
+    ///
+    /// # Errors
+    /// It does not open with them.
+    pub fn open_with(adapter: &Adapter, required_limits: Limits) -> Result<Self, DeviceError> {
         let info = adapter.get_info();
         let wanted = Features::TIMESTAMP_QUERY | Features::SHADER_F64;
         let features = adapter.features() & wanted;
-        let limits = adapter.limits();
-        let buffers = limits.max_storage_buffers_per_shader_stage;
-        // An error here, rather than later, lets the caller choose another device.
-        if buffers < storage_buffers {
-            return Err(DeviceError::Open {
-                name: info.name,
-                why: format!(
-                    "it has {buffers} storage buffers to a stage, and {storage_buffers} are needed"
-                ),
-            });
-        }
-        let required_limits = Limits {
-            max_buffer_size: limits.max_buffer_size,
-            max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
-            max_storage_buffers_per_shader_stage: storage_buffers,
-            ..Limits::default()
-        };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("conemarch"),
             required_features: features,
@@ -306,11 +283,32 @@ impl Device {
     /// # Errors
     /// The device was lost or reported an error.
     pub fn wait(&self) -> Result<(), DeviceError> {
+        self.wait_for(None)
+    }
+
+    /// Waits until a submission has run, or the last one.
+    ///
+    /// # Errors
+    /// The device was lost or reported an error.
+    pub fn wait_for(
+        &self,
+        submission_index: Option<wgpu::SubmissionIndex>,
+    ) -> Result<(), DeviceError> {
         let polled = self.device.poll(wgpu::PollType::Wait {
-            submission_index: None,
+            submission_index,
             // A dispatch has a bounded number of steps. A device that needs longer hangs.
             timeout: Some(Duration::from_secs(120)),
         });
+        self.trouble()?;
+        polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
+    }
+
+    /// Takes in what the device reports, without waiting.
+    ///
+    /// # Errors
+    /// The device was lost or reported an error.
+    pub fn check(&self) -> Result<(), DeviceError> {
+        let polled = self.device.poll(wgpu::PollType::Poll);
         self.trouble()?;
         polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
     }

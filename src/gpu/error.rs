@@ -41,13 +41,11 @@ pub enum RenderError {
     Cancelled,
     /// The device reported no error but left cells unvisited.
     #[error(
-        "the device `{device}` left {cells} cells of pass `{pass}` unwritten and reported no error. Try a smaller --size, another --device, or --device cpu"
+        "the device `{device}` left {cells} cells unwritten and reported no error. Try a smaller --size, another --device, or --device cpu"
     )]
     Unwritten {
         /// Its name.
         device: String,
-        /// The pass.
-        pass: String,
         /// How many.
         cells: usize,
     },

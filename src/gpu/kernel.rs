@@ -3,13 +3,15 @@
 //! Layouts are read from the WGSL, so a binding is declared in one place. Resources are bound
 //! by the names of the WGSL variables, so they cannot be swapped.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use thiserror::Error;
-use wgpu::naga::{self, AddressSpace, StorageAccess};
+use wgpu::naga::{self, AddressSpace, ImageClass, ScalarKind, StorageAccess};
 
 use crate::base::shader::{Program, ShaderError};
+use crate::gpu::array::Array;
 use crate::gpu::device::Device;
+use crate::gpu::error::RenderError;
 
 /// Why a kernel could not be compiled or bound.
 #[derive(Debug, Error)]
@@ -42,25 +44,42 @@ struct Binding {
     group: u32,
     index: u32,
     name: String,
-    read_only: bool,
+    kind: Kind,
+}
+
+/// What a resource variable is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Storage {
+        read_only: bool,
+    },
+    /// A texture of one channel, and whether its numbers are whole.
+    Texture {
+        whole: bool,
+    },
 }
 
 /// The compiled programs of a device. Each is compiled once.
 #[derive(Default)]
-pub struct Kernels(Vec<(Program, Rc<Kernel>)>);
+pub struct Kernels(Vec<(Program, Arc<Kernel>)>);
 
 impl Kernels {
     /// The kernel of a program, compiled now if it is new.
     ///
     /// # Errors
     /// The text is wrong, or the driver refuses it.
-    pub fn get(&mut self, device: &Device, program: &Program) -> Result<Rc<Kernel>, KernelError> {
+    pub fn get(&mut self, device: &Device, program: &Program) -> Result<Arc<Kernel>, KernelError> {
         if let Some((_, kernel)) = self.0.iter().find(|(p, _)| p == program) {
             return Ok(kernel.clone());
         }
-        let kernel = Rc::new(Kernel::new(device, program)?);
+        let kernel = Arc::new(Kernel::new(device, program)?);
         self.0.push((program.clone(), kernel.clone()));
         Ok(kernel)
+    }
+
+    /// Number of programs compiled so far.
+    pub fn len(&self) -> usize {
+        self.0.len()
     }
 }
 
@@ -82,8 +101,8 @@ impl Kernel {
         if gpu.features().contains(wgpu::Features::SHADER_F64) {
             capabilities |= naga::valid::Capabilities::FLOAT64;
         }
-        let (module, _) = program.validate(capabilities)?;
-        let bindings = bindings_of(&module);
+        let (module, info) = program.validate(capabilities)?;
+        let bindings = bindings_of(&module, info.get_entry_point(0));
         let strides = strides_of(&module);
         let scope = gpu.push_error_scope(wgpu::ErrorFilter::Validation);
         let label = Some(program.entry);
@@ -132,6 +151,23 @@ impl Kernel {
         })
     }
 
+    /// Whether the program reads a variable.
+    pub fn reads(&self, name: &str) -> bool {
+        self.bindings.iter().any(|b| b.name == name)
+    }
+
+    /// An array of numbers for a variable, as the program reads it: in a buffer or in a texture.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn array(&self, device: &Device, name: &str, bytes: &[u8]) -> Result<Array, RenderError> {
+        let binding = self.bindings.iter().find(|b| b.name == name);
+        match binding.map(|b| b.kind) {
+            Some(Kind::Texture { whole }) => Array::in_texture(device, name, bytes, whole),
+            _ => Array::in_buffer(device, name, bytes),
+        }
+    }
+
     /// Bytes per element of a storage array; `None` if the program has no such array.
     pub fn stride(&self, name: &str) -> Option<u32> {
         let found = self.strides.iter().find(|(n, _)| n == name);
@@ -142,16 +178,16 @@ impl Kernel {
     pub fn bind<'a>(
         &self,
         device: &Device,
-        buffer: impl Fn(&str) -> Option<&'a wgpu::Buffer>,
+        resource: impl Fn(&str) -> Option<wgpu::BindingResource<'a>>,
     ) -> Result<Vec<wgpu::BindGroup>, KernelError> {
         let entry = |b: &Binding| {
-            let raw = buffer(&b.name).ok_or_else(|| KernelError::Unbound {
+            let found = resource(&b.name).ok_or_else(|| KernelError::Unbound {
                 entry: self.entry,
                 name: b.name.clone(),
             });
-            raw.map(|raw| wgpu::BindGroupEntry {
+            found.map(|resource| wgpu::BindGroupEntry {
                 binding: b.index,
-                resource: raw.as_entire_binding(),
+                resource,
             })
         };
         let group = |(group, layout)| {
@@ -178,7 +214,10 @@ impl Kernel {
         bound: &[(&str, &wgpu::Buffer)],
         groups: [u32; 2],
     ) -> Result<(), KernelError> {
-        let named = |name: &str| bound.iter().find(|b| b.0 == name).map(|b| b.1);
+        let named = |name: &str| {
+            let found = bound.iter().find(|b| b.0 == name);
+            found.map(|b| b.1.as_entire_binding())
+        };
         let bind = self.bind(device, named)?;
         let mut encoder = device.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -195,26 +234,47 @@ impl Kernel {
         groups: &[wgpu::BindGroup],
         count: [u32; 2],
     ) {
+        self.set(pass, groups);
+        pass.dispatch_workgroups(count[0], count[1], 1);
+    }
+
+    /// Encodes one dispatch of as many workgroups as a buffer holds.
+    pub fn dispatch_indirect(
+        &self,
+        pass: &mut wgpu::ComputePass,
+        groups: &[wgpu::BindGroup],
+        count: &wgpu::Buffer,
+    ) {
+        self.set(pass, groups);
+        pass.dispatch_workgroups_indirect(count, 0);
+    }
+
+    fn set(&self, pass: &mut wgpu::ComputePass, groups: &[wgpu::BindGroup]) {
         pass.set_pipeline(&self.pipeline);
         for (i, group) in (0u32..).zip(groups) {
             pass.set_bind_group(i, group, &[]);
         }
-        pass.dispatch_workgroups(count[0], count[1], 1);
     }
 }
 
-fn bindings_of(module: &naga::Module) -> Vec<Binding> {
-    let of = |(_, v): (_, &naga::GlobalVariable)| {
-        let at = v.binding?;
-        let read_only = match v.space {
-            AddressSpace::Storage { access } => !access.contains(StorageAccess::STORE),
-            _ => true,
+/// The variables that an entry point reaches.
+fn bindings_of(module: &naga::Module, entry: &naga::valid::FunctionInfo) -> Vec<Binding> {
+    let of = |(handle, v): (naga::Handle<naga::GlobalVariable>, &naga::GlobalVariable)| {
+        let at = v.binding.filter(|_| !entry[handle].is_empty())?;
+        let kind = match (&module.types[v.ty].inner, v.space) {
+            (naga::TypeInner::Image { class, .. }, _) => Kind::Texture {
+                whole: matches!(class, ImageClass::Sampled { kind, .. } if *kind == ScalarKind::Uint),
+            },
+            (_, AddressSpace::Storage { access }) => Kind::Storage {
+                read_only: !access.contains(StorageAccess::STORE),
+            },
+            _ => Kind::Storage { read_only: true },
         };
         Some(Binding {
             group: at.group,
             index: at.binding,
             name: v.name.clone().unwrap_or_default(),
-            read_only,
+            kind,
         })
     };
     module.global_variables.iter().filter_map(of).collect()
@@ -229,18 +289,28 @@ fn strides_of(module: &naga::Module) -> Vec<(String, u32)> {
 }
 
 fn layout_entry(b: &Binding) -> wgpu::BindGroupLayoutEntry {
-    // Parameters are storage too: see [`crate::gpu::device::STORAGE_BUFFERS`].
-    let ty = wgpu::BufferBindingType::Storage {
-        read_only: b.read_only,
+    let ty = match b.kind {
+        // Parameters are storage too, as lavapipe of Mesa 22 inlines uniform buffers that steer
+        // branches, at times beyond its stack.
+        Kind::Storage { read_only } => wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        Kind::Texture { whole } => wgpu::BindingType::Texture {
+            sample_type: if whole {
+                wgpu::TextureSampleType::Uint
+            } else {
+                wgpu::TextureSampleType::Float { filterable: false }
+            },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
     };
     wgpu::BindGroupLayoutEntry {
         binding: b.index,
         visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
+        ty,
         count: None,
     }
 }

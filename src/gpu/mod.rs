@@ -2,18 +2,25 @@
 //!
 //! - [`render`]: from a Plan to a Frame
 //! - [`device`]: adapters and devices; [`buffer`]: typed buffers; [`kernel`]: compiled programs
-//! - `job`: the numbers of a pass; `dispatch`: one dispatch; [`collect`]: results into the Frame
+//! - [`work`]: a render under way; `target`: its buffers and bound kernels; `cost`: how long
+//!   its dispatches take; `stamps`: the device's own time
+//! - `array`: arrays of the host on the device
+//! - `staging`: read-back without waiting; `collect`: results into the Frame
 //! - [`conemap`]: generators of cone maps on the device
 //! - `error`: why a render failed
 
+mod array;
 pub mod buffer;
-pub mod collect;
+mod collect;
 pub mod conemap;
+mod cost;
 pub mod device;
-mod dispatch;
 mod error;
-mod job;
 pub mod kernel;
 pub mod render;
+mod staging;
+mod stamps;
+mod target;
+pub mod work;
 
 pub use error::RenderError;

@@ -184,7 +184,7 @@ impl Assets {
             all.extend_from_slice(cast_slice(surface.heights().data()));
         }
         if let Ok(Some(texture)) = self.texture(settings) {
-            all.extend(texture.buffer().1);
+            all.extend(texture.bytes());
         }
         all
     }

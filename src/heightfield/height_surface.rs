@@ -6,9 +6,12 @@
 //! domain has `cells * tiles` cells and starts at the origin. Outside of it there is nothing, so
 //! that its four sides are walls and its underside is a floor.
 
-use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable, cast_slice};
 use thiserror::Error;
 
+use crate::base::array::SceneArray;
 use crate::base::shader::Module;
 use crate::heightfield::{ConeMap, Heights, MaxMip, Patches, heights::bilinear};
 use crate::wgsl;
@@ -240,15 +243,15 @@ impl HeightSurface {
         ]
     }
 
-    /// Bytes to bind, by the names of the WGSL variables, for a tracer; its ratios are bound apart.
-    pub fn buffers(&self, map: &ConeMap, tracer: TracerParameters) -> Vec<(&'static str, Vec<u8>)> {
+    /// The values of the WGSL struct, for a tracer.
+    pub fn uniform(&self, map: &ConeMap, tracer: TracerParameters) -> ReliefUniform {
         let mut starts = [0; MOST_LEVELS];
-        let mut maxima: Vec<f32> = Vec::new();
+        let mut end = 0;
         for (start, level) in starts.iter_mut().zip(&self.maxima.levels) {
-            *start = maxima.len() as u32;
-            maxima.extend(&level.max);
+            *start = end;
+            end += level.max.len() as u32;
         }
-        let uniform = ReliefUniform {
+        ReliefUniform {
             samples: self.heights.size().map(|n| n as i32),
             cells: self.cells.map(|n| n as i32),
             domain: self.domain,
@@ -261,11 +264,20 @@ impl HeightSurface {
             lod: tracer.lod as f32,
             rounds: tracer.rounds,
             starts,
+        }
+    }
+
+    /// The heights and the pyramid of maxima, as the shaders read them.
+    pub fn arrays(self: &Arc<Self>) -> Vec<SceneArray> {
+        let maxima = |surface: &Self| {
+            let all = surface.maxima.levels.iter().flat_map(|level| &level.max);
+            cast_slice(&all.copied().collect::<Vec<f32>>()).to_vec()
         };
         vec![
-            ("relief_parameters", bytes_of(&uniform).to_vec()),
-            ("heights", cast_slice(self.heights.data()).to_vec()),
-            ("maxima", cast_slice(&maxima).to_vec()),
+            SceneArray::new("heights", self, |surface| {
+                cast_slice(surface.heights.data()).to_vec()
+            }),
+            SceneArray::new("maxima", self, maxima),
         ]
     }
 }

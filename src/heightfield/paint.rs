@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use crate::base::array::SceneArray;
 use crate::base::shader::Module;
 use crate::heightfield::conemap::generate::Generator;
 use crate::heightfield::{ConeMap, HeightSurface, Patches, texture::Texture};
@@ -60,9 +61,9 @@ impl Paint {
         f64::from(self.values[(y * self.size[0] + x) as usize])
     }
 
-    /// Bytes to bind.
-    pub fn buffer(&self) -> (&'static str, Vec<u8>) {
-        ("paint", bytemuck::cast_slice(&self.values).to_vec())
+    /// Its numbers as bytes.
+    fn bytes(&self) -> Vec<u8> {
+        bytemuck::cast_slice(&self.values).to_vec()
     }
 }
 
@@ -90,12 +91,12 @@ impl Colors {
         }
     }
 
-    /// Bytes to bind, if there are any.
-    pub fn buffer(&self) -> Option<(&'static str, Vec<u8>)> {
+    /// What the shaders read, if there is anything.
+    pub fn array(&self) -> Option<SceneArray> {
         match self {
             Self::Height => None,
-            Self::Cones(paint) => Some(paint.buffer()),
-            Self::Texture(texture) => Some(texture.buffer()),
+            Self::Cones(paint) => Some(SceneArray::new("paint", paint, Paint::bytes)),
+            Self::Texture(picture) => Some(SceneArray::new("texels", picture, Texture::bytes)),
         }
     }
 }

@@ -86,12 +86,12 @@ impl Texture {
         wgsl!("heightfield/texture.wgsl")
     }
 
-    /// Bytes to bind: columns, rows, then texels with red in the low byte.
-    pub fn buffer(&self) -> (&'static str, Vec<u8>) {
+    /// What the shaders read: columns, rows, then texels with red in the low byte.
+    pub fn bytes(&self) -> Vec<u8> {
         let texel = |[r, g, b]: &[u8; 3]| u32::from_le_bytes([*r, *g, *b, 255]);
         let numbers = self.size.into_iter().chain(self.texels.iter().map(texel));
         let numbers: Vec<u32> = numbers.collect();
-        ("texels", bytemuck::cast_slice(&numbers).to_vec())
+        bytemuck::cast_slice(&numbers).to_vec()
     }
 }
 

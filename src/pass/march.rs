@@ -2,25 +2,9 @@
 //! and 2).
 //! Twin: `wgsl/pass/march.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::base::view::Beam;
 use crate::base::work::Work;
 use crate::scene::Solid;
-
-/// A level as WGSL reads it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct LevelUniform {
-    /// Pixels per cell along each axis.
-    pub divisor: u32,
-    /// Factor on the chord.
-    pub fudge: f32,
-    /// First cell of the block.
-    pub origin: [u32; 2],
-    /// Cells in the block.
-    pub cells: [u32; 2],
-}
 
 /// Why a cone ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

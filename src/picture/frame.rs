@@ -57,6 +57,21 @@ pub struct LevelLayer {
     pub work: Vec<Work>,
 }
 
+/// How the host and a device worked together on a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Traffic {
+    /// How often the device had nothing to do until the host knew more.
+    pub drains: u32,
+    /// Submissions.
+    pub submissions: u32,
+    /// Bytes of parameters and scene data that were written before the first submission.
+    pub uploads: usize,
+    /// Programs that were compiled.
+    pub compilations: usize,
+    /// How often buffers were created and bound.
+    pub allocations: u32,
+}
+
 /// A rendered picture. Layers go row by row from the upper left. A layer that was not asked for
 /// is empty.
 #[derive(Clone, Debug, Default)]
@@ -82,6 +97,8 @@ pub struct Frame {
     pub passes: Vec<PassFigures>,
     /// Time of march and trace on the clock, without compilation and files.
     pub march_ms: f64,
+    /// The work of host and device together; `None` on the CPU.
+    pub traffic: Option<Traffic>,
 }
 
 impl Frame {

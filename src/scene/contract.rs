@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::base::array::SceneArray;
 use crate::base::shader::Module;
 use crate::base::view::Beam;
 pub use crate::base::work::Step;
@@ -85,6 +86,10 @@ pub trait Twin {
     fn modules(&self) -> Vec<Module>;
     /// The bytes of each WGSL parameter variable.
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)>;
+    /// The arrays that the shaders read beside the parameters.
+    fn arrays(&self) -> Vec<SceneArray> {
+        Vec::new()
+    }
     /// A line about the scene, with the numbers that it was resolved to.
     fn describe(&self) -> String;
     /// An upper bound of the inner loop rounds in one step.

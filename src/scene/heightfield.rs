@@ -8,6 +8,7 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec2, DVec3, Vec3};
 
+use crate::base::array::SceneArray;
 use crate::base::cone::ConeRule;
 use crate::base::key::{Fault, Key};
 use crate::base::shader::Module;
@@ -219,9 +220,13 @@ impl Twin for Heightfield {
             slack: self.slack().as_vec3(),
             ..Zeroable::zeroed()
         };
-        let mut all = vec![("heightfield_parameters", bytes_of(&scene).to_vec())];
-        all.extend(self.made.tracer.buffers());
-        all.extend(self.made.colors.buffer());
+        let own = ("heightfield_parameters", bytes_of(&scene).to_vec());
+        vec![own, self.made.tracer.parameters()]
+    }
+
+    fn arrays(&self) -> Vec<SceneArray> {
+        let mut all = self.made.tracer.arrays();
+        all.extend(self.made.colors.array());
         all
     }
 

@@ -12,7 +12,7 @@ use std::sync::{LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
 use conemarch::base::work::State;
-use conemarch::gpu::device::{Adapters, Choice, Device, STORAGE_BUFFERS};
+use conemarch::gpu::device::{Adapters, Choice, Device};
 use conemarch::gpu::render::{Cutting, Renderer};
 use conemarch::pass::progress::Progress;
 use conemarch::picture::frame::Frame;
@@ -59,7 +59,7 @@ fn try_open() -> Result<Renderer, String> {
     let adapters = Adapters::find();
     let chosen = adapters.choose(&Choice::Auto).map_err(|e| e.to_string())?;
     let (adapter, _) = chosen.ok_or("there is no adapter")?;
-    let device = Device::open(adapter, STORAGE_BUFFERS).map_err(|e| e.to_string())?;
+    let device = Device::open(adapter).map_err(|e| e.to_string())?;
     Ok(Renderer::new(device))
 }
 

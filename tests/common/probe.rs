@@ -2,10 +2,10 @@
 //! and a measure of how far the answers lie from those in f64.
 
 use std::collections::HashMap;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use conemarch::base::shader::{Module, Program};
-use conemarch::gpu::buffer::{Buffer, uniform};
+use conemarch::gpu::buffer::Buffer;
 use conemarch::gpu::device::Device;
 use conemarch::gpu::kernel::Kernel;
 
@@ -29,7 +29,7 @@ macro_rules! probe {
 }
 pub(crate) use probe;
 
-static DEVICE: LazyLock<Device> = LazyLock::new(|| crate::adapter::open().device);
+static DEVICE: LazyLock<Arc<Device>> = LazyLock::new(|| crate::adapter::open().device);
 
 /// Modules to ask, and the parameters that they read.
 #[derive(Clone, Default)]
@@ -59,13 +59,20 @@ impl Probe {
         let asked = Buffer::<Numbers>::new(device, "asked", questions.len());
         asked.write(device, questions);
         let told = Buffer::<Numbers>::new(device, "told", questions.len());
-        let mut buffers: HashMap<&str, wgpu::Buffer> = HashMap::new();
-        for (name, bytes) in &self.parameters {
-            buffers.insert(name, uniform(device, name, bytes));
+        let mut arrays = HashMap::new();
+        for (name, bytes) in self
+            .parameters
+            .iter()
+            .filter(|(name, _)| kernel.reads(name))
+        {
+            let array = kernel.array(device, name, bytes);
+            arrays.insert(*name, array.unwrap_or_else(|e| panic!("{e}")));
         }
-        buffers.insert("asked", asked.raw.clone());
-        buffers.insert("told", told.raw.clone());
-        let groups = kernel.bind(device, |name| buffers.get(name));
+        let groups = kernel.bind(device, |name| match name {
+            "asked" => Some(asked.raw.as_entire_binding()),
+            "told" => Some(told.raw.as_entire_binding()),
+            own => Some(arrays.get(own)?.binding()),
+        });
         let groups = groups.unwrap_or_else(|e| panic!("{e}"));
         let mut encoder = device.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());

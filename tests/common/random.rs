@@ -27,6 +27,11 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
+    /// One of so many numbers, from 0.
+    pub fn index(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
+    }
+
     /// Uniform in the cube of a half extent.
     pub fn cube(&mut self, half: f64) -> DVec3 {
         DVec3::from_array([0; 3].map(|_| self.between(-half, half)))

@@ -44,11 +44,13 @@ pub fn probe_of(plan: &Plan, probe: Module) -> Probe {
     modules.extend([
         wgsl!("base/view.wgsl"),
         wgsl!("pass/shared.wgsl"),
-        wgsl!("base/counters_off.wgsl"),
+        wgsl!("pass/counters_off.wgsl"),
         probe,
     ]);
     let mut parameters = solid.twin().uniforms();
-    let view = plan.view().uniform([0, 0], plan.size);
+    let arrays = solid.twin().arrays();
+    parameters.extend(arrays.iter().map(|array| (array.name, array.bytes())));
+    let view = plan.view().uniform();
     parameters.push(("view_parameters", bytes_of(&view).to_vec()));
     Probe {
         modules,

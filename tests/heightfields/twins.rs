@@ -47,11 +47,13 @@ fn every_tracer(surface: &Arc<HeightSurface>) -> Vec<Named> {
 fn probe_of(tracer: &Tracer) -> Probe {
     let mut modules = tracer.modules();
     modules.push(wgsl!("pass/shared.wgsl"));
-    modules.push(wgsl!("base/counters_off.wgsl"));
+    modules.push(wgsl!("pass/counters_off.wgsl"));
     modules.push(probe!("relief"));
+    let arrays = tracer.arrays();
+    let arrays = arrays.iter().map(|array| (array.name, array.bytes()));
     Probe {
         modules,
-        parameters: tracer.buffers(),
+        parameters: arrays.chain([tracer.parameters()]).collect(),
     }
 }
 

@@ -1,5 +1,7 @@
 //! Cone maps from a device: the CPU's, however the work is divided, or an error.
 
+use std::sync::Arc;
+
 use conemarch::gpu::conemap::generate::{Division, Maker};
 use conemarch::gpu::device::Device;
 use conemarch::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
@@ -15,7 +17,7 @@ use crate::fields::{WRAPS, assert_same, field, large, make, plain, small};
 use crate::programs::map_programs;
 
 /// A device of its own: makers borrow one.
-fn device() -> Device {
+fn device() -> Arc<Device> {
     adapter::open().device
 }
 

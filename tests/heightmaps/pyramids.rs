@@ -124,9 +124,10 @@ fn ratios_are_stored_rounded_down() {
     let relief = HeightSurface::new(heights, Patches::Bilinear, [1, 1]).unwrap();
     let mut tracer = Tracer::reference(relief.into());
     tracer.map = map.clone().into();
-    let buffers = tracer.buffers();
-    let (_, bytes) = buffers.iter().find(|(name, _)| *name == "ratios").unwrap();
-    let there: &[f32] = bytemuck::cast_slice(bytes);
+    let arrays = tracer.arrays();
+    let ratios = arrays.iter().find(|array| array.name == "ratios");
+    let bytes = ratios.unwrap().bytes();
+    let there: &[f32] = bytemuck::cast_slice(&bytes);
     assert_eq!(there.len(), map.ratios.len());
     for (there, ratio) in there.iter().zip(&map.ratios) {
         assert!(f64::from(*there) <= *ratio && f64::from(there.next_up()) > *ratio);

@@ -81,8 +81,8 @@ fn what_is_asked_for_beside_the_picture_is_explained() {
             assert_joins(
                 program_lines(text, entry),
                 on,
-                "wgsl/base/counters.wgsl",
-                "wgsl/base/counters_off.wgsl",
+                "wgsl/pass/counters.wgsl",
+                "wgsl/pass/counters_off.wgsl",
             );
         };
         counters(&plain, false);
@@ -109,7 +109,7 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
     for program in programs_of(&plan, &solid(&plan)) {
         let listing = program.describe();
         let extras =
-            listing.contains("base/counters.wgsl") || listing.contains("COLOR_KEEPS_NORMALS=1");
+            listing.contains("pass/counters.wgsl") || listing.contains("COLOR_KEEPS_NORMALS=1");
         let plain = format!("  {}\n{listing}", program.entry);
         assert_eq!(text.contains(&plain), !extras, "{plain}\n{text}");
     }
@@ -145,8 +145,8 @@ fn work_is_counted_only_where_it_is_asked_for() {
             };
             let program = program(&plan, &solid, pass, extras);
             let counted = count && pass != Pass::Color;
-            assert_eq!(has(&program, "wgsl/base/counters.wgsl"), counted);
-            assert_eq!(has(&program, "wgsl/base/counters_off.wgsl"), !counted);
+            assert_eq!(has(&program, "wgsl/pass/counters.wgsl"), counted);
+            assert_eq!(has(&program, "wgsl/pass/counters_off.wgsl"), !counted);
         }
     }
 }
@@ -211,8 +211,9 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/rotation_none.wgsl
         wgsl/base/view.wgsl
         wgsl/pass/shared.wgsl
-        wgsl/base/counters_off.wgsl
+        wgsl/pass/turn.wgsl
         wgsl/pass/queue.wgsl
+        wgsl/pass/counters_off.wgsl
         wgsl/pass/march.wgsl
       trace
         wgsl/base/real.wgsl
@@ -222,8 +223,9 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/rotation_none.wgsl
         wgsl/base/view.wgsl
         wgsl/pass/shared.wgsl
-        wgsl/base/counters_off.wgsl
+        wgsl/pass/turn.wgsl
         wgsl/pass/queue.wgsl
+        wgsl/pass/counters_off.wgsl
         wgsl/pass/trace.wgsl
       color
         wgsl/base/real.wgsl
@@ -233,7 +235,9 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/rotation_none.wgsl
         wgsl/base/view.wgsl
         wgsl/pass/shared.wgsl
-        wgsl/base/counters_off.wgsl
+        wgsl/pass/turn.wgsl
+        wgsl/pass/queue.wgsl
+        wgsl/pass/counters_off.wgsl
         wgsl/pass/look.wgsl
         wgsl/pass/shadow.wgsl
         wgsl/pass/occlusion.wgsl

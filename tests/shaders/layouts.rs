@@ -12,8 +12,7 @@ use conemarch::heightfield::conemap::generate::uniform::{
 };
 use conemarch::heightfield::height_surface::ReliefUniform;
 use conemarch::pass::look::LookUniform;
-use conemarch::pass::march::LevelUniform;
-use conemarch::pass::queue::{COUNT_AT, Turn};
+use conemarch::pass::turn::{ListsHead, Stage, Turn};
 use conemarch::scene::distance::DistanceUniform;
 use conemarch::scene::heightfield::HeightfieldUniform;
 use conemarch::scene::slab::SlabUniform;
@@ -49,12 +48,14 @@ macro_rules! layouts {
     };
 }
 
-/// Every `#[repr(C)]` struct of the sources. The numbers of [`Turn`] lead two WGSL structs
-/// beside its own.
+/// Every `#[repr(C)]` struct of the sources.
 fn layouts() -> Vec<(&'static str, Layout)> {
     layouts! {
-        Turn: chunk done limit row parent_width visits;
-        ViewUniform: right pixel up slack forward pad size block_origin block_size pad2;
+        Stage: number limit chunk most slice tiles parent_width divisor origin cells fudge index
+            queues listed parents parent_front front state tally mark pad;
+        Turn: stage number begun chunk done first groups visits count read filled dispatches pad;
+        ListsHead: moving parents wrong pad dispatches;
+        ViewUniform: right pixel up slack forward pad size pad2;
         MandelboxUniform: julia scale fold_limit min2 fixed2 bail2 reach tail classic_reach classic_skin;
         BallsUniform: ball0 ball1 ball2 box0 box1 rod;
         RotationUniform: row0 pad0 row1 pad1 row2 pad2;
@@ -68,7 +69,6 @@ fn layouts() -> Vec<(&'static str, Layout)> {
         SearchState: squared top note stage node_x node_y pending_low pending_high;
         PyramidUniform: below size below_at at first pad;
         Min3x3Uniform: width rows wrap channels;
-        LevelUniform: divisor fudge origin cells;
         LookUniform: light key light_color fill sky_high fog sky_low gloss world_up softness
             occlusion_reach occlusion_strength shadow_steps stops palette_cycles flag pad palette;
     }
@@ -105,15 +105,19 @@ fn structs_have_the_layout_that_the_shaders_read() {
     for (name, own) in layouts() {
         let full = own.windows(2).all(|f| f[0].1 + f[0].2 == f[1].1);
         assert!(full, "{name}: a field is not listed, or there is a gap");
-        let [wgsl] = &all[name][..] else {
+        // The head of the lists is the part of `Lists` before the cells.
+        let lists = name == "ListsHead";
+        let [wgsl] = &all[if lists { "Lists" } else { name }][..] else {
             panic!("{name} has several layouts: {:?}", all[name]);
         };
         let mut wgsl = wgsl.clone();
-        if name == "Turn" {
-            // In WGSL the count follows.
-            let (_, count_at, _) = wgsl[own.len() - 1];
+        if lists {
+            assert_eq!(
+                wgsl[own.len() - 1],
+                ("cells".into(), size_of::<ListsHead>(), 4)
+            );
             wgsl.truncate(own.len() - 1);
-            wgsl.push(end(count_at));
+            wgsl.push(end(size_of::<ListsHead>()));
         }
         assert_eq!(own, wgsl, "{name}");
         // The comparison sees a field that is moved, renamed, resized or lost.
@@ -132,19 +136,6 @@ fn structs_have_the_layout_that_the_shaders_read() {
 }
 
 #[test]
-fn a_turn_leads_both_queues() {
-    let (all, count_at) = (in_wgsl(), COUNT_AT as usize);
-    let [turn, queue, listed] = ["Turn", "Queue", "Listed"].map(|name| &all[name][0]);
-    let count = turn.len() - 2;
-    assert_eq!(turn[count], ("count".into(), count_at, 4));
-    assert_eq!(queue[..=count], turn[..=count]);
-    assert_ne!(queue[1..=count], turn[..count]);
-    for cells in [&queue[count + 1], &listed[1]] {
-        assert_eq!((cells.0.as_str(), cells.1), ("cells", count_at + 4));
-    }
-}
-
-#[test]
 fn no_struct_that_both_sides_read_is_left_out() {
     let listed: Vec<&str> = layouts().into_iter().map(|l| l.0).collect();
     // In Rust: what is laid out for the device.
@@ -158,14 +149,14 @@ fn no_struct_that_both_sides_read_is_left_out() {
         }
     }
     assert_eq!(found, listed.len());
-    // In WGSL: what is bound. The queues are only led by numbers of the host.
+    // In WGSL: what is bound. Numbers of the host are only the head of the lists.
     let mut bound = 0;
     for (listing, made) in ALL.iter() {
         for (_, global) in made.module.global_variables.iter() {
             let kind = &made.module.types[global.ty];
             if global.binding.is_some() && matches!(kind.inner, TypeInner::Struct { .. }) {
                 let name = kind.name.as_deref().unwrap();
-                let known = listed.contains(&name) || ["Queue", "Listed"].contains(&name);
+                let known = listed.contains(&name) || name == "Lists";
                 assert!(known, "no Rust struct for {name} in {listing}");
                 bound += 1;
             }

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
-use conemarch::pass::LookFeature;
+use conemarch::pass::{LookFeature, turn};
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
@@ -162,7 +162,8 @@ pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     let assets = Assets::default();
     let plans = plans().into_iter();
     let of_plans = plans.flat_map(|plan| programs_of(&plan, &outline(&plan, &assets)));
-    for program in map_programs().into_iter().chain(of_plans) {
+    let of_stages = [turn::arrange(), turn::reset(), turn::census()];
+    for program in map_programs().into_iter().chain(of_stages).chain(of_plans) {
         let listing = format!("{}\n{}", program.entry, program.describe());
         found.entry(listing).or_insert(program);
     }

@@ -15,8 +15,10 @@ mod adapter;
 mod common {
     pub mod folder;
     pub mod plans;
+    pub mod random;
 }
 mod device;
+mod work;
 
 use adapter::{COUNTED, LEVELS, on_cpu, render};
 use common::plans::{compared, preset, sized};

@@ -14,10 +14,6 @@ struct ViewUniform {
     pad: f32,
     /// Width and height of the full image in pixels.
     size: vec2<u32>,
-    /// First pixel of the block.
-    block_origin: vec2<u32>,
-    /// Width and height of the block in pixels.
-    block_size: vec2<u32>,
     pad2: vec2<u32>,
 }
 

@@ -28,10 +28,25 @@ struct ReliefUniform {
 override RELIEF_BOXES: bool;
 
 @group(0) @binding(4) var<storage, read> relief_parameters: ReliefUniform;
-@group(0) @binding(5) var<storage, read> heights: array<f32>;
-@group(0) @binding(6) var<storage, read> ratios: array<f32>;
+@group(0) @binding(5) var heights: texture_2d<f32>;
+@group(0) @binding(6) var ratios: texture_2d<f32>;
+/// In a buffer: cones read little else, and software Vulkan reads textures more slowly.
 @group(0) @binding(7) var<storage, read> maxima: array<f32>;
 var<private> relief: ReliefUniform;
+
+/// The texel of a number. Most arrays are in textures, as there are more of those than storage
+/// buffers, and larger ones: row by row, 8192 numbers to a row.
+fn array_texel(i: u32) -> vec2<u32> {
+    return vec2<u32>(i & 8191u, i >> 13u);
+}
+
+fn heights_at(i: i32) -> f32 {
+    return textureLoad(heights, array_texel(u32(i)), 0).x;
+}
+
+fn ratios_at(i: u32) -> f32 {
+    return textureLoad(ratios, array_texel(i), 0).x;
+}
 
 fn relief_load() {
     relief = relief_parameters;
@@ -52,7 +67,7 @@ fn relief_place(at: vec2<i32>) -> i32 {
 
 /// Its height.
 fn relief_sample(at: vec2<i32>) -> f32 {
-    return heights[relief_place(at)];
+    return heights_at(relief_place(at));
 }
 
 /// Corner heights of a cell of the domain: (0, 0), (1, 0), (0, 1), (1, 1).

@@ -3,7 +3,7 @@
 /// Whether the places are cells instead of samples.
 override PAINT_OVER_CELLS: bool;
 
-@group(0) @binding(8) var<storage, read> paint: array<f32>;
+@group(0) @binding(8) var paint: texture_2d<f32>;
 
 /// The pigment at a place in 0..1 of a cell of the domain, for the surface's height there and the
 /// upward part of its normal.
@@ -14,5 +14,5 @@ fn relief_paint(cell: vec2<i32>, at: vec2<f32>, height: f32, up: f32) -> vec3<f3
     if PAINT_OVER_CELLS {
         place = relief_number(cell);
     }
-    return vec3<f32>(paint[place], up, 0.5);
+    return vec3<f32>(textureLoad(paint, array_texel(place), 0).x, up, 0.5);
 }

@@ -1,7 +1,11 @@
 // A picture over a height surface, once for each tile, interpolated between its texels.
 
 /// Columns, rows, then texels row by row: sRGB of 8 bits, red in the low byte.
-@group(0) @binding(8) var<storage, read> texels: array<u32>;
+@group(0) @binding(8) var texels: texture_2d<u32>;
+
+fn texels_at(i: i32) -> u32 {
+    return textureLoad(texels, array_texel(u32(i)), 0).x;
+}
 
 /// sRGB to linear (IEC 61966-2-1).
 fn texture_linear(c: vec3<f32>) -> vec3<f32> {
@@ -15,10 +19,10 @@ fn texture_index(i: i32, count: i32, wraps: bool) -> i32 {
 }
 
 fn texture_texel(place: vec2<i32>) -> vec3<f32> {
-    let size = vec2<i32>(i32(texels[0]), i32(texels[1]));
+    let size = vec2<i32>(i32(texels_at(0)), i32(texels_at(1)));
     let x = texture_index(place.x, size.x, relief.wrap.x == 1u);
     let y = texture_index(place.y, size.y, relief.wrap.y == 1u);
-    return texture_linear(unpack4x8unorm(texels[2 + y * size.x + x]).rgb);
+    return texture_linear(unpack4x8unorm(texels_at(2 + y * size.x + x)).rgb);
 }
 
 /// The colour at a place in 0..1 of a cell of the domain.
@@ -28,7 +32,7 @@ fn relief_paint(cell: vec2<i32>, at: vec2<f32>, height: f32, up: f32) -> vec3<f3
     let alone = (relief.samples == vec2<i32>(1)) & (relief.wrap == vec2<u32>(0u));
     let middle = select(vec2<f32>(0.5), vec2<f32>(0.0), alone | vec2<bool>(RELIEF_BOXES));
     let own = vec2<f32>(relief_tile_cell(cell)) + at + middle;
-    let size = vec2<f32>(f32(texels[0]), f32(texels[1]));
+    let size = vec2<f32>(f32(texels_at(0)), f32(texels_at(1)));
     let place = own / vec2<f32>(relief.samples) * size - 0.5;
     let low = vec2<i32>(floor(place));
     let f = place - floor(place);

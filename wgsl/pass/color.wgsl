@@ -1,13 +1,9 @@
 // The colour pass: key light with shadow, light from the sky and from the ground with
 // occlusion, and fog. Light is linear. Tone and sRGB follow when the picture is written.
 
-@group(2) @binding(0) var<storage, read> depth: array<f32>;
-@group(2) @binding(1) var<storage, read> state: array<u32>;
-@group(2) @binding(2) var<storage, read> marks: array<Mark>;
-/// Red, green, blue, and 0 where the shadow ray reached its step limit.
-@group(2) @binding(4) var<storage, read_write> radiance: array<vec4<f32>>;
-/// Written only for layers that show them.
-@group(2) @binding(5) var<storage, read_write> normals: array<vec4<f32>>;
+/// Red, green, blue, and 0 where the shadow ray reached its step limit. The normals follow,
+/// for layers that show them.
+@group(2) @binding(3) var<storage, read_write> pixels: array<vec4<f32>>;
 
 override COLOR_KEEPS_NORMALS: bool;
 /// Whether pigments are linear colours.
@@ -53,22 +49,22 @@ fn color(
     scene_load();
     view_load();
     look_load();
+    queue_load();
     // Every pixel gets a colour, also the sky.
-    let local = tile_cell(group.xy, lane);
-    if any(local >= view.block_size) {
+    let index = queue_tile(group.x, lane);
+    if index == QUEUE_NONE {
         return;
     }
-    let index = local.y * view.block_size.x + local.x;
-    let ray = view_ray(view.block_origin + local);
-    let s = state[index];
+    let ray = view_ray(turn.stage.origin + queue_cell(index));
+    let s = cells[turn.stage.state + index];
     var c = sky(ray.axis);
     var decided = 1.0;
     var n = vec3<f32>(0.0);
     // A pixel under a sky cell was never written: it is sky.
     if s == STATE_HIT || s == STATE_UNCONVERGED {
-        var hit = Hit(depth[index], 0u, vec2<f32>(0.0));
+        var hit = Hit(cell_front(index), 0u, vec2<f32>(0.0));
         if HIT_CARRIES_MARK {
-            let mark = marks[index];
+            let mark = cell_mark(index);
             hit.id = mark.id;
             hit.uv = vec2<f32>(mark.u, mark.v);
         }
@@ -83,8 +79,9 @@ fn color(
             c = vec3<f32>(1.0, 0.0, 1.0);
         }
     }
-    radiance[index] = vec4<f32>(c, decided);
+    pixels[index] = vec4<f32>(c, decided);
     if COLOR_KEEPS_NORMALS {
-        normals[index] = vec4<f32>(n, 0.0);
+        let area = turn.stage.cells.x * turn.stage.cells.y;
+        pixels[area + index] = vec4<f32>(n, 0.0);
     }
 }

@@ -3,12 +3,8 @@
 // A ray that needs more steps than a dispatch may do is stored in `walks`, and the next
 // dispatch goes on with it. This does not change the ray.
 
-@group(2) @binding(5) var<storage, read_write> depth: array<f32>;
-@group(2) @binding(6) var<storage, read_write> state: array<u32>;
 /// The rays that still move between two dispatches. All others are out of date.
-@group(2) @binding(7) var<storage, read_write> walks: array<Walk>;
-/// What was hit, in scenes whose hits carry a mark.
-@group(2) @binding(8) var<storage, read_write> marks: array<Mark>;
+@group(2) @binding(3) var<storage, read_write> walks: array<Walk>;
 
 @compute @workgroup_size(64)
 fn trace(
@@ -18,13 +14,13 @@ fn trace(
     scene_load();
     view_load();
     queue_load();
-    let index = queue_take(group.xy, lane, view.block_size);
+    let index = queue_take(group.x, lane);
     if index == QUEUE_NONE {
         return;
     }
     // Buffers belong to a block, rays to the whole image: so blocks do not change a picture.
-    let local = vec2<u32>(index % view.block_size.x, index / view.block_size.x);
-    let ray = view_ray(view.block_origin + local);
+    let local = queue_cell(index);
+    let ray = view_ray(turn.stage.origin + local);
     var walk: Walk;
     if turn.done > 0u {
         walk = walks[index];
@@ -48,10 +44,9 @@ fn trace(
     }
     // Written in every dispatch: an unconverged pixel shows how far its ray came.
     let hit = walk_hit(walk);
-    depth[index] = hit.t;
-    state[index] = s;
+    cell_store(index, hit.t, s);
     if HIT_CARRIES_MARK {
-        marks[index] = Mark(hit.id, hit.uv.x, hit.uv.y);
+        cell_store_mark(index, Mark(hit.id, hit.uv.x, hit.uv.y));
     }
     counters_store(index);
 }

@@ -10,7 +10,7 @@ use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::print::say;
 use crate::command::{arguments, completions, memory};
-use crate::gpu::device::{Choice, DeviceError, STORAGE_BUFFERS};
+use crate::gpu::device::{Choice, DeviceError};
 use crate::plan::Plan;
 use crate::preset::{self, Preset};
 use crate::scene::Assets;
@@ -73,7 +73,7 @@ impl Common {
         let read: Vec<_> = presets.chain(read).collect();
         let files = self.rows.prepare(plot, &read)?;
         Ok(Measurement {
-            executor: open(&self.device, STORAGE_BUFFERS)?,
+            executor: open(&self.device)?,
             subjects,
             assets,
             files,
@@ -104,13 +104,12 @@ impl Common {
     }
 }
 
-/// Opens an executor whose programs bind up to so many storage buffers, and announces it on
-/// standard error.
+/// Opens an executor and announces it on standard error.
 ///
 /// # Errors
 /// The choice matches nothing, or the adapter does not open.
-pub fn open(device: &Choice, storage_buffers: u32) -> Result<Executor, DeviceError> {
-    let (executor, who) = Executor::open_with(device, storage_buffers, true)?;
+pub fn open(device: &Choice) -> Result<Executor, DeviceError> {
+    let (executor, who) = Executor::open(device)?;
     say(&format!("measuring on {who}"));
     if executor.is_untimed() {
         say("this device has no timestamps: times are wall time");

@@ -18,7 +18,7 @@ use crate::command::executor::{Executor, device};
 use crate::command::interrupt;
 use crate::command::print::say;
 use crate::command::progress::Progress;
-use crate::gpu::device::{Choice, PROMISED_BUFFERS};
+use crate::gpu::device::Choice;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
 use crate::heightfield::height_surface::HeightSurface;
@@ -118,7 +118,7 @@ pub fn run(args: &ConesBench) -> Result<()> {
         false => Patches::Bilinear,
     };
     let files = args.rows.prepare(None, &[])?;
-    let executor = &open(&args.device, PROMISED_BUFFERS)?;
+    let executor = &open(&args.device)?;
     let (mut generators, mut tracers) = (Vec::new(), Vec::new());
     for size in sizes {
         for &field in fields {

@@ -17,7 +17,7 @@ use crate::command::print::say;
 use crate::command::progress::Progress;
 use crate::command::sink::{Sink, shown, spared};
 use crate::command::{interrupt, memory};
-use crate::gpu::device::{Choice, PROMISED_BUFFERS};
+use crate::gpu::device::Choice;
 use crate::heightfield::conemap::file::MapFile;
 use crate::heightfield::conemap::generate::generator::{Generator, Options};
 use crate::heightfield::heights::Patches;
@@ -107,7 +107,7 @@ pub fn run(args: &Make) -> Result<()> {
         false => Patches::Bilinear,
     };
     // Software adapters run on the same cores, which are faster without them.
-    let (executor, who) = Executor::open_with(&args.device, PROMISED_BUFFERS, false)?;
+    let (executor, who) = Executor::open_with(&args.device, false)?;
     say(&format!("making cones on {who}"));
     let start = Instant::now();
     let mut progress = Progress::start("making cones");

@@ -18,7 +18,6 @@
 use glam::DVec3;
 
 use crate::base::{named::named_enum, shader::Module, work::Work};
-use crate::heightfield::conemap::generate::mips::stored;
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{
     GridRay, LocalRay, Method, Step, Trace, Tracer, cone::cone_way, settings::TracerSettings,
@@ -215,15 +214,5 @@ impl Method for Cones {
                 "CONES_SECANT" = set(self.refine == Refine::Secant),
             ),
         ]
-    }
-
-    fn ratios(&self, tracer: &Tracer) -> Vec<(&'static str, Vec<u8>)> {
-        let ratios = &tracer.map.ratios;
-        if tracer.map.kind != MapKind::Quad {
-            return vec![("ratios", stored(ratios))];
-        }
-        // Four cones for each of 4096 x 4096 samples may exceed a binding: two buffers.
-        let half = |side: usize| stored(ratios.chunks(4).flat_map(|four| &four[side..side + 2]));
-        vec![("ratios", half(0)), ("ratios_y", half(2))]
     }
 }

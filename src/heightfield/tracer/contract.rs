@@ -8,9 +8,11 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use bytemuck::bytes_of;
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::base::array::SceneArray;
 pub use crate::base::work::Step;
 use crate::base::{shader::Module, work::Work};
 use crate::heightfield::conemap::generate::mips::stored;
@@ -153,9 +155,9 @@ pub trait Method: Debug + Sync {
     /// The WGSL modules of its own.
     fn modules(&self, tracer: &Tracer) -> Vec<Module>;
 
-    /// The ratios to bind, by the names of the WGSL variables.
-    fn ratios(&self, tracer: &Tracer) -> Vec<(&'static str, Vec<u8>)> {
-        vec![("ratios", stored(&tracer.map.ratios))]
+    /// The ratios, as the shaders read them.
+    fn ratios(&self, tracer: &Tracer) -> SceneArray {
+        SceneArray::new("ratios", &tracer.map, |map| stored(&map.ratios))
     }
 }
 
@@ -202,10 +204,16 @@ impl Tracer {
         all
     }
 
-    /// Bytes to bind, by the names of the WGSL variables.
-    pub fn buffers(&self) -> Vec<(&'static str, Vec<u8>)> {
-        let mut all = self.surface.buffers(&self.map, self.numbers);
-        all.extend(self.method.ratios(self));
+    /// Its parameters, by the name of the WGSL variable.
+    pub fn parameters(&self) -> (&'static str, Vec<u8>) {
+        let uniform = self.surface.uniform(&self.map, self.numbers);
+        ("relief_parameters", bytes_of(&uniform).to_vec())
+    }
+
+    /// The arrays that the shaders read.
+    pub fn arrays(&self) -> Vec<SceneArray> {
+        let mut all = self.surface.arrays();
+        all.push(self.method.ratios(self));
         all
     }
 }

@@ -19,6 +19,7 @@
 
 use std::sync::Arc;
 
+use crate::base::array::SceneArray;
 use crate::base::{shader::Module, work::Work};
 use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, stored};
 use crate::heightfield::height_surface::{Node, TracerParameters};
@@ -111,12 +112,13 @@ impl Method for WalkMip {
         ]
     }
 
-    fn ratios(&self, tracer: &Tracer) -> Vec<(&'static str, Vec<u8>)> {
+    fn ratios(&self, tracer: &Tracer) -> SceneArray {
         // Level after level, as the maxima are stored.
-        let ratios = match &tracer.nodes {
-            Some(nodes) => stored(nodes.iter().flat_map(|level| &level.ratios)),
-            None => stored(&tracer.map.ratios),
-        };
-        vec![("ratios", ratios)]
+        match &tracer.nodes {
+            Some(nodes) => SceneArray::new("ratios", nodes, |nodes| {
+                stored(nodes.iter().flat_map(|level| &level.ratios))
+            }),
+            None => SceneArray::new("ratios", &tracer.map, |map| stored(&map.ratios)),
+        }
     }
 }

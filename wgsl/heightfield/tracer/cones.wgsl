@@ -29,7 +29,7 @@ fn cones_at(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {
     // The sample of a box lies in its middle, those of a patch in its corners.
     if CONES_NEAREST {
         let place = own + select(vec2<i32>(at + 0.5), vec2<i32>(0), RELIEF_BOXES);
-        return vec2<f32>(heights[cones_place(place)], cones_ratio(d, place));
+        return vec2<f32>(heights_at(cones_place(place)), cones_ratio(d, place));
     }
     let middle = at - 0.5;
     let shift = select(vec2<f32>(0.0), floor(middle), RELIEF_BOXES);

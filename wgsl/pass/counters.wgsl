@@ -4,9 +4,6 @@
 var<private> evaluations: u32 = 0u;
 var<private> iterations: u32 = 0u;
 
-/// Per cell: evaluations and iterations so far, summed over dispatches.
-@group(2) @binding(9) var<storage, read_write> tally: array<vec2<u32>>;
-
 fn count_evaluation() {
     evaluations += 1u;
 }
@@ -15,6 +12,9 @@ fn count_iterations(n: u32) {
     iterations += n;
 }
 
+/// Adds this dispatch's work to that of the cell so far.
 fn counters_store(cell: u32) {
-    tally[cell] += vec2<u32>(evaluations, iterations);
+    let at = turn.stage.tally + 2u * cell;
+    cells[at] += evaluations;
+    cells[at + 1u] += iterations;
 }

@@ -1,0 +1,71 @@
+//! What is known about the dispatches of a stage. It decides how work is cut, never what comes
+//! of it.
+
+use crate::pass::turn::Stage;
+
+/// The time in milliseconds that a dispatch is made for: long against its overhead, short
+/// against a submission.
+const AIM_MS: f64 = 5.0;
+/// The product of workgroups and steps of a first dispatch. At 64 steps of a fractal with few
+/// iterations it takes about the aimed time on a slow device.
+const FIRST_SLICE: u32 = 64 * 512;
+/// Rounds beyond the first that are expected of a stage with a step limit.
+const ROUNDS: u32 = 2;
+/// The most dispatches beyond those of the first round that are encoded ahead.
+const MOST_AHEAD: u32 = 8;
+/// The largest number of workgroups along an axis.
+const MOST_GROUPS: u32 = 65_535;
+
+/// The costs of a stage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// The largest product of the workgroups and the step limit of a dispatch.
+    pub slice: u32,
+    /// Estimated milliseconds of a dispatch.
+    pub dispatch_ms: f64,
+    /// Dispatches of the stage in the last block, if it was cut as it is now.
+    last: Option<u32>,
+}
+
+impl Default for Cost {
+    fn default() -> Self {
+        Self {
+            slice: FIRST_SLICE,
+            dispatch_ms: AIM_MS,
+            last: None,
+        }
+    }
+}
+
+impl Cost {
+    /// Dispatches that visit every cell once.
+    fn of_first_round(&self, stage: &Stage) -> u32 {
+        let groups = (self.slice / stage.chunk.max(1)).clamp(1, MOST_GROUPS);
+        stage.tiles.div_ceil(groups).max(1)
+    }
+
+    /// How many dispatches of a stage to encode.
+    pub fn dispatches(&self, stage: &Stage) -> u32 {
+        let first = self.of_first_round(stage);
+        if stage.limit <= stage.chunk {
+            return first;
+        }
+        // One more, as another view may need it.
+        self.last
+            .map_or(first + ROUNDS, |last| last.min(first + MOST_AHEAD) + 1)
+    }
+
+    /// Learns from a stage that so far took so many dispatches of so many milliseconds.
+    pub fn learn(&mut self, each_ms: f64, dispatches: u32, stage: &Stage) {
+        self.dispatch_ms = each_ms.max(1e-3);
+        self.last = Some(dispatches);
+        if each_ms > 2.0 * AIM_MS && self.slice > stage.chunk {
+            self.slice /= 2;
+        } else if each_ms < 0.4 * AIM_MS && dispatches > 1 && self.of_first_round(stage) > 1 {
+            self.slice = self.slice.saturating_mul(2);
+        } else {
+            return;
+        }
+        self.last = None;
+    }
+}

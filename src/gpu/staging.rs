@@ -1,0 +1,80 @@
+//! Read-back without waiting: a buffer is filled by a submission and mapped when that has run.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use bytemuck::Pod;
+use wgpu::BufferUsages;
+
+use crate::gpu::buffer::create;
+use crate::gpu::device::{Device, DeviceError};
+
+/// A buffer that the host can read.
+pub struct Staging {
+    buffer: wgpu::Buffer,
+    mapped: Arc<AtomicBool>,
+}
+
+impl Staging {
+    /// A buffer of so many bytes.
+    pub fn new(device: &Device, bytes: u64) -> Self {
+        Self {
+            buffer: create(device, "staging", bytes.max(4), BufferUsages::MAP_READ),
+            mapped: Arc::default(),
+        }
+    }
+
+    /// Whether it holds so many bytes.
+    pub fn holds(&self, bytes: u64) -> bool {
+        self.buffer.size() >= bytes
+    }
+
+    /// Encodes copies of ranges, one after the other. Each range is a buffer, an offset and a
+    /// number of bytes.
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, ranges: &[(&wgpu::Buffer, u64, u64)]) {
+        let mut at = 0;
+        for &(from, offset, bytes) in ranges {
+            if bytes > 0 {
+                encoder.copy_buffer_to_buffer(from, offset, &self.buffer, at, bytes);
+            }
+            at += bytes;
+        }
+    }
+
+    /// Asks for the bytes. Call it after the copies were submitted.
+    pub fn map(&self) {
+        let mapped = self.mapped.clone();
+        // A failure is reported by the device, and the range below is empty.
+        self.buffer.map_async(wgpu::MapMode::Read, .., move |_| {
+            mapped.store(true, Ordering::Release);
+        });
+    }
+
+    /// Whether the bytes have arrived.
+    pub fn is_mapped(&self) -> bool {
+        self.mapped.load(Ordering::Acquire)
+    }
+
+    /// Values from an offset in bytes on.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read<T: Pod>(
+        &self,
+        device: &Device,
+        at: usize,
+        count: usize,
+    ) -> Result<Vec<T>, DeviceError> {
+        let view = self.buffer.get_mapped_range(..);
+        let view = view.map_err(|e| device.lost(e.to_string()))?;
+        Ok(bytemuck::pod_collect_to_vec(
+            &view[at..at + count * size_of::<T>()],
+        ))
+    }
+
+    /// Frees the buffer for the next copies.
+    pub fn unmap(&self) {
+        self.mapped.store(false, Ordering::Release);
+        self.buffer.unmap();
+    }
+}

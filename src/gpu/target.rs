@@ -1,0 +1,218 @@
+//! What a frame is rendered into: buffers, and kernels with their resources bound.
+//!
+//! A [`Target`] is kept between frames. Another frame with the same programs and sizes only
+//! rewrites parameters.
+
+use std::sync::Arc;
+
+use bytemuck::{Zeroable, bytes_of, cast_slice};
+use wgpu::BufferUsages;
+
+use crate::base::shader::Program;
+use crate::gpu::array::{Array, KeptArray};
+use crate::gpu::buffer::{create, uniform};
+use crate::gpu::device::Device;
+use crate::gpu::error::{RenderError, check_room};
+use crate::gpu::kernel::Kernel;
+use crate::pass::turn::{Layout, ListsHead, Stage, Turn};
+
+/// What decides a target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Needs {
+    /// The programs of the stages of a block, in order.
+    pub programs: Vec<Program>,
+    /// The largest block.
+    pub layout: Layout,
+    /// Values of four numbers per pixel: the light, and the normals if they are kept.
+    pub pixel_layers: u32,
+}
+
+/// The parameters of a frame: bytes by the names of the WGSL variables.
+pub type Parameters = Vec<(&'static str, Vec<u8>)>;
+
+/// A buffer of parameters with what it holds.
+struct Parameter {
+    name: &'static str,
+    bytes: Vec<u8>,
+    buffer: wgpu::Buffer,
+}
+
+/// A stage: its numbers, its kernel, and the resources of both.
+pub struct Bound {
+    /// Numbers of the stage.
+    pub stage: wgpu::Buffer,
+    /// Resources of the program that arranges its dispatches.
+    pub arrange: Vec<wgpu::BindGroup>,
+    /// Its kernel.
+    pub kernel: Arc<Kernel>,
+    /// Its resources.
+    pub groups: Vec<wgpu::BindGroup>,
+}
+
+/// Buffers, kernels and bound resources of the frames of one kind.
+pub struct Target {
+    needs: Needs,
+    parameters: Vec<Parameter>,
+    arrays: Vec<Arc<Array>>,
+    /// The turn.
+    pub turn: wgpu::Buffer,
+    /// The lists of cells.
+    pub lists: wgpu::Buffer,
+    /// The values of cells.
+    pub cells: wgpu::Buffer,
+    /// Light and normals.
+    pub pixels: wgpu::Buffer,
+    /// Workgroups of the next dispatch.
+    pub workgroups: wgpu::Buffer,
+    /// The program that arranges dispatches.
+    pub arrange: Arc<Kernel>,
+    /// The stages of a block.
+    pub stages: Vec<Bound>,
+    /// Resources of `arrange` for a stage that never comes: it only closes what has ended.
+    pub settle: Vec<wgpu::BindGroup>,
+}
+
+impl Target {
+    /// Compiles what is new, allocates and binds.
+    ///
+    /// # Errors
+    /// A program is wrong, or the device has no room.
+    pub fn new(
+        device: &Device,
+        compiled: Vec<Arc<Kernel>>,
+        arrange: Arc<Kernel>,
+        needs: Needs,
+        parameters: Parameters,
+        scene: &[KeptArray],
+    ) -> Result<Self, RenderError> {
+        let most = device.most_bound();
+        let room = |what: &str, bytes: u64| {
+            check_room(&device.info.name, what, bytes, most)?;
+            let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+            Ok::<_, RenderError>(create(
+                device,
+                what,
+                bytes.max(16).next_multiple_of(16),
+                usage,
+            ))
+        };
+        let parameter = |(name, bytes): (&'static str, Vec<u8>)| Parameter {
+            name,
+            buffer: uniform(device, name, &bytes),
+            bytes,
+        };
+        let parameters: Vec<Parameter> = parameters.into_iter().map(parameter).collect();
+        let pixels = u64::from(needs.layout.count(1));
+        let strides = compiled.iter().filter_map(|k| k.stride("walks"));
+        let walk = u64::from(strides.max().unwrap_or(0));
+        let turn = room("turn", size_of::<Turn>() as u64)?;
+        let head = size_of::<ListsHead>() as u64;
+        let lists = room("lists", head + 4 * u64::from(needs.layout.list_words()))?;
+        let cells = room("cells", 4 * u64::from(needs.layout.words()))?;
+        let walks = room("walks", walk * pixels)?;
+        let light = room("pixels", 16 * u64::from(needs.pixel_layers) * pixels)?;
+        let usage = BufferUsages::STORAGE | BufferUsages::INDIRECT;
+        let workgroups = create(device, "workgroups", 16, usage);
+        let shared = [
+            ("turn", &turn),
+            ("turn_parameters", &turn),
+            ("lists", &lists),
+            ("cells", &cells),
+            ("walks", &walks),
+            ("pixels", &light),
+            ("workgroups", &workgroups),
+        ];
+        let named = |name: &str| {
+            let shared = shared.iter().find(|b| b.0 == name).map(|b| b.1);
+            let own = || {
+                parameters
+                    .iter()
+                    .find(|p| p.name == name)
+                    .map(|p| &p.buffer)
+            };
+            let buffer = shared.or_else(own).map(wgpu::Buffer::as_entire_binding);
+            let array = || scene.iter().find(|a| a.name == name);
+            buffer.or_else(|| array().map(|a| a.array.binding()))
+        };
+        let arranged = |stage: &wgpu::Buffer| {
+            let with_stage = |name: &str| match name {
+                "stage_parameters" => Some(stage.as_entire_binding()),
+                other => named(other),
+            };
+            arrange.bind(device, with_stage)
+        };
+        let never = room("no stage", size_of::<Stage>() as u64)?;
+        let numbers = Stage {
+            number: u32::MAX,
+            ..Stage::zeroed()
+        };
+        device.queue.write_buffer(&never, 0, bytes_of(&numbers));
+        let bind = |kernel: Arc<Kernel>| {
+            let stage = room("stage", size_of::<Stage>() as u64)?;
+            Ok::<_, RenderError>(Bound {
+                arrange: arranged(&stage)?,
+                groups: kernel.bind(device, named)?,
+                stage,
+                kernel,
+            })
+        };
+        Ok(Self {
+            settle: arranged(&never)?,
+            stages: compiled.into_iter().map(bind).collect::<Result<_, _>>()?,
+            needs,
+            parameters,
+            arrays: scene.iter().map(|a| a.array.clone()).collect(),
+            turn,
+            lists,
+            cells,
+            pixels: light,
+            workgroups,
+            arrange,
+        })
+    }
+
+    /// Whether the target serves a frame: its programs, sizes and arrays are the same.
+    pub fn serves(&self, needs: &Needs, parameters: &Parameters, scene: &[KeptArray]) -> bool {
+        let same = |own: &Parameter| {
+            let found = parameters.iter().find(|(name, _)| *name == own.name);
+            found.is_some_and(|(_, bytes)| own.bytes.len() == bytes.len())
+        };
+        let arrays = self.arrays.iter().zip(scene);
+        self.needs == *needs
+            && self.parameters.iter().all(same)
+            && self.arrays.len() == scene.len()
+            && arrays
+                .map(|(own, a)| Arc::ptr_eq(own, &a.array))
+                .all(|same| same)
+    }
+
+    /// Rewrites the parameters that differ. Returns the bytes written.
+    pub fn rewrite(&mut self, device: &Device, parameters: Parameters) -> usize {
+        let mut written = 0;
+        for (name, bytes) in parameters {
+            let mut own = self.parameters.iter_mut();
+            if let Some(own) = own.find(|p| p.name == name && p.bytes != bytes) {
+                device.queue.write_buffer(&own.buffer, 0, &bytes);
+                written += bytes.len();
+                own.bytes = bytes;
+            }
+        }
+        written
+    }
+
+    /// Starts a frame: its first stage is the next one.
+    pub fn begin(&self, device: &Device) {
+        let (turn, head) = (Turn::zeroed(), ListsHead::zeroed());
+        device.queue.write_buffer(&self.turn, 0, bytes_of(&turn));
+        device.queue.write_buffer(&self.lists, 0, bytes_of(&head));
+    }
+
+    /// Writes the numbers of the stages of a block.
+    pub fn write_stages(&self, device: &Device, stages: &[Stage]) {
+        for (bound, stage) in self.stages.iter().zip(stages) {
+            device
+                .queue
+                .write_buffer(&bound.stage, 0, cast_slice(std::slice::from_ref(stage)));
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! A render under way.
+//!
+//! A frame is a stream of submissions. Each holds dispatches of one or more stages, in order,
+//! and is estimated to take at most [`SUBMISSION_MS`]. The host encodes ahead of what it
+//! knows: on the device, `wgsl/pass/arrange.wgsl` decides what a dispatch visits, and a
+//! dispatch of a stage that is not under way visits nothing. After each submission the host
+//! learns how far the frame has come, without waiting for it, and corrects what it encodes
+//! next. So neither the length of a submission nor a wrong estimate changes a bit.
+
+mod receive;
+mod submit;
+
+use std::collections::VecDeque;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+use crate::gpu::array::Arrays;
+use crate::gpu::cost::Cost;
+use crate::gpu::device::Device;
+use crate::gpu::error::RenderError;
+use crate::gpu::kernel::Kernels;
+use crate::gpu::staging::Staging;
+use crate::gpu::stamps::{PAIR, Stamps};
+use crate::gpu::target::Target;
+use crate::heightfield::assets::Preparation;
+use crate::pass::progress::{Progress, Watch};
+use crate::pass::turn::{Layout, ListsHead, MOST_STAGES, Stage, Turn};
+use crate::picture::frame::{Frame, Traffic};
+use crate::plan::{Extras, Pass};
+
+/// The longest estimated submission in milliseconds. A window that shares the device stays
+/// fluid, and the device is free soon after a render was cancelled.
+pub const SUBMISSION_MS: f64 = 40.0;
+/// Submissions that the device may have at once: one runs, and one is next.
+const IN_FLIGHT: usize = 2;
+/// Bytes of a report: the turn, the head of the lists, and a pair of timestamps.
+const REPORT: u64 = (size_of::<Turn>() + size_of::<ListsHead>()) as u64 + PAIR;
+
+/// What the renders of a device share.
+pub(super) struct Shared {
+    pub device: Arc<Device>,
+    pub kernels: Mutex<Kernels>,
+    pub arrays: Mutex<Arrays>,
+    pub kept: Mutex<Kept>,
+}
+
+/// What one render leaves to the next.
+#[derive(Default)]
+pub(super) struct Kept {
+    pub target: Option<Target>,
+    pub costs: Vec<Cost>,
+    pub stamps: Option<Stamps>,
+    pub reports: Vec<Staging>,
+    pub readings: Vec<Staging>,
+}
+
+/// What a render knows from the start.
+pub(super) struct Job {
+    pub passes: Vec<Pass>,
+    pub blocks: Vec<Layout>,
+    pub ray_steps: u32,
+    /// The step limits of the first dispatch of a stage and of the largest.
+    pub steps: [u32; 2],
+    pub extras: Extras,
+    pub prepared: Vec<(Preparation, f64)>,
+}
+
+/// A submission that has not ended, as far as the host knows.
+struct Flight {
+    index: wgpu::SubmissionIndex,
+    report: Staging,
+    /// Results of a block, if its last stage is in the submission.
+    reading: Option<(usize, Staging)>,
+    /// The first stage in it, and the stage that should be under way after it.
+    stages: Range<u32>,
+    /// Corrections that the host had made before.
+    corrections: u32,
+    submitted: Instant,
+}
+
+/// A render under way on a device. Dropping it cancels it.
+pub struct Work {
+    shared: Arc<Shared>,
+    kept: Kept,
+    job: Job,
+    frame: Frame,
+    /// The stage to encode next, and how many dispatches of it are to be encoded.
+    cursor: u32,
+    dispatches: u32,
+    /// The stage under way on the device, as of the last report.
+    reached: u32,
+    /// Dispatches of each stage of the block under way, as of the last report.
+    told: [u32; MOST_STAGES],
+    flights: VecDeque<Flight>,
+    corrections: u32,
+    ended: Instant,
+    /// Blocks in the frame.
+    collected: usize,
+}
+
+impl Work {
+    pub(super) fn new(shared: Arc<Shared>, kept: Kept, job: Job, frame: Frame) -> Self {
+        let mut work = Self {
+            shared,
+            kept,
+            job,
+            frame,
+            cursor: 0,
+            dispatches: 0,
+            reached: 0,
+            told: [0; MOST_STAGES],
+            flights: VecDeque::new(),
+            corrections: 0,
+            ended: Instant::now(),
+            collected: 0,
+        };
+        work.go_to(0);
+        work
+    }
+
+    /// Stages of a block.
+    fn per_block(&self) -> u32 {
+        // A stage before the passes and one after.
+        self.job.passes.len() as u32 + 2
+    }
+
+    fn end(&self) -> u32 {
+        self.per_block() * self.job.blocks.len() as u32
+    }
+
+    /// The block of a stage, and the stage's position in it.
+    fn place(&self, stage: u32) -> (usize, usize) {
+        let n = self.per_block();
+        ((stage / n) as usize, (stage % n) as usize)
+    }
+
+    /// The pass of a stage of a block, or the one next to it.
+    fn pass_at(&self, index: usize) -> usize {
+        index.clamp(1, self.job.passes.len()) - 1
+    }
+
+    /// The stages of a block, with what is known of their costs.
+    fn stages(&self, block: usize) -> Vec<Stage> {
+        let first = block as u32 * self.per_block();
+        let layout = &self.job.blocks[block];
+        let mut stages = layout.stages(&self.job.passes, first, self.job.ray_steps);
+        for (stage, cost) in stages.iter_mut().zip(&self.kept.costs) {
+            [stage.chunk, stage.most] = self.job.steps;
+            stage.slice = cost.slice;
+        }
+        stages
+    }
+
+    /// Encodes from a stage on.
+    fn go_to(&mut self, stage: u32) {
+        self.cursor = stage;
+        if stage < self.end() {
+            let (block, index) = self.place(stage);
+            let stage = self.stages(block)[index];
+            self.dispatches = self.kept.costs[index].dispatches(&stage);
+        }
+    }
+
+    /// How far the render has come.
+    pub fn progress(&self) -> Progress {
+        let (_, index) = self.place(self.reached.min(self.end() - 1));
+        Progress {
+            pass: self.job.passes[self.pass_at(index)].name(),
+            done: f64::from(self.reached) / f64::from(self.end()),
+        }
+    }
+
+    /// How the host and the device worked together so far.
+    pub fn traffic(&self) -> Traffic {
+        self.frame.traffic.unwrap_or_default()
+    }
+
+    /// Submits about so many milliseconds of work, but at most two submissions at once. It
+    /// never waits.
+    ///
+    /// # Errors
+    /// The device failed.
+    pub fn advance(&mut self, budget_ms: f64) -> Result<(), RenderError> {
+        self.receive()?;
+        let mut left = budget_ms;
+        while left > 0.0 && self.flights.len() < IN_FLIGHT && self.cursor < self.end() {
+            left -= self.submit(left.min(SUBMISSION_MS));
+        }
+        Ok(())
+    }
+
+    /// The frame, once it is finished. It never waits.
+    ///
+    /// # Errors
+    /// The device failed, or left cells unvisited.
+    pub fn poll(&mut self) -> Result<Option<Frame>, RenderError> {
+        self.receive()?;
+        if self.collected < self.job.blocks.len() {
+            return Ok(None);
+        }
+        let mut frame = std::mem::take(&mut self.frame);
+        frame.finish(std::mem::take(&mut self.job.prepared));
+        Ok(Some(frame))
+    }
+
+    /// Waits for the frame. `watch` is told of each pass that has ended.
+    ///
+    /// # Errors
+    /// [`RenderError::Cancelled`] if `watch` returns `false`. The device failed, or left cells
+    /// unvisited.
+    pub fn finish(mut self, watch: Watch<'_>) -> Result<Frame, RenderError> {
+        let mut told = 0;
+        loop {
+            self.advance(f64::INFINITY)?;
+            for stage in told..self.reached {
+                let (_, index) = self.place(stage);
+                // The stages about the passes are not told.
+                if (1..=self.job.passes.len()).contains(&index) {
+                    let passes = self.job.passes.len() * self.job.blocks.len();
+                    let (block, _) = self.place(stage);
+                    let done = block * self.job.passes.len() + index;
+                    let progress = Progress {
+                        pass: self.job.passes[index - 1].name(),
+                        done: done as f64 / passes as f64,
+                    };
+                    if !watch(&progress) {
+                        return Err(RenderError::Cancelled);
+                    }
+                    self.shared.device.check()?;
+                }
+            }
+            told = self.reached;
+            if let Some(frame) = self.poll()? {
+                return Ok(frame);
+            }
+            if let Some(flight) = self.flights.front() {
+                let index = Some(flight.index.clone());
+                self.shared.device.wait_for(index)?;
+            }
+        }
+    }
+}
+
+impl Drop for Work {
+    /// Leaves everything to the next render. The device may still run what was submitted; the
+    /// next render is behind it.
+    fn drop(&mut self) {
+        let mut kept = self
+            .shared
+            .kept
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        *kept = std::mem::take(&mut self.kept);
+    }
+}

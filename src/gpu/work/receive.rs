@@ -1,0 +1,117 @@
+//! What comes back of a submission.
+
+use std::ops::Range;
+use std::time::Instant;
+
+use crate::gpu::collect::Parts;
+use crate::gpu::error::RenderError;
+use crate::gpu::staging::Staging;
+use crate::gpu::stamps::PAIR;
+use crate::pass::turn::{ListsHead, Turn};
+use crate::picture::frame::Traffic;
+
+use super::{Flight, REPORT, Work};
+
+impl Work {
+    /// The counts of the frame.
+    pub(super) fn traffic_mut(&mut self) -> &mut Traffic {
+        self.frame.traffic.get_or_insert_default()
+    }
+
+    /// Takes in what has ended.
+    pub(super) fn receive(&mut self) -> Result<(), RenderError> {
+        self.shared.device.check()?;
+        let has_ended = |f: &Flight| {
+            f.report.is_mapped() && f.reading.as_ref().is_none_or(|(_, s)| s.is_mapped())
+        };
+        while self.flights.front().is_some_and(has_ended) {
+            let Some(flight) = self.flights.pop_front() else {
+                break;
+            };
+            self.land(flight)?;
+        }
+        Ok(())
+    }
+
+    /// Takes in a submission that has ended.
+    fn land(&mut self, flight: Flight) -> Result<(), RenderError> {
+        let shared = self.shared.clone();
+        let device = &shared.device;
+        let turn: Vec<Turn> = flight.report.read(device, 0, 1)?;
+        let head: Vec<ListsHead> = flight.report.read(device, size_of::<Turn>(), 1)?;
+        let (turn, head) = (turn[0], head[0]);
+        let pair: Vec<u64> = flight.report.read(device, (REPORT - PAIR) as usize, 2)?;
+        flight.report.unmap();
+        self.kept.reports.push(flight.report);
+        let now = Instant::now();
+        let started = flight.submitted.max(self.ended);
+        let elapsed_ms = now.duration_since(started).as_secs_f64() * 1e3;
+        self.ended = now;
+        self.count_time(&flight.stages, elapsed_ms, [pair[0], pair[1]]);
+        self.learn(&flight.stages, elapsed_ms, &head);
+        self.reached = turn.number;
+        if let Some((block, staging)) = flight.reading {
+            if turn.number >= (block as u32 + 1) * self.per_block() && self.collected == block {
+                self.collect(block, &staging, &head)?;
+            }
+            staging.unmap();
+            self.kept.readings.push(staging);
+        }
+        // A submission from before a correction says nothing new.
+        if turn.number < flight.stages.end && flight.corrections == self.corrections {
+            self.corrections += 1;
+            let drained = u32::from(self.flights.is_empty());
+            self.traffic_mut().drains += drained;
+            self.go_to(turn.number);
+        }
+        Ok(())
+    }
+
+    /// Adds the time of a submission to the figures of its last pass.
+    fn count_time(&mut self, stages: &Range<u32>, elapsed_ms: f64, pair: [u64; 2]) {
+        let last = stages.end.max(stages.start + 1) - 1;
+        let (_, index) = self.place(last);
+        let at = self.pass_at(index);
+        let figures = &mut self.frame.passes[at];
+        figures.wall_ms += elapsed_ms;
+        if let Some(stamps) = self.kept.stamps.as_ref().filter(|_| self.job.extras.time) {
+            *figures.gpu_ms.get_or_insert(0.0) += stamps.milliseconds(pair);
+        }
+    }
+
+    /// Learns from a submission how long dispatches take.
+    fn learn(&mut self, stages: &Range<u32>, elapsed_ms: f64, head: &ListsHead) {
+        let (block, first) = self.place(stages.start);
+        let (_, last) = self.place(stages.end.max(stages.start + 1) - 1);
+        let ran = |i: usize| head.dispatches[i].saturating_sub(self.told[i]);
+        let all: u32 = (first..=last).map(ran).sum();
+        let each = elapsed_ms / f64::from(all.max(1));
+        let known = self.stages(block);
+        for i in first..=last {
+            if ran(i) > 0 {
+                self.kept.costs[i].learn(each, head.dispatches[i], &known[i]);
+            }
+        }
+        self.told = head.dispatches;
+    }
+
+    fn collect(
+        &mut self,
+        block: usize,
+        staging: &Staging,
+        head: &ListsHead,
+    ) -> Result<(), RenderError> {
+        let device = &self.shared.device;
+        if head.wrong > 0 {
+            return Err(RenderError::Unwritten {
+                device: device.info.name.clone(),
+                cells: head.wrong as usize,
+            });
+        }
+        let layout = &self.job.blocks[block];
+        let parts = Parts::new(layout, self.job.extras);
+        parts.collect(device, staging, layout, &self.job.passes, &mut self.frame)?;
+        self.collected += 1;
+        Ok(())
+    }
+}

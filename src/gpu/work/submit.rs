@@ -1,0 +1,110 @@
+//! Encoding and submission.
+
+use std::time::Instant;
+
+use crate::gpu::collect::Parts;
+use crate::gpu::staging::Staging;
+use crate::gpu::stamps::{PAIR, Stamps};
+use crate::pass::turn::{ListsHead, Turn};
+use crate::plan::Pass;
+
+use super::{Flight, REPORT, Work};
+
+impl Work {
+    /// Encodes and submits work of about so many milliseconds, of one block. Returns its
+    /// estimated milliseconds.
+    pub(super) fn submit(&mut self, budget_ms: f64) -> f64 {
+        let shared = self.shared.clone();
+        let device = &shared.device;
+        let (block, _) = self.place(self.cursor);
+        let stages = self.stages(block);
+        let first = self.cursor;
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        let Some(target) = self.kept.target.as_ref() else {
+            unreachable!("a work has a target");
+        };
+        target.write_stages(device, &stages);
+        let stamps = self.kept.stamps.as_ref().filter(|_| self.job.extras.time);
+        let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: None,
+            timestamp_writes: stamps.map(Stamps::writes),
+        });
+        let mut cursor = self.cursor;
+        let mut estimate = 0.0;
+        let mut ends_block = false;
+        while estimate < budget_ms {
+            let (_, index) = self.place(cursor);
+            let bound = &target.stages[index];
+            let each = self.kept.costs[index].dispatch_ms;
+            let room = ((budget_ms - estimate) / each).max(1.0) as u32;
+            let count = self.dispatches.min(room);
+            for _ in 0..count {
+                target
+                    .arrange
+                    .dispatch(&mut compute, &bound.arrange, [1, 1]);
+                let workgroups = &target.workgroups;
+                bound
+                    .kernel
+                    .dispatch_indirect(&mut compute, &bound.groups, workgroups);
+            }
+            estimate += f64::from(count) * each;
+            self.dispatches -= count;
+            if self.dispatches > 0 {
+                break;
+            }
+            cursor += 1;
+            ends_block = index + 1 == stages.len();
+            let of_pass = self.job.passes.get(index.wrapping_sub(1));
+            // Figures of a pass are those of its own submissions.
+            let cut = self.job.extras.time || of_pass == Some(&Pass::Trace);
+            if !ends_block {
+                let next = &stages[index + 1];
+                self.dispatches = self.kept.costs[index + 1].dispatches(next);
+            }
+            if ends_block || cut {
+                break;
+            }
+        }
+        target
+            .arrange
+            .dispatch(&mut compute, &target.settle, [1, 1]);
+        drop(compute);
+        let report = self.kept.reports.pop();
+        let report = report.unwrap_or_else(|| Staging::new(device, REPORT));
+        let (turn, head) = (size_of::<Turn>() as u64, size_of::<ListsHead>() as u64);
+        let mut ranges = vec![(&target.turn, 0, turn), (&target.lists, 0, head)];
+        if let Some(stamps) = stamps {
+            stamps.resolve(&mut encoder);
+            ranges.push((&stamps.pair, 0, PAIR));
+        }
+        report.copy(&mut encoder, &ranges);
+        let reading = ends_block.then(|| {
+            let parts = Parts::new(&self.job.blocks[block], self.job.extras);
+            let kept = self.kept.readings.pop();
+            let staging = kept.filter(|s| s.holds(parts.bytes()));
+            let staging = staging.unwrap_or_else(|| Staging::new(device, parts.bytes()));
+            staging.copy(&mut encoder, &parts.ranges(target));
+            (block, staging)
+        });
+        let index = device.queue.submit([encoder.finish()]);
+        report.map();
+        if let Some((_, staging)) = &reading {
+            staging.map();
+        }
+        self.traffic_mut().submissions += 1;
+        self.flights.push_back(Flight {
+            index,
+            report,
+            reading,
+            stages: first..cursor,
+            corrections: self.corrections,
+            submitted: Instant::now(),
+        });
+        if ends_block {
+            self.go_to(cursor);
+        } else {
+            self.cursor = cursor;
+        }
+        estimate
+    }
+}

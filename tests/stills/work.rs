@@ -1,0 +1,140 @@
+//! A render in slices: whatever their sizes, and whatever was begun before, the picture is the
+//! same; and what a frame needs again stays on the device.
+
+use conemarch::gpu::device::{Adapters, Choice, Device};
+use conemarch::gpu::render::{Cutting, Renderer};
+use conemarch::picture::frame::{Frame, Traffic};
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset::BUILTIN;
+use conemarch::scene::Assets;
+use wgpu::Limits;
+
+use super::common::plans::{preset, sized};
+use super::common::random::Random;
+use crate::adapter::{self, EVERYTHING};
+
+/// All bits of a frame.
+fn bits(frame: &Frame) -> Vec<u32> {
+    let mut all: Vec<u32> = frame
+        .radiance
+        .iter()
+        .flatten()
+        .map(|x| x.to_bits())
+        .collect();
+    all.extend(frame.depth.iter().map(|t| t.to_bits()));
+    all.extend(frame.normal.iter().flatten().map(|x| x.to_bits()));
+    all.extend(frame.state.iter().map(|s| u32::from(*s)));
+    all.extend(
+        frame
+            .work
+            .iter()
+            .flat_map(|w| [w.evaluations, w.iterations]),
+    );
+    for level in &frame.levels {
+        all.extend(level.front.iter().map(|f| f.to_bits()));
+        all.extend(level.state.iter().map(|s| u32::from(*s)));
+    }
+    all
+}
+
+fn plans() -> Vec<Plan> {
+    let mut limited = sized("bench-outside", [70, 45]);
+    limited.march.steps = Some(7);
+    vec![
+        limited,
+        sized("mandelbox", [96, 54]),
+        preset("terrain", &["scene.field=fbm:32x32", "image.size=[80, 45]"]),
+    ]
+}
+
+#[test]
+fn slices_and_what_was_begun_before_change_no_bit() {
+    let mut renderer = adapter::open();
+    let (plans, assets) = (plans(), Assets::default());
+    let go = &mut |_: &_| true;
+    let whole: Vec<_> = plans
+        .iter()
+        .map(|plan| bits(&renderer.render(plan, &assets, EVERYTHING, go).unwrap()))
+        .collect();
+    let mut random = Random::new(12);
+    let (mut finished, mut dropped) = (0, 0);
+    for _ in 0..60 {
+        renderer.cutting = Cutting {
+            block: [32, 64, 1024][random.index(3)],
+            chunk: [1, 5, 64][random.index(3)],
+        };
+        let which = random.index(plans.len());
+        let mut work = renderer
+            .begin(&plans[which], &assets, EVERYTHING, go)
+            .unwrap();
+        let patience = [3, 10_000][random.index(2)];
+        let frame = (0..patience).find_map(|_| {
+            work.advance(10.0_f64.powf(random.between(-2.0, 2.0)))
+                .unwrap();
+            renderer.device.wait().unwrap();
+            work.poll().unwrap()
+        });
+        match frame {
+            Some(frame) => {
+                finished += 1;
+                // Not assert_eq: it would print a million numbers.
+                assert!(
+                    bits(&frame) == whole[which],
+                    "plan {which}, {:?}",
+                    renderer.cutting
+                );
+            }
+            None => dropped += 1,
+        }
+    }
+    assert!(
+        finished > 20 && dropped > 5,
+        "{finished} finished, {dropped} dropped"
+    );
+}
+
+#[test]
+fn a_second_frame_writes_parameters_and_creates_nothing() {
+    let mut renderer = adapter::open();
+    let assets = Assets::default();
+    for mut plan in plans() {
+        let mut frame = |plan: &Plan| {
+            let frame = renderer.render(plan, &assets, Extras::default(), &mut |_| true);
+            frame.unwrap().traffic.unwrap()
+        };
+        let first = frame(&plan);
+        assert_eq!(first.allocations, 1);
+        frame(&plan);
+        for step in 1..4 {
+            plan.camera.eye *= 1.0 + 1e-3 * f64::from(step);
+            let again = frame(&plan);
+            let expected = Traffic {
+                uploads: again.uploads,
+                submissions: again.submissions,
+                ..Traffic::default()
+            };
+            assert_eq!(again, expected, "a frame from another eye");
+            // The view, the scene's numbers and the light.
+            assert!((1..2048).contains(&again.uploads), "{again:?}");
+        }
+    }
+}
+
+#[test]
+fn every_preset_renders_within_the_limits_that_webgpu_promises() {
+    let adapters = Adapters::find();
+    let (adapter, _) = adapters
+        .choose(&Choice::Auto)
+        .unwrap()
+        .expect(adapter::NO_ADAPTER);
+    let device = Device::open_with(adapter, Limits::default()).unwrap();
+    let mut renderer = Renderer::new(device);
+    let mut hits = 0;
+    for (name, _) in BUILTIN {
+        let plan = sized(name, [64, 36]);
+        let frame = renderer.render(&plan, &Assets::default(), EVERYTHING, &mut |_| true);
+        let frame = frame.unwrap_or_else(|e| panic!("{name}: {e}"));
+        hits += frame.census()[1];
+    }
+    assert!(hits > 10_000, "the pictures show nothing: {hits} hits");
+}
