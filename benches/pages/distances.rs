@@ -33,6 +33,7 @@ const DEPTHS: Extras = Extras {
     levels: false,
     depth_only: true,
     time: false,
+    shown: false,
 };
 const COUNTED: Extras = Extras {
     count: true,

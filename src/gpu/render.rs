@@ -18,7 +18,8 @@ use crate::gpu::work::{Job, Kept, Shared, Work};
 use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
 use crate::pass::progress::Watch;
-use crate::pass::{program, turn};
+use crate::pass::tone::tone_steps;
+use crate::pass::turn::{self, StageKind};
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Plan};
@@ -117,11 +118,13 @@ impl Renderer {
             |block| turn::Layout::new(block, coarsest, extras.count, scene.twin().marks_hits());
         let blocks = Block::cut(plan.size, self.cutting.block, coarsest);
         let blocks: Vec<_> = blocks.into_iter().map(layout).collect();
-        let mut programs = vec![turn::reset()];
-        programs.extend(passes.iter().map(|p| program(plan, &scene, *p, extras)));
-        programs.push(turn::census());
+        let largest = device.device.limits().max_texture_dimension_2d;
+        let shown = extras.shown && plan.size.iter().all(|n| *n <= largest);
+        let kinds = StageKind::all(&passes, shown);
+        let programs = kinds.iter().map(|k| k.program(plan, &scene, extras));
         let needs = Needs {
-            programs,
+            programs: programs.collect(),
+            picture: shown.then_some(plan.size),
             // The first block is as large as any.
             layout: blocks[0].clone(),
             pixel_layers: match (extras.depth_only, extras.normals) {
@@ -132,12 +135,12 @@ impl Renderer {
         let parameters = parameters(plan, &scene, assets);
         let mut traffic = Traffic::default();
         let kernels = &mut *lock(&self.shared.kernels);
-        let known = kernels.len();
+        let known = kernels.count();
         let mut compile = |program| kernels.get(device, program);
         let compiled = needs.programs.iter().map(&mut compile);
         let compiled: Vec<_> = compiled.collect::<Result<_, _>>()?;
         let arrange = kernels.get(device, &turn::arrange())?;
-        traffic.compilations = kernels.len() - known;
+        traffic.compilations = kernels.count() - known;
         let arrays = &mut *lock(&self.shared.arrays);
         let arrays = arrays.keep(
             device,
@@ -156,7 +159,7 @@ impl Renderer {
                 traffic.uploads += parameters.iter().map(|(_, b)| b.len()).sum::<usize>();
                 traffic.allocations = 1;
                 kept = Kept {
-                    costs: vec![Cost::default(); passes.len() + 2],
+                    costs: vec![Cost::default(); kinds.len()],
                     stamps: Stamps::new(device),
                     ..Kept::default()
                 };
@@ -166,6 +169,7 @@ impl Renderer {
         target.begin(device);
         kept.target = Some(target);
         let job = Job {
+            kinds,
             ray_steps: plan.ray_steps(assets),
             steps: {
                 let most = most_steps(&scene);
@@ -200,9 +204,11 @@ impl Renderer {
 fn parameters(plan: &Plan, scene: &AnySolid, assets: &Assets) -> Parameters {
     let view = plan.view().uniform();
     let look = Light::of(plan, assets).uniform();
+    let steps = tone_steps(plan.look.exposure.exp2());
     let frame = [
         ("view_parameters", bytes_of(&view).to_vec()),
         ("look_parameters", bytes_of(&look).to_vec()),
+        ("tone_steps", bytes_of(&steps).to_vec()),
     ];
     scene.twin().uniforms().into_iter().chain(frame).collect()
 }

@@ -207,4 +207,6 @@ pub struct Extras {
     pub depth_only: bool,
     /// Measure the device's time per pass.
     pub time: bool,
+    /// Keep a picture on the device that can be shown while it is made.
+    pub shown: bool,
 }

@@ -33,6 +33,7 @@ pub const EVERYTHING: Extras = Extras {
     levels: true,
     depth_only: false,
     time: false,
+    shown: false,
 };
 /// Fronts and states of every level, and no colour.
 pub const LEVELS: Extras = Extras {

@@ -6,7 +6,8 @@ use std::sync::LazyLock;
 
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
-use conemarch::pass::{LookFeature, turn};
+use conemarch::pass::LookFeature;
+use conemarch::pass::turn::{self, StageKind};
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
@@ -15,7 +16,7 @@ use rayon::prelude::*;
 use toml::Value;
 use wgpu::naga::{self, valid::Capabilities};
 
-use super::common::plans::{distance, outline, preset, program};
+use super::common::plans::{distance, outline, preset};
 use super::common::programs::map_programs;
 
 /// Switches a feature of the look, by the key that does and nothing else.
@@ -129,14 +130,14 @@ fn plans() -> Vec<Plan> {
 /// not.
 pub fn programs_of(plan: &Plan, solid: &AnySolid) -> Vec<Program> {
     let mut all: Vec<Program> = Vec::new();
-    for pass in plan.passes(Extras::default()) {
+    for kind in StageKind::all(&plan.passes(Extras::default()), true) {
         for [count, normals] in [[false; 2], [true, false], [false, true], [true; 2]] {
             let extras = Extras {
                 count,
                 normals,
                 ..Extras::default()
             };
-            let program = program(plan, solid, pass, extras);
+            let program = kind.program(plan, solid, extras);
             if !all.contains(&program) {
                 all.push(program);
             }
@@ -162,8 +163,11 @@ pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     let assets = Assets::default();
     let plans = plans().into_iter();
     let of_plans = plans.flat_map(|plan| programs_of(&plan, &outline(&plan, &assets)));
-    let of_stages = [turn::arrange(), turn::reset(), turn::census()];
-    for program in map_programs().into_iter().chain(of_stages).chain(of_plans) {
+    for program in map_programs()
+        .into_iter()
+        .chain(of_plans)
+        .chain([turn::arrange()])
+    {
         let listing = format!("{}\n{}", program.entry, program.describe());
         found.entry(listing).or_insert(program);
     }

@@ -3,6 +3,7 @@
 
 use conemarch::gpu::device::{Adapters, Choice, Device};
 use conemarch::gpu::render::{Cutting, Renderer};
+use conemarch::pass::tone::byte;
 use conemarch::picture::frame::{Frame, Traffic};
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
@@ -116,6 +117,49 @@ fn a_second_frame_writes_parameters_and_creates_nothing() {
             assert_eq!(again, expected, "a frame from another eye");
             // The view, the scene's numbers and the light.
             assert!((1..2048).contains(&again.uploads), "{again:?}");
+        }
+    }
+}
+
+/// Radiance in a byte of each channel, as a PNG of 8 bits holds it.
+fn bytes(plan: &Plan, frame: &Frame) -> Vec<u8> {
+    let shown = |x: &f32| byte(plan.look.exposure.exp2(), f64::from(*x));
+    let pixel = |[r, g, b]: &[f32; 3]| [shown(r), shown(g), shown(b), 255];
+    frame.radiance.iter().flat_map(pixel).collect()
+}
+
+#[test]
+fn the_picture_on_the_device_grows_into_that_of_the_file() {
+    let (assets, shown) = (
+        Assets::default(),
+        Extras {
+            shown: true,
+            ..Extras::default()
+        },
+    );
+    for mut plan in plans() {
+        for (exposure, block) in [(0.0, 1024), (-3.0, 32), (2.5, 64)] {
+            let mut renderer = adapter::open();
+            renderer.cutting.block = block;
+            plan.look.exposure = exposure;
+            let mut work = renderer
+                .begin(&plan, &assets, shown, &mut |_| true)
+                .unwrap();
+            let mut seen = vec![work.pixels().unwrap()];
+            let frame = (0..10_000).find_map(|_| {
+                work.advance(1e-3).unwrap();
+                seen.push(work.pixels().unwrap());
+                work.poll().unwrap()
+            });
+            let wanted = bytes(&plan, &frame.unwrap());
+            let wrong = |picture: &Vec<u8>| {
+                let pairs = picture.iter().zip(&wanted);
+                pairs.map(|(a, b)| u64::from(a.abs_diff(*b))).sum::<u64>()
+            };
+            assert_eq!(wrong(&work.pixels().unwrap()), 0, "{plan:?}");
+            // At first it is black, and a sketch is nearer to the picture than that.
+            let (first, sketched) = (wrong(&seen[0]), seen.iter().map(wrong));
+            assert!(first > 0 && sketched.clone().any(|w| w > 0 && w < first / 2));
         }
     }
 }

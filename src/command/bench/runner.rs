@@ -18,6 +18,7 @@ pub const COUNTED: Extras = Extras {
     depth_only: true,
     normals: false,
     time: false,
+    shown: false,
 };
 /// Asks the device for its times; no colours.
 pub const TIMED: Extras = Extras {

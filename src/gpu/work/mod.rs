@@ -22,10 +22,10 @@ use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::{PAIR, Stamps};
-use crate::gpu::target::Target;
+use crate::gpu::target::{Target, read_picture};
 use crate::heightfield::assets::Preparation;
 use crate::pass::progress::{Progress, Watch};
-use crate::pass::turn::{Layout, ListsHead, MOST_STAGES, Stage, Turn};
+use crate::pass::turn::{Layout, ListsHead, MOST_STAGES, Stage, StageKind, Turn};
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::{Extras, Pass};
 
@@ -57,6 +57,7 @@ pub(super) struct Kept {
 
 /// What a render knows from the start.
 pub(super) struct Job {
+    pub kinds: Vec<StageKind>,
     pub passes: Vec<Pass>,
     pub blocks: Vec<Layout>,
     pub ray_steps: u32,
@@ -121,8 +122,7 @@ impl Work {
 
     /// Stages of a block.
     fn per_block(&self) -> u32 {
-        // A stage before the passes and one after.
-        self.job.passes.len() as u32 + 2
+        self.job.kinds.len() as u32
     }
 
     fn end(&self) -> u32 {
@@ -135,16 +135,18 @@ impl Work {
         ((stage / n) as usize, (stage % n) as usize)
     }
 
-    /// The pass of a stage of a block, or the one next to it.
+    /// The pass that a stage of a block is or follows; before the first one, the first.
     fn pass_at(&self, index: usize) -> usize {
-        index.clamp(1, self.job.passes.len()) - 1
+        let stages = &self.job.kinds[..=index];
+        let passes = stages.iter().filter(|k| matches!(k, StageKind::Pass(_)));
+        passes.count().max(1) - 1
     }
 
     /// The stages of a block, with what is known of their costs.
     fn stages(&self, block: usize) -> Vec<Stage> {
         let first = block as u32 * self.per_block();
         let layout = &self.job.blocks[block];
-        let mut stages = layout.stages(&self.job.passes, first, self.job.ray_steps);
+        let mut stages = layout.stages(&self.job.kinds, first, self.job.ray_steps);
         for (stage, cost) in stages.iter_mut().zip(&self.kept.costs) {
             [stage.chunk, stage.most] = self.job.steps;
             stage.slice = cost.slice;
@@ -169,6 +171,23 @@ impl Work {
             pass: self.job.passes[self.pass_at(index)].name(),
             done: f64::from(self.reached) / f64::from(self.end()),
         }
+    }
+
+    /// The picture as far as it is made: first the fronts of the coarse levels, then colours.
+    /// `None` without [`Extras::shown`], or if the image is larger than a texture can be. Its
+    /// bytes are those of sRGB, as files hold them.
+    pub fn picture(&self) -> Option<&wgpu::Texture> {
+        self.kept.target.as_ref()?.picture.as_ref()
+    }
+
+    /// Waits for the device and reads the picture, row by row, four bytes to a pixel.
+    ///
+    /// # Errors
+    /// The device failed.
+    pub fn pixels(&self) -> Result<Vec<u8>, RenderError> {
+        let picture = self.picture();
+        let read = picture.map(|picture| read_picture(&self.shared.device, picture));
+        Ok(read.transpose()?.unwrap_or_default())
     }
 
     /// How the host and the device worked together so far.
@@ -214,15 +233,15 @@ impl Work {
         loop {
             self.advance(f64::INFINITY)?;
             for stage in told..self.reached {
-                let (_, index) = self.place(stage);
-                // The stages about the passes are not told.
-                if (1..=self.job.passes.len()).contains(&index) {
-                    let passes = self.job.passes.len() * self.job.blocks.len();
-                    let (block, _) = self.place(stage);
-                    let done = block * self.job.passes.len() + index;
+                let (block, index) = self.place(stage);
+                // Only passes are told, not what is between them.
+                if matches!(self.job.kinds[index], StageKind::Pass(_)) {
+                    let pass = self.pass_at(index);
+                    let passes = self.job.passes.len();
+                    let all = passes * self.job.blocks.len();
                     let progress = Progress {
-                        pass: self.job.passes[index - 1].name(),
-                        done: done as f64 / passes as f64,
+                        pass: self.job.passes[pass].name(),
+                        done: (block * passes + pass + 1) as f64 / all as f64,
                     };
                     if !watch(&progress) {
                         return Err(RenderError::Cancelled);

@@ -87,9 +87,10 @@ impl Work {
         let all: u32 = (first..=last).map(ran).sum();
         let each = elapsed_ms / f64::from(all.max(1));
         let known = self.stages(block);
-        for i in first..=last {
-            if ran(i) > 0 {
-                self.kept.costs[i].learn(each, head.dispatches[i], &known[i]);
+        let costs = self.kept.costs.iter_mut().zip(known).zip(head.dispatches);
+        for (i, ((cost, stage), dispatches)) in costs.enumerate() {
+            if (first..=last).contains(&i) && dispatches > self.told[i] {
+                cost.learn(each, dispatches, &stage);
             }
         }
         self.told = head.dispatches;

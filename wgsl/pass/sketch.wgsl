@@ -1,0 +1,48 @@
+// The stage after a cone level: it shows the fronts, each cell as a square of pixels. The normal
+// follows from the differences to the fronts beside and below, so this asks nothing of the scene.
+
+/// Light on a sketch that comes from everywhere, and what the sun adds.
+const SKETCH_FILL = 0.25;
+const SKETCH_KEY = 0.5;
+
+/// Where the front of a cell is, relative to the eye. Beyond the block's edge it is the last one.
+fn sketch_point(cell: vec2<u32>) -> vec3<f32> {
+    let at = min(cell, turn.stage.cells - 1u);
+    let front = cell_front(at.y * turn.stage.cells.x + at.x);
+    let pixel = f32(turn.stage.divisor) * (vec2<f32>(turn.stage.origin + cell) + 0.5);
+    return front * normalize(view_direction(pixel.x, pixel.y));
+}
+
+@compute @workgroup_size(64)
+fn sketch(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    view_load();
+    look_load();
+    queue_load();
+    let index = queue_tile(group.x, lane);
+    if index == QUEUE_NONE {
+        return;
+    }
+    let cell = queue_cell(index);
+    let here = sketch_point(cell);
+    var c = sky(normalize(here));
+    let state = cells[turn.stage.state + index];
+    if state == STATE_HIT || state == STATE_UNCONVERGED {
+        let across = sketch_point(cell + vec2<u32>(1u, 0u)) - here;
+        let down = sketch_point(cell + vec2<u32>(0u, 1u)) - here;
+        let n = cross(down, across);
+        // The front of a neighbour in the sky was never written: any normal will do there.
+        let facing = dot(n, look.light) / max(length(n), 1e-20);
+        let lit = SKETCH_FILL * look.fill + SKETCH_KEY * look.key * clamp(facing, 0.0, 1.0);
+        c = palette_at(0.5) * lit;
+    }
+    let first = turn.stage.divisor * (turn.stage.origin + cell);
+    let end = min(first + turn.stage.divisor, view.size);
+    for (var y = first.y; y < end.y; y++) {
+        for (var x = first.x; x < end.x; x++) {
+            tone_store(vec2<u32>(x, y), c);
+        }
+    }
+}
