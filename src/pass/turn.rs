@@ -92,6 +92,25 @@ pub struct Turn {
     pub pad: u32,
 }
 
+impl Turn {
+    /// The share of the stage that is done, about: most cells end in the first round.
+    pub fn share(&self) -> f64 {
+        if self.begun == 0 {
+            return 0.0;
+        }
+        let groups = match self.visits {
+            0 => self.stage.tiles,
+            1 => self.count.div_ceil(16),
+            _ => self.count.div_ceil(64),
+        };
+        let round = f64::from(self.first) / f64::from(groups.max(1));
+        match self.done {
+            0 => 0.8 * round,
+            _ => 0.8 + 0.2 * round,
+        }
+    }
+}
+
 /// The most stages of a block.
 pub const MOST_STAGES: usize = 20;
 

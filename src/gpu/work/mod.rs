@@ -89,8 +89,10 @@ pub struct Work {
     /// The stage to encode next, and how many dispatches of it are to be encoded.
     cursor: u32,
     dispatches: u32,
-    /// The stage under way on the device, as of the last report.
+    /// The stage under way on the device, as of the last report, and the share of it that is
+    /// done, about.
     reached: u32,
+    share: f64,
     /// Dispatches of each stage of the block under way, as of the last report.
     told: [u32; MOST_STAGES],
     flights: VecDeque<Flight>,
@@ -110,6 +112,7 @@ impl Work {
             cursor: 0,
             dispatches: 0,
             reached: 0,
+            share: 0.0,
             told: [0; MOST_STAGES],
             flights: VecDeque::new(),
             corrections: 0,
@@ -166,10 +169,23 @@ impl Work {
 
     /// How far the render has come.
     pub fn progress(&self) -> Progress {
-        let (_, index) = self.place(self.reached.min(self.end() - 1));
+        self.progress_at(self.reached, self.share)
+    }
+
+    /// The progress when a stage is under way of which a share is done.
+    fn progress_at(&self, stage: u32, share: f64) -> Progress {
+        let is_pass = |k: &&StageKind| matches!(k, StageKind::Pass(_));
+        let (block, index) = self.place(stage);
+        let before = self.job.kinds[..index].iter().filter(is_pass).count();
+        let passes = self.job.passes.len();
+        let share = match self.job.kinds[index] {
+            StageKind::Pass(_) => share,
+            _ => 0.0,
+        };
+        let done = (block * passes + before) as f64 + share;
         Progress {
             pass: self.job.passes[self.pass_at(index)].name(),
-            done: f64::from(self.reached) / f64::from(self.end()),
+            done: (done / (passes * self.job.blocks.len()) as f64).min(1.0),
         }
     }
 
@@ -223,7 +239,8 @@ impl Work {
         Ok(Some(frame))
     }
 
-    /// Waits for the frame. `watch` is told of each pass that has ended.
+    /// Waits for the frame. `watch` is told of each pass that has ended, and of the progress in
+    /// a long pass.
     ///
     /// # Errors
     /// [`RenderError::Cancelled`] if `watch` returns `false`. The device failed, or left cells
@@ -232,24 +249,27 @@ impl Work {
         let mut told = 0;
         loop {
             self.advance(f64::INFINITY)?;
-            for stage in told..self.reached {
-                let (block, index) = self.place(stage);
-                // Only passes are told, not what is between them.
-                if matches!(self.job.kinds[index], StageKind::Pass(_)) {
-                    let pass = self.pass_at(index);
-                    let passes = self.job.passes.len();
-                    let all = passes * self.job.blocks.len();
-                    let progress = Progress {
-                        pass: self.job.passes[pass].name(),
-                        done: (block * passes + pass + 1) as f64 / all as f64,
-                    };
-                    if !watch(&progress) {
-                        return Err(RenderError::Cancelled);
-                    }
-                    self.shared.device.check()?;
-                }
+            let is_pass = |stage: &u32| {
+                let (_, index) = self.place(*stage);
+                matches!(self.job.kinds[index], StageKind::Pass(_))
+            };
+            let ended = (told..self.reached).filter(is_pass);
+            let mut news: Vec<Progress> = ended
+                .map(|stage| Progress {
+                    done: self.progress_at(stage + 1, 0.0).done,
+                    ..self.progress_at(stage, 0.0)
+                })
+                .collect();
+            if news.is_empty() && self.reached < self.end() {
+                news.push(self.progress());
             }
             told = self.reached;
+            for progress in news {
+                if !watch(&progress) {
+                    return Err(RenderError::Cancelled);
+                }
+                self.shared.device.check()?;
+            }
             if let Some(frame) = self.poll()? {
                 return Ok(frame);
             }

@@ -49,6 +49,10 @@ impl Work {
         self.ended = now;
         self.count_time(&flight.stages, elapsed_ms, [pair[0], pair[1]]);
         self.learn(&flight.stages, elapsed_ms, &head);
+        self.share = match self.reached == turn.number {
+            true => self.share.max(turn.share()),
+            false => turn.share(),
+        };
         self.reached = turn.number;
         if let Some((block, staging)) = flight.reading {
             if turn.number >= (block as u32 + 1) * self.per_block() && self.collected == block {
