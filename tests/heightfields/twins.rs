@@ -48,7 +48,7 @@ fn probe_of(tracer: &Tracer) -> Probe {
     let mut modules = tracer.modules();
     modules.push(wgsl!("pass/shared.wgsl"));
     modules.push(wgsl!("pass/counters_off.wgsl"));
-    modules.push(probe!("relief"));
+    modules.push(probe!("heightmap"));
     let arrays = tracer.arrays();
     let arrays = arrays.iter().map(|array| (array.name, array.bytes()));
     Probe {

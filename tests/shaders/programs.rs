@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use toml::Value;
 use wgpu::naga::{self, valid::Capabilities};
 
-use super::common::plans::{distance, outline, preset};
+use super::common::plans::{distance, outline, preset, program, solid};
 use super::common::programs::map_programs;
 
 /// Switches a feature of the look, by the key that does and nothing else.
@@ -130,20 +130,30 @@ fn plans() -> Vec<Plan> {
 /// not.
 pub fn programs_of(plan: &Plan, solid: &AnySolid) -> Vec<Program> {
     let mut all: Vec<Program> = Vec::new();
-    for kind in StageKind::all(&plan.passes(Extras::default()), true) {
+    for pass in plan.passes(Extras::default()) {
         for [count, normals] in [[false; 2], [true, false], [false, true], [true; 2]] {
             let extras = Extras {
                 count,
                 normals,
                 ..Extras::default()
             };
-            let program = kind.program(plan, solid, extras);
+            let program = program(plan, solid, pass, extras);
             if !all.contains(&program) {
                 all.push(program);
             }
         }
     }
     all
+}
+
+/// The programs between the passes.
+fn between_passes() -> Vec<Program> {
+    let plan = preset("mandelbox", &[]);
+    let solid = solid(&plan);
+    let kinds = StageKind::all(&plan.passes(Extras::default()), true).into_iter();
+    let between = kinds.filter(|kind| !matches!(kind, StageKind::Pass(_)));
+    let programs = between.map(|kind| kind.program(&plan, &solid, Extras::default()));
+    programs.chain([turn::arrange()]).collect()
 }
 
 /// A valid program.
@@ -166,7 +176,7 @@ pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     for program in map_programs()
         .into_iter()
         .chain(of_plans)
-        .chain([turn::arrange()])
+        .chain(between_passes())
     {
         let listing = format!("{}\n{}", program.entry, program.describe());
         found.entry(listing).or_insert(program);

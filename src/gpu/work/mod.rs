@@ -249,6 +249,7 @@ impl Work {
         let mut told = 0;
         loop {
             self.advance(f64::INFINITY)?;
+            let frame = self.poll()?;
             let is_pass = |stage: &u32| {
                 let (_, index) = self.place(*stage);
                 matches!(self.job.kinds[index], StageKind::Pass(_))
@@ -270,7 +271,7 @@ impl Work {
                 }
                 self.shared.device.check()?;
             }
-            if let Some(frame) = self.poll()? {
+            if let Some(frame) = frame {
                 return Ok(frame);
             }
             if let Some(flight) = self.flights.front() {
