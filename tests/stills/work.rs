@@ -165,6 +165,26 @@ fn the_picture_on_the_device_grows_into_that_of_the_file() {
 }
 
 #[test]
+fn a_host_lends_its_device_and_a_render_moves_to_another_thread() {
+    let adapters = Adapters::find();
+    let (adapter, _) = adapters
+        .choose(&Choice::Auto)
+        .unwrap()
+        .expect(adapter::NO_ADAPTER);
+    // A window's device: what WebGPU promises, and no timestamps.
+    let opened = pollster::block_on(adapter.request_device(&Default::default()));
+    let (device, queue) = opened.unwrap();
+    let mut renderer = Renderer::new(Device::adopt(adapter, device, queue));
+    let plan = sized("mandelbox", [96, 54]);
+    let work = renderer.begin(&plan, &Assets::default(), EVERYTHING, &mut |_| true);
+    let work = work.unwrap();
+    let frame = std::thread::spawn(move || work.finish(&mut |_| true))
+        .join()
+        .unwrap();
+    assert!(bits(&frame.unwrap()) == bits(&adapter::render(&plan, EVERYTHING)));
+}
+
+#[test]
 fn every_preset_renders_within_the_limits_that_webgpu_promises() {
     let adapters = Adapters::find();
     let (adapter, _) = adapters
