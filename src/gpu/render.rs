@@ -15,6 +15,7 @@ pub use crate::gpu::error::RenderError;
 use crate::gpu::stamps::Stamps;
 use crate::gpu::target::{Needs, Parameters, Target};
 use crate::gpu::work::{Job, Kept, Shared, Work};
+use crate::heightfield::assets::Preparation;
 use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
 use crate::pass::progress::Watch;
@@ -102,15 +103,7 @@ impl Renderer {
     ) -> Result<Work, RenderError> {
         let plan = &*plan.lean(extras);
         let device = &*self.device;
-        let mut maker = Maker::new(device);
-        let maker = &mut |generator,
-                          heights: &_,
-                          patches,
-                          options: &_,
-                          told: &mut dyn FnMut(f64) -> bool| {
-            maker.generate(generator, heights, patches, options, told)
-        };
-        let prepared = prepare(plan, assets, maker, watch)?;
+        let prepared = self.prepare(plan, assets, watch)?;
         let scene = plan.solid(assets)?;
         let passes = plan.passes(extras);
         let coarsest = plan.coarsest();
@@ -183,6 +176,27 @@ impl Renderer {
         let mut frame = Frame::blank(plan, extras);
         frame.traffic = Some(traffic);
         Ok(Work::new(self.shared.clone(), kept, job, frame))
+    }
+
+    /// Makes the cone maps of a plan on the device. Their programs are kept.
+    fn prepare(
+        &self,
+        plan: &Plan,
+        assets: &Assets,
+        watch: Watch<'_>,
+    ) -> Result<Vec<(Preparation, f64)>, RenderError> {
+        let mut maker = Maker::new(&self.device);
+        maker.kernels = std::mem::take(&mut *lock(&self.shared.kernels));
+        let make = &mut |generator,
+                         heights: &_,
+                         patches,
+                         options: &_,
+                         told: &mut dyn FnMut(f64) -> bool| {
+            maker.generate(generator, heights, patches, options, told)
+        };
+        let prepared = prepare(plan, assets, make, watch);
+        *lock(&self.shared.kernels) = maker.kernels;
+        Ok(prepared?)
     }
 
     /// Renders a plan: [`Renderer::begin`] and [`Work::finish`].

@@ -7,7 +7,7 @@ use crate::gpu::collect::Parts;
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::PAIR;
-use crate::pass::turn::{ListsHead, Turn};
+use crate::pass::turn::{ListsHead, MOST_STAGES, Turn};
 use crate::picture::frame::Traffic;
 
 use super::{Flight, REPORT, Work};
@@ -55,6 +55,8 @@ impl Work {
         };
         self.reached = turn.number;
         if let Some((block, staging)) = flight.reading {
+            // Each block counts anew.
+            self.told = [0; MOST_STAGES];
             if turn.number >= (block as u32 + 1) * self.per_block() && self.collected == block {
                 self.collect(block, &staging, &head)?;
             }
