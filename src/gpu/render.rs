@@ -14,7 +14,7 @@ use crate::gpu::device::Device;
 pub use crate::gpu::error::RenderError;
 use crate::gpu::stamps::Stamps;
 use crate::gpu::target::{Needs, Parameters, Target};
-use crate::gpu::work::{Job, Kept, Shared, Work};
+use crate::gpu::work::{Job, Kept, Made, Shared, Work};
 use crate::heightfield::assets::Preparation;
 use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
@@ -126,6 +126,11 @@ impl Renderer {
             },
         };
         let parameters = parameters(plan, &scene, assets);
+        let of_look = |p: &&(&str, Vec<u8>)| p.0 == "look_parameters";
+        let look = parameters.iter().find(of_look).map(|p| p.1.clone());
+        let look = look.unwrap_or_default();
+        let of_march = |p: &&(&str, Vec<u8>)| !["look_parameters", "tone_steps"].contains(&p.0);
+        let marched = parameters.iter().filter(of_march).cloned().collect();
         let mut traffic = Traffic::default();
         let kernels = &mut *lock(&self.shared.kernels);
         let known = kernels.count();
@@ -159,17 +164,18 @@ impl Renderer {
                 Target::new(device, compiled, arrange, needs, parameters, arrays)?
             }
         };
-        target.begin(device);
         kept.target = Some(target);
+        let most = most_steps(&scene);
         let job = Job {
             kinds,
-            ray_steps: plan.ray_steps(assets),
-            steps: {
-                let most = most_steps(&scene);
-                [self.cutting.chunk.clamp(1, most), most]
+            made: Made {
+                passes,
+                blocks,
+                ray_steps: plan.ray_steps(assets),
+                marched,
+                look,
             },
-            passes,
-            blocks,
+            steps: [self.cutting.chunk.clamp(1, most), most],
             extras,
             prepared,
         };

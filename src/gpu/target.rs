@@ -212,9 +212,13 @@ impl Target {
         written
     }
 
-    /// Starts a frame: its first stage is the next one.
-    pub fn begin(&self, device: &Device) {
-        let (turn, head) = (Turn::zeroed(), ListsHead::zeroed());
+    /// Starts a frame with one of its stages.
+    pub fn begin(&self, device: &Device, number: u32) {
+        let turn = Turn {
+            number,
+            ..Turn::zeroed()
+        };
+        let head = ListsHead::zeroed();
         device.queue.write_buffer(&self.turn, 0, bytes_of(&turn));
         device.queue.write_buffer(&self.lists, 0, bytes_of(&head));
     }

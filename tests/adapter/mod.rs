@@ -34,6 +34,7 @@ pub const EVERYTHING: Extras = Extras {
     depth_only: false,
     time: false,
     shown: false,
+    reuse: false,
 };
 /// Fronts and states of every level, and no colour.
 pub const LEVELS: Extras = Extras {

@@ -121,6 +121,48 @@ fn a_second_frame_writes_parameters_and_creates_nothing() {
     }
 }
 
+/// A change of a plan, and whether it keeps the colours and the rays.
+type Change = (fn(&mut Plan), bool, bool);
+
+#[test]
+fn a_change_of_the_look_keeps_the_rays_and_one_of_the_exposure_the_colours() {
+    let (mut renderer, assets) = (adapter::open(), Assets::default());
+    let again = Extras {
+        reuse: true,
+        time: true,
+        ..EVERYTHING
+    };
+    let changes: [Change; 5] = [
+        (|_| (), true, true),
+        (|plan| plan.look.key *= 0.5, false, true),
+        (|plan| plan.look.exposure += 1.0, true, true),
+        (|plan| plan.camera.fov += 0.1, false, false),
+        (|plan| plan.camera.eye *= 1.01, false, false),
+    ];
+    for mut plan in plans() {
+        renderer
+            .render(&plan, &assets, again, &mut |_| true)
+            .unwrap();
+        for (change, keeps_colours, keeps_rays) in &changes {
+            change(&mut plan);
+            let frame = renderer
+                .render(&plan, &assets, again, &mut |_| true)
+                .unwrap();
+            assert!(bits(&frame) == bits(&adapter::render(&plan, EVERYTHING)));
+            let ran = |pass: &str| {
+                let all = frame.passes.iter().filter(|p| p.pass.name() == pass);
+                all.filter(|p| p.gpu_ms.is_some()).count() > 0
+            };
+            assert_eq!(ran("trace"), !keeps_rays, "{:?}", frame.passes);
+            // The last stage is counted as part of the last pass.
+            assert!(*keeps_colours || ran("color"));
+            if *keeps_colours {
+                assert_eq!(frame.traffic.unwrap().submissions, 1);
+            }
+        }
+    }
+}
+
 /// Radiance in a byte of each channel, as a PNG of 8 bits holds it.
 fn bytes(plan: &Plan, frame: &Frame) -> Vec<u8> {
     let shown = |x: &f32| byte(plan.look.exposure.exp2(), f64::from(*x));

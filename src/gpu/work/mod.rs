@@ -22,7 +22,7 @@ use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::{PAIR, Stamps};
-use crate::gpu::target::{Target, read_picture};
+use crate::gpu::target::{Parameters, Target, read_picture};
 use crate::heightfield::assets::Preparation;
 use crate::pass::progress::{Progress, Watch};
 use crate::pass::turn::{Layout, ListsHead, MOST_STAGES, Stage, StageKind, Turn};
@@ -45,6 +45,36 @@ pub(super) struct Shared {
     pub kept: Mutex<Kept>,
 }
 
+/// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
+/// the programs and the sizes of a target stay anyway.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Made {
+    pub passes: Vec<Pass>,
+    pub blocks: Vec<Layout>,
+    pub ray_steps: u32,
+    /// Parameters of cones and rays.
+    pub marched: Parameters,
+    /// Parameters of the colours.
+    pub look: Vec<u8>,
+}
+
+impl Made {
+    /// The stage of a block from which a frame goes on after a finished one, if it can.
+    fn resumes(&self, last: &Self, kinds: &[StageKind]) -> Option<u32> {
+        let same_rays = Self {
+            look: last.look.clone(),
+            ..self.clone()
+        } == *last;
+        // The buffers hold one block.
+        if !same_rays || self.blocks.len() > 1 {
+            return None;
+        }
+        let after = |pass: Pass| kinds.iter().position(|k| *k == StageKind::Pass(pass));
+        let color = after(Pass::Color)?;
+        Some(color as u32 + u32::from(self.look == last.look))
+    }
+}
+
 /// What one render leaves to the next.
 #[derive(Default)]
 pub(super) struct Kept {
@@ -53,14 +83,14 @@ pub(super) struct Kept {
     pub stamps: Option<Stamps>,
     pub reports: Vec<Staging>,
     pub readings: Vec<Staging>,
+    /// What the last frame was made of, if it was finished.
+    pub made: Option<Made>,
 }
 
 /// What a render knows from the start.
 pub(super) struct Job {
     pub kinds: Vec<StageKind>,
-    pub passes: Vec<Pass>,
-    pub blocks: Vec<Layout>,
-    pub ray_steps: u32,
+    pub made: Made,
     /// The step limits of the first dispatch of a stage and of the largest.
     pub steps: [u32; 2],
     pub extras: Extras,
@@ -119,7 +149,13 @@ impl Work {
             ended: Instant::now(),
             collected: 0,
         };
-        work.go_to(0);
+        let last = work.kept.made.take().filter(|_| work.job.extras.reuse);
+        let first = last.and_then(|last| work.job.made.resumes(&last, &work.job.kinds));
+        work.reached = first.unwrap_or(0);
+        if let Some(target) = &work.kept.target {
+            target.begin(&work.shared.device, work.reached);
+        }
+        work.go_to(work.reached);
         work
     }
 
@@ -129,7 +165,7 @@ impl Work {
     }
 
     fn end(&self) -> u32 {
-        self.per_block() * self.job.blocks.len() as u32
+        self.per_block() * self.job.made.blocks.len() as u32
     }
 
     /// The block of a stage, and the stage's position in it.
@@ -148,8 +184,8 @@ impl Work {
     /// The stages of a block, with what is known of their costs.
     fn stages(&self, block: usize) -> Vec<Stage> {
         let first = block as u32 * self.per_block();
-        let layout = &self.job.blocks[block];
-        let mut stages = layout.stages(&self.job.kinds, first, self.job.ray_steps);
+        let layout = &self.job.made.blocks[block];
+        let mut stages = layout.stages(&self.job.kinds, first, self.job.made.ray_steps);
         for (stage, cost) in stages.iter_mut().zip(&self.kept.costs) {
             [stage.chunk, stage.most] = self.job.steps;
             stage.slice = cost.slice;
@@ -177,15 +213,15 @@ impl Work {
         let is_pass = |k: &&StageKind| matches!(k, StageKind::Pass(_));
         let (block, index) = self.place(stage);
         let before = self.job.kinds[..index].iter().filter(is_pass).count();
-        let passes = self.job.passes.len();
+        let passes = self.job.made.passes.len();
         let share = match self.job.kinds[index] {
             StageKind::Pass(_) => share,
             _ => 0.0,
         };
         let done = (block * passes + before) as f64 + share;
         Progress {
-            pass: self.job.passes[self.pass_at(index)].name(),
-            done: (done / (passes * self.job.blocks.len()) as f64).min(1.0),
+            pass: self.job.made.passes[self.pass_at(index)].name(),
+            done: (done / (passes * self.job.made.blocks.len()) as f64).min(1.0),
         }
     }
 
@@ -231,9 +267,10 @@ impl Work {
     /// The device failed, or left cells unvisited.
     pub fn poll(&mut self) -> Result<Option<Frame>, RenderError> {
         self.receive()?;
-        if self.collected < self.job.blocks.len() {
+        if self.collected < self.job.made.blocks.len() {
             return Ok(None);
         }
+        self.kept.made = Some(self.job.made.clone());
         let mut frame = std::mem::take(&mut self.frame);
         frame.finish(std::mem::take(&mut self.job.prepared));
         Ok(Some(frame))

@@ -115,9 +115,15 @@ impl Work {
                 cells: head.wrong as usize,
             });
         }
-        let layout = &self.job.blocks[block];
+        let layout = &self.job.made.blocks[block];
         let parts = Parts::new(layout, self.job.extras);
-        parts.collect(device, staging, layout, &self.job.passes, &mut self.frame)?;
+        parts.collect(
+            device,
+            staging,
+            layout,
+            &self.job.made.passes,
+            &mut self.frame,
+        )?;
         self.collected += 1;
         Ok(())
     }

@@ -79,7 +79,7 @@ impl Work {
         }
         report.copy(&mut encoder, &ranges);
         let reading = ends_block.then(|| {
-            let parts = Parts::new(&self.job.blocks[block], self.job.extras);
+            let parts = Parts::new(&self.job.made.blocks[block], self.job.extras);
             let kept = self.kept.readings.pop();
             let staging = kept.filter(|s| s.holds(parts.bytes()));
             let staging = staging.unwrap_or_else(|| Staging::new(device, parts.bytes()));
