@@ -169,8 +169,8 @@ pub fn slides(rows: &[Row]) -> String {
     let text = "
 ### The claims of the 2012 slides
 
-The slides claim that each of their budgets of steps is faster than plain rays by some per cent.
-The table compares these gains with the measured ones, and the wrong pixels with those of `safe`.
+The slides claim a gain in speed over plain rays for each of their budgets of steps. The table
+compares it with the measured gain, and the wrong pixels with those of `safe`.
 
 ";
     let own = |(name, _): &(&str, u32)| of(rows, name);
