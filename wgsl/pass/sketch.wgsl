@@ -1,15 +1,16 @@
 // The stage after a cone level: it shows the fronts, each cell as a square of pixels. The normal
-// follows from the differences to the fronts beside and below, so this asks nothing of the scene.
+// follows from the differences between the fronts on either side, so this asks nothing of the
+// scene. The two have the same place under their parents, whose fronts would show otherwise.
 
 /// Light on a sketch that comes from everywhere, and what the sun adds.
 const SKETCH_FILL = 0.25;
 const SKETCH_KEY = 0.5;
 
-/// Where the front of a cell is, relative to the eye. Beyond the block's edge it is the last one.
-fn sketch_point(cell: vec2<u32>) -> vec3<f32> {
-    let at = min(cell, turn.stage.cells - 1u);
+/// Where the front of a cell is, relative to the eye; at the block's edge that of the last cell.
+fn sketch_point(cell: vec2<i32>) -> vec3<f32> {
+    let at = vec2<u32>(clamp(cell, vec2<i32>(0), vec2<i32>(turn.stage.cells) - 1));
     let front = cell_front(at.y * turn.stage.cells.x + at.x);
-    let pixel = f32(turn.stage.divisor) * (vec2<f32>(turn.stage.origin + cell) + 0.5);
+    let pixel = f32(turn.stage.divisor) * (vec2<f32>(turn.stage.origin + at) + 0.5);
     return front * normalize(view_direction(pixel.x, pixel.y));
 }
 
@@ -26,12 +27,13 @@ fn sketch(
         return;
     }
     let cell = queue_cell(index);
-    let here = sketch_point(cell);
-    var c = sky(normalize(here));
+    let at = vec2<i32>(cell);
+    let middle = f32(turn.stage.divisor) * (vec2<f32>(turn.stage.origin + cell) + 0.5);
+    var c = sky(normalize(view_direction(middle.x, middle.y)));
     let state = cells[turn.stage.state + index];
     if state == STATE_HIT || state == STATE_UNCONVERGED {
-        let across = sketch_point(cell + vec2<u32>(1u, 0u)) - here;
-        let down = sketch_point(cell + vec2<u32>(0u, 1u)) - here;
+        let across = sketch_point(at + vec2<i32>(1, 0)) - sketch_point(at - vec2<i32>(1, 0));
+        let down = sketch_point(at + vec2<i32>(0, 1)) - sketch_point(at - vec2<i32>(0, 1));
         let n = cross(down, across);
         // The front of a neighbour in the sky was never written: any normal will do there.
         let facing = dot(n, look.light) / max(length(n), 1e-20);
