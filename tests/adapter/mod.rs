@@ -48,6 +48,17 @@ pub const COUNTED: Extras = Extras {
     count: true,
     ..LEVELS
 };
+/// Depths alone.
+pub const DEPTHS: Extras = Extras {
+    levels: false,
+    ..LEVELS
+};
+/// The picture and its normals.
+pub const NORMALS: Extras = Extras {
+    count: false,
+    levels: false,
+    ..EVERYTHING
+};
 
 /// A render that takes longer than this hangs. The longest here takes some seconds on two
 /// slow cores.
