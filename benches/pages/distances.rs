@@ -33,6 +33,8 @@ const DEPTHS: Extras = Extras {
     levels: false,
     depth_only: true,
     time: false,
+    shown: false,
+    reuse: false,
 };
 const COUNTED: Extras = Extras {
     count: true,

@@ -4,6 +4,9 @@
 //! and then one every ten seconds, so that a log shows that the program is alive.
 
 use std::io::{self, IsTerminal};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -22,36 +25,44 @@ const BAR_STEPS: f64 = 1000.0;
 /// Reports one work from its start until it is dropped.
 #[derive(Debug)]
 pub struct Progress {
+    now: Arc<Mutex<Now>>,
+    shown: Shown,
+}
+
+/// What was reported last.
+#[derive(Debug)]
+struct Now {
     what: String,
-    start: Instant,
     /// When the share was last 0.
     round: Instant,
     share: f64,
-    /// `None` where standard error is no terminal.
-    bar: Option<ProgressBar>,
-    next_line: Duration,
+    detail: String,
+}
+
+/// Where it is shown.
+#[derive(Debug)]
+enum Shown {
+    /// On a terminal.
+    Bar(ProgressBar),
+    /// By a thread that writes lines, also while nothing is reported, until the sender is
+    /// dropped.
+    Lines(Option<(Sender<()>, JoinHandle<()>)>),
 }
 
 impl Progress {
     /// Begins to report a work; `what` names it, like "rendering".
     pub fn start(what: &str) -> Self {
-        let bar = io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::new(BAR_STEPS as u64).with_prefix(what.to_string());
-            let template = "{prefix}  {bar:40} {percent:>3} %  {msg}  {eta} left";
-            // The default style shows the same numbers.
-            let style = ProgressStyle::with_template(template);
-            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            bar.enable_steady_tick(Duration::from_millis(200));
-            bar
-        });
-        Self {
+        let now = Arc::new(Mutex::new(Now {
             what: what.into(),
-            start: Instant::now(),
             round: Instant::now(),
             share: 0.0,
-            bar,
-            next_line: FIRST_LINE,
-        }
+            detail: String::new(),
+        }));
+        let shown = match io::stderr().is_terminal() {
+            true => Shown::Bar(bar(what)),
+            false => Shown::Lines(Some(lines(now.clone()))),
+        };
+        Self { now, shown }
     }
 
     /// What an executor calls while it renders.
@@ -62,29 +73,63 @@ impl Progress {
     /// Shows that a share of the work, 0..1, is done. `detail` says what is done now, like
     /// the name of a pass; it may be empty. Returns whether to go on: no interrupt came.
     pub fn report(&mut self, share: f64, detail: &str) -> bool {
-        // Some work is done again in finer steps. What the round before took says nothing
-        // about the time that is left.
-        if share < self.share {
-            self.round = Instant::now();
-        }
-        self.share = share;
-        if let Some(bar) = &self.bar {
+        if let Shown::Bar(bar) = &self.shown {
             bar.set_position((share * BAR_STEPS) as u64);
             bar.set_message(detail.to_string());
-        } else if self.start.elapsed() >= self.next_line {
-            self.next_line = self.start.elapsed() + BETWEEN_LINES;
-            say(&line(&self.what, share, detail, self.round.elapsed()));
         }
+        let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        // Some work is done again in finer steps. What the round before took says nothing
+        // about the time that is left.
+        if share < now.share {
+            now.round = Instant::now();
+        }
+        now.share = share;
+        now.detail = detail.into();
         !interrupt::asked()
     }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
+        match &mut self.shown {
+            Shown::Bar(bar) => bar.finish_and_clear(),
+            Shown::Lines(thread) => {
+                if let Some((ended, thread)) = thread.take() {
+                    drop(ended);
+                    // It only writes lines: there is nothing to do about a panic.
+                    let _ = thread.join();
+                }
+            }
         }
     }
+}
+
+fn bar(what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(BAR_STEPS as u64).with_prefix(what.to_string());
+    let template = "{prefix}  {bar:40} {percent:>3} %  {msg}  {eta} left";
+    // The default style shows the same numbers.
+    let style = ProgressStyle::with_template(template);
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+fn lines(now: Arc<Mutex<Now>>) -> (Sender<()>, JoinHandle<()>) {
+    let (sender, ended) = channel();
+    let write = move || {
+        let mut patience = FIRST_LINE;
+        while ended.recv_timeout(patience) == Err(RecvTimeoutError::Timeout) {
+            let now = now.lock().unwrap_or_else(PoisonError::into_inner);
+            say(&line(
+                &now.what,
+                now.share,
+                &now.detail,
+                now.round.elapsed(),
+            ));
+            patience = BETWEEN_LINES;
+        }
+    };
+    (sender, std::thread::spawn(write))
 }
 
 /// `rendering: 43 % (trace), about 12 s left`.
@@ -113,17 +158,5 @@ mod tests {
         assert_eq!(of(0.25, "", 4), "making: 25 %, about 12 s left");
         assert_eq!(of(0.5, "a", 600), "making: 50 % (a), about 10 min left");
         assert_eq!(of(0.0, "cones 43 %", 9), "making: 0 % (cones 43 %)");
-    }
-
-    #[test]
-    fn the_first_line_comes_after_two_seconds_and_the_next_ten_later() {
-        let mut progress = Progress::start("testing");
-        // As if it were off a terminal and had begun a while ago.
-        progress.bar = None;
-        progress.report(0.1, "");
-        assert_eq!(progress.next_line, FIRST_LINE);
-        progress.start -= Duration::from_secs(3);
-        progress.report(0.2, "");
-        assert!(progress.next_line >= Duration::from_secs(13));
     }
 }

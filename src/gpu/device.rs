@@ -243,9 +243,16 @@ impl Device {
         };
         let opened = pollster::block_on(adapter.request_device(&descriptor));
         let (device, queue) = opened.map_err(|e| DeviceError::Open {
-            name: info.name.clone(),
+            name: info.name,
             why: e.to_string(),
         })?;
+        Ok(Self::adopt(adapter, device, queue))
+    }
+
+    /// Takes over a device that a host has opened, a window for example. Its callbacks for a
+    /// loss and for errors are replaced. One thread at a time should submit.
+    pub fn adopt(adapter: &Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let info = adapter.get_info();
         let trouble = Arc::new(Mutex::new(None));
         let (slot, name) = (trouble.clone(), info.name.clone());
         device.set_device_lost_callback(move |reason, why| {
@@ -260,14 +267,14 @@ impl Device {
             let (name, why) = (name.clone(), words.join(" "));
             note(&slot, DeviceError::Reported { name, why });
         }));
-        let timed = features.contains(Features::TIMESTAMP_QUERY);
-        Ok(Self {
+        let timed = device.features().contains(Features::TIMESTAMP_QUERY);
+        Self {
             tick_ns: timed.then(|| queue.get_timestamp_period()),
             device,
             queue,
             info,
             trouble,
-        })
+        }
     }
 
     /// Bytes of the largest buffer that a program can bind.

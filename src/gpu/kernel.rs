@@ -47,6 +47,9 @@ struct Binding {
     kind: Kind,
 }
 
+/// The format of a picture on the device: the bytes of sRGB.
+pub const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
 /// What a resource variable is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -57,6 +60,8 @@ enum Kind {
     Texture {
         whole: bool,
     },
+    /// The picture, which is only written.
+    Picture,
 }
 
 /// The compiled programs of a device. Each is compiled once.
@@ -78,7 +83,7 @@ impl Kernels {
     }
 
     /// Number of programs compiled so far.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.0.len()
     }
 }
@@ -262,6 +267,13 @@ fn bindings_of(module: &naga::Module, entry: &naga::valid::FunctionInfo) -> Vec<
     let of = |(handle, v): (naga::Handle<naga::GlobalVariable>, &naga::GlobalVariable)| {
         let at = v.binding.filter(|_| !entry[handle].is_empty())?;
         let kind = match (&module.types[v.ty].inner, v.space) {
+            (
+                naga::TypeInner::Image {
+                    class: ImageClass::Storage { .. },
+                    ..
+                },
+                _,
+            ) => Kind::Picture,
             (naga::TypeInner::Image { class, .. }, _) => Kind::Texture {
                 whole: matches!(class, ImageClass::Sampled { kind, .. } if *kind == ScalarKind::Uint),
             },
@@ -296,6 +308,11 @@ fn layout_entry(b: &Binding) -> wgpu::BindGroupLayoutEntry {
             ty: wgpu::BufferBindingType::Storage { read_only },
             has_dynamic_offset: false,
             min_binding_size: None,
+        },
+        Kind::Picture => wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format: PICTURE,
+            view_dimension: wgpu::TextureViewDimension::D2,
         },
         Kind::Texture { whole } => wgpu::BindingType::Texture {
             sample_type: if whole {

@@ -14,11 +14,13 @@ use crate::gpu::device::Device;
 pub use crate::gpu::error::RenderError;
 use crate::gpu::stamps::Stamps;
 use crate::gpu::target::{Needs, Parameters, Target};
-use crate::gpu::work::{Job, Kept, Shared, Work};
+use crate::gpu::work::{Job, Kept, Made, Shared, Work};
+use crate::heightfield::assets::Preparation;
 use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
 use crate::pass::progress::Watch;
-use crate::pass::{program, turn};
+use crate::pass::tone::tone_steps;
+use crate::pass::turn::{self, StageKind};
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Plan};
@@ -101,15 +103,7 @@ impl Renderer {
     ) -> Result<Work, RenderError> {
         let plan = &*plan.lean(extras);
         let device = &*self.device;
-        let mut maker = Maker::new(device);
-        let maker = &mut |generator,
-                          heights: &_,
-                          patches,
-                          options: &_,
-                          told: &mut dyn FnMut(f64) -> bool| {
-            maker.generate(generator, heights, patches, options, told)
-        };
-        let prepared = prepare(plan, assets, maker, watch)?;
+        let prepared = self.prepare(plan, assets, watch)?;
         let scene = plan.solid(assets)?;
         let passes = plan.passes(extras);
         let coarsest = plan.coarsest();
@@ -117,11 +111,13 @@ impl Renderer {
             |block| turn::Layout::new(block, coarsest, extras.count, scene.twin().marks_hits());
         let blocks = Block::cut(plan.size, self.cutting.block, coarsest);
         let blocks: Vec<_> = blocks.into_iter().map(layout).collect();
-        let mut programs = vec![turn::reset()];
-        programs.extend(passes.iter().map(|p| program(plan, &scene, *p, extras)));
-        programs.push(turn::census());
+        let largest = device.device.limits().max_texture_dimension_2d;
+        let shown = extras.shown && plan.size.iter().all(|n| *n <= largest);
+        let kinds = StageKind::all(&passes, shown);
+        let programs = kinds.iter().map(|k| k.program(plan, &scene, extras));
         let needs = Needs {
-            programs,
+            programs: programs.collect(),
+            picture: shown.then_some(plan.size),
             // The first block is as large as any.
             layout: blocks[0].clone(),
             pixel_layers: match (extras.depth_only, extras.normals) {
@@ -130,14 +126,19 @@ impl Renderer {
             },
         };
         let parameters = parameters(plan, &scene, assets);
+        let of_look = |p: &&(&str, Vec<u8>)| p.0 == "look_parameters";
+        let look = parameters.iter().find(of_look).map(|p| p.1.clone());
+        let look = look.unwrap_or_default();
+        let of_march = |p: &&(&str, Vec<u8>)| !["look_parameters", "tone_steps"].contains(&p.0);
+        let marched = parameters.iter().filter(of_march).cloned().collect();
         let mut traffic = Traffic::default();
         let kernels = &mut *lock(&self.shared.kernels);
-        let known = kernels.len();
+        let known = kernels.count();
         let mut compile = |program| kernels.get(device, program);
         let compiled = needs.programs.iter().map(&mut compile);
         let compiled: Vec<_> = compiled.collect::<Result<_, _>>()?;
         let arrange = kernels.get(device, &turn::arrange())?;
-        traffic.compilations = kernels.len() - known;
+        traffic.compilations = kernels.count() - known;
         let arrays = &mut *lock(&self.shared.arrays);
         let arrays = arrays.keep(
             device,
@@ -156,29 +157,52 @@ impl Renderer {
                 traffic.uploads += parameters.iter().map(|(_, b)| b.len()).sum::<usize>();
                 traffic.allocations = 1;
                 kept = Kept {
-                    costs: vec![Cost::default(); passes.len() + 2],
+                    costs: vec![Cost::default(); kinds.len()],
                     stamps: Stamps::new(device),
                     ..Kept::default()
                 };
                 Target::new(device, compiled, arrange, needs, parameters, arrays)?
             }
         };
-        target.begin(device);
         kept.target = Some(target);
+        let most = most_steps(&scene);
         let job = Job {
-            ray_steps: plan.ray_steps(assets),
-            steps: {
-                let most = most_steps(&scene);
-                [self.cutting.chunk.clamp(1, most), most]
+            kinds,
+            made: Made {
+                passes,
+                blocks,
+                ray_steps: plan.ray_steps(assets),
+                marched,
+                look,
             },
-            passes,
-            blocks,
+            steps: [self.cutting.chunk.clamp(1, most), most],
             extras,
             prepared,
         };
         let mut frame = Frame::blank(plan, extras);
         frame.traffic = Some(traffic);
         Ok(Work::new(self.shared.clone(), kept, job, frame))
+    }
+
+    /// Makes the cone maps of a plan on the device. Their programs are kept.
+    fn prepare(
+        &self,
+        plan: &Plan,
+        assets: &Assets,
+        watch: Watch<'_>,
+    ) -> Result<Vec<(Preparation, f64)>, RenderError> {
+        let mut maker = Maker::new(&self.device);
+        maker.kernels = std::mem::take(&mut *lock(&self.shared.kernels));
+        let make = &mut |generator,
+                         heights: &_,
+                         patches,
+                         options: &_,
+                         told: &mut dyn FnMut(f64) -> bool| {
+            maker.generate(generator, heights, patches, options, told)
+        };
+        let prepared = prepare(plan, assets, make, watch);
+        *lock(&self.shared.kernels) = maker.kernels;
+        Ok(prepared?)
     }
 
     /// Renders a plan: [`Renderer::begin`] and [`Work::finish`].
@@ -200,9 +224,11 @@ impl Renderer {
 fn parameters(plan: &Plan, scene: &AnySolid, assets: &Assets) -> Parameters {
     let view = plan.view().uniform();
     let look = Light::of(plan, assets).uniform();
+    let steps = tone_steps(plan.look.exposure.exp2());
     let frame = [
         ("view_parameters", bytes_of(&view).to_vec()),
         ("look_parameters", bytes_of(&look).to_vec()),
+        ("tone_steps", bytes_of(&steps).to_vec()),
     ];
     scene.twin().uniforms().into_iter().chain(frame).collect()
 }

@@ -10,10 +10,10 @@ use wgpu::BufferUsages;
 
 use crate::base::shader::Program;
 use crate::gpu::array::{Array, KeptArray};
-use crate::gpu::buffer::{create, uniform};
-use crate::gpu::device::Device;
+use crate::gpu::buffer::{create, map, uniform};
+use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::error::{RenderError, check_room};
-use crate::gpu::kernel::Kernel;
+use crate::gpu::kernel::{Kernel, PICTURE};
 use crate::pass::turn::{Layout, ListsHead, Stage, Turn};
 
 /// What decides a target.
@@ -25,6 +25,8 @@ pub struct Needs {
     pub layout: Layout,
     /// Values of four numbers per pixel: the light, and the normals if they are kept.
     pub pixel_layers: u32,
+    /// The size of the picture that is shown while it is made, if there is one.
+    pub picture: Option<[u32; 2]>,
 }
 
 /// The parameters of a frame: bytes by the names of the WGSL variables.
@@ -62,6 +64,8 @@ pub struct Target {
     pub cells: wgpu::Buffer,
     /// Light and normals.
     pub pixels: wgpu::Buffer,
+    /// The picture that is shown while it is made.
+    pub picture: Option<wgpu::Texture>,
     /// Workgroups of the next dispatch.
     pub workgroups: wgpu::Buffer,
     /// The program that arranges dispatches.
@@ -113,6 +117,8 @@ impl Target {
         let light = room("pixels", 16 * u64::from(needs.pixel_layers) * pixels)?;
         let usage = BufferUsages::STORAGE | BufferUsages::INDIRECT;
         let workgroups = create(device, "workgroups", 16, usage);
+        let picture = needs.picture.map(|size| new_picture(device, size));
+        let view = picture.as_ref().map(|p| p.create_view(&Default::default()));
         let shared = [
             ("turn", &turn),
             ("turn_parameters", &turn),
@@ -131,8 +137,15 @@ impl Target {
                     .map(|p| &p.buffer)
             };
             let buffer = shared.or_else(own).map(wgpu::Buffer::as_entire_binding);
-            let array = || scene.iter().find(|a| a.name == name);
-            buffer.or_else(|| array().map(|a| a.array.binding()))
+            let array = || {
+                let found = scene.iter().find(|a| a.name == name);
+                found.map(|a| a.array.binding())
+            };
+            let picture = || {
+                let view = view.as_ref().filter(|_| name == "picture");
+                view.map(wgpu::BindingResource::TextureView)
+            };
+            buffer.or_else(array).or_else(picture)
         };
         let arranged = |stage: &wgpu::Buffer| {
             let with_stage = |name: &str| match name {
@@ -166,6 +179,7 @@ impl Target {
             lists,
             cells,
             pixels: light,
+            picture,
             workgroups,
             arrange,
         })
@@ -177,13 +191,11 @@ impl Target {
             let found = parameters.iter().find(|(name, _)| *name == own.name);
             found.is_some_and(|(_, bytes)| own.bytes.len() == bytes.len())
         };
-        let arrays = self.arrays.iter().zip(scene);
+        let mut arrays = self.arrays.iter().zip(scene);
         self.needs == *needs
             && self.parameters.iter().all(same)
             && self.arrays.len() == scene.len()
-            && arrays
-                .map(|(own, a)| Arc::ptr_eq(own, &a.array))
-                .all(|same| same)
+            && arrays.all(|(own, kept)| Arc::ptr_eq(own, &kept.array))
     }
 
     /// Rewrites the parameters that differ. Returns the bytes written.
@@ -200,9 +212,13 @@ impl Target {
         written
     }
 
-    /// Starts a frame: its first stage is the next one.
-    pub fn begin(&self, device: &Device) {
-        let (turn, head) = (Turn::zeroed(), ListsHead::zeroed());
+    /// Starts a frame with one of its stages.
+    pub fn begin(&self, device: &Device, number: u32) {
+        let turn = Turn {
+            number,
+            ..Turn::zeroed()
+        };
+        let head = ListsHead::zeroed();
         device.queue.write_buffer(&self.turn, 0, bytes_of(&turn));
         device.queue.write_buffer(&self.lists, 0, bytes_of(&head));
     }
@@ -215,4 +231,50 @@ impl Target {
                 .write_buffer(&bound.stage, 0, cast_slice(std::slice::from_ref(stage)));
         }
     }
+}
+
+fn new_picture(device: &Device, [width, height]: [u32; 2]) -> wgpu::Texture {
+    let usage = wgpu::TextureUsages::STORAGE_BINDING
+        | wgpu::TextureUsages::TEXTURE_BINDING
+        | wgpu::TextureUsages::COPY_SRC;
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("picture"),
+        size: wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: PICTURE,
+        usage,
+        view_formats: &[],
+    })
+}
+
+/// Waits for the device and reads a picture, row by row, four bytes to a pixel.
+///
+/// # Errors
+/// The device failed.
+pub fn read_picture(device: &Device, picture: &wgpu::Texture) -> Result<Vec<u8>, DeviceError> {
+    let row = 4 * picture.width();
+    let pitch = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let bytes = u64::from(pitch) * u64::from(picture.height());
+    let staging = create(device, "picture", bytes, BufferUsages::MAP_READ);
+    let mut encoder = device.device.create_command_encoder(&Default::default());
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(pitch),
+        rows_per_image: None,
+    };
+    let to = wgpu::TexelCopyBufferInfo {
+        buffer: &staging,
+        layout,
+    };
+    encoder.copy_texture_to_buffer(picture.as_image_copy(), to, picture.size());
+    device.queue.submit([encoder.finish()]);
+    let padded: Vec<u8> = map(device, &staging, bytes as usize)?;
+    let rows = padded.chunks(pitch as usize);
+    Ok(rows.flat_map(|r| &r[..row as usize]).copied().collect())
 }

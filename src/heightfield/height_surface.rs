@@ -47,7 +47,7 @@ pub enum HeightSurfaceError {
 /// The uniform that all tracers read.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct ReliefUniform {
+pub struct HeightmapUniform {
     /// Samples along each axis.
     pub samples: [i32; 2],
     /// Cells of one tile along each axis.
@@ -236,7 +236,7 @@ impl HeightSurface {
     pub fn modules(&self) -> Vec<Module> {
         let boxes = f64::from(u8::from(self.patches == Patches::Boxes));
         vec![
-            wgsl!("heightfield/heights.wgsl", "RELIEF_BOXES" = boxes),
+            wgsl!("heightfield/heights.wgsl", "HEIGHTMAP_BOXES" = boxes),
             wgsl!("heightfield/max_mip.wgsl"),
             wgsl!("heightfield/patch.wgsl"),
             wgsl!("heightfield/tracer/grid.wgsl"),
@@ -244,14 +244,14 @@ impl HeightSurface {
     }
 
     /// The values of the WGSL struct, for a tracer.
-    pub fn uniform(&self, map: &ConeMap, tracer: TracerParameters) -> ReliefUniform {
+    pub fn uniform(&self, map: &ConeMap, tracer: TracerParameters) -> HeightmapUniform {
         let mut starts = [0; MOST_LEVELS];
         let mut end = 0;
         for (start, level) in starts.iter_mut().zip(&self.maxima.levels) {
             *start = end;
             end += level.max.len() as u32;
         }
-        ReliefUniform {
+        HeightmapUniform {
             samples: self.heights.size().map(|n| n as i32),
             cells: self.cells.map(|n| n as i32),
             domain: self.domain,

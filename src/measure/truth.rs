@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 use crate::base::work::State;
 use crate::cpu;
 use crate::gpu::RenderError;
-use crate::pass::progress::Watch;
+use crate::pass::progress::{Progress, Watch};
 use crate::picture::frame::Frame;
 use crate::picture::{self, Place};
 use crate::plan::march::{Marching, Mode};
@@ -83,6 +83,13 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
         let frame = cpu::render(&plan, assets, Extras::default(), watch)?;
         let mut finer = plan.clone();
         finer.march.stride = Some(0.5 * stride);
+        let check = Progress {
+            pass: "check".into(),
+            done: 1.0,
+        };
+        if !watch(&check) {
+            return Err(RenderError::Cancelled);
+        }
         let sample = cpu::sample(&finer, assets, &pixels)?;
         let changed = |(n, (hit, state)): (usize, &(Hit, State))| {
             let (i, t) = (n * SAMPLE, hit.t);

@@ -4,6 +4,7 @@
 //! - [`march`]: the cones of one level; [`trace`]: one ray per pixel
 //! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits
 //! - [`color`]: light and colour, with [`look`], [`shadow`], [`occlusion`] and [`fog`]
+//! - [`tone`]: from light to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
 //! - [`progress`]: how far a render has come; `explain`: its programs, without a GPU
 //!
@@ -19,6 +20,7 @@ pub mod occlusion;
 pub mod prepare;
 pub mod progress;
 pub mod shadow;
+pub mod tone;
 pub mod trace;
 pub mod turn;
 

@@ -1,14 +1,15 @@
 //! The stages of a frame on a GPU, and the dispatch that is under way.
 //!
-//! A stage is a pass over a block, or one of two short stages about it: the first marks all
-//! cells as not visited, the last counts the cells that were left out. The CPU executor has no
-//! stages, as it runs every cell to its end at once. Twin: `wgsl/pass/turn.wgsl`.
+//! A stage is a pass over a block, or a short one of [`StageKind`] between them. The CPU executor
+//! has no stages, as it runs every cell to its end at once. Twin: `wgsl/pass/turn.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 
 use crate::base::shader::{Module, Program};
-use crate::plan::Pass;
-use crate::plan::pyramid::Block;
+use crate::pass::program;
+use crate::plan::pyramid::{Block, Level};
+use crate::plan::{Extras, Pass, Plan};
+use crate::scene::AnySolid;
 use crate::wgsl;
 
 /// The numbers of a stage, which the host writes.
@@ -91,8 +92,27 @@ pub struct Turn {
     pub pad: u32,
 }
 
+impl Turn {
+    /// The share of the stage that is done, about: most cells end in the first round.
+    pub fn share(&self) -> f64 {
+        if self.begun == 0 {
+            return 0.0;
+        }
+        let groups = match self.visits {
+            0 => self.stage.tiles,
+            1 => self.count.div_ceil(16),
+            _ => self.count.div_ceil(64),
+        };
+        let round = f64::from(self.first) / f64::from(groups.max(1));
+        match self.done {
+            0 => 0.8 * round,
+            _ => 0.8 + 0.2 * round,
+        }
+    }
+}
+
 /// The most stages of a block.
-pub const MOST_STAGES: usize = 12;
+pub const MOST_STAGES: usize = 20;
 
 /// The head of the lists. The cells follow it.
 #[repr(C)]
@@ -113,33 +133,71 @@ pub struct ListsHead {
 /// Words that a workgroup of the stage `reset` writes.
 const RESET_WORDS: u32 = 1024;
 
-fn module() -> Module {
-    wgsl!("pass/turn.wgsl")
+/// What a stage does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StageKind {
+    /// Marks all cells as not visited, and sets the counts of work to 0.
+    Reset,
+    /// A pass over the block.
+    Pass(Pass),
+    /// Shows the fronts of a cone level in the picture.
+    Sketch(Level),
+    /// Shows the colours in the picture.
+    Develop,
+    /// Counts the cells that were left out.
+    Census,
+}
+
+impl StageKind {
+    /// The stages of a block, in order; some only if the picture is shown while it is made.
+    pub fn all(passes: &[Pass], shown: bool) -> Vec<Self> {
+        let of_pass = |pass: &Pass| {
+            let after = match pass {
+                Pass::March(level) => Some(Self::Sketch(*level)),
+                Pass::Color => Some(Self::Develop),
+                _ => None,
+            };
+            [Some(Self::Pass(*pass)), after.filter(|_| shown)]
+        };
+        let passes = passes.iter().flat_map(of_pass).flatten();
+        let all = [Self::Reset].into_iter().chain(passes);
+        all.chain([Self::Census]).collect()
+    }
+
+    /// The program of the stage.
+    pub fn program(self, plan: &Plan, solid: &AnySolid, extras: Extras) -> Program {
+        let over_cells = |entry, own: &[Module]| {
+            let mut all = vec![wgsl!("pass/shared.wgsl")];
+            all.extend(modules());
+            all.extend_from_slice(own);
+            Program::new(entry, all)
+        };
+        match self {
+            Self::Pass(pass) => program(plan, solid, pass, extras),
+            Self::Reset => over_cells("reset", &[wgsl!("pass/reset.wgsl")]),
+            Self::Census => over_cells("census", &[wgsl!("pass/census.wgsl")]),
+            Self::Develop => {
+                let own = [wgsl!("pass/tone.wgsl"), wgsl!("pass/develop.wgsl")];
+                over_cells("develop", &own)
+            }
+            Self::Sketch(_) => {
+                let look = [wgsl!("base/view.wgsl"), wgsl!("pass/look.wgsl")];
+                let own = [wgsl!("pass/tone.wgsl"), wgsl!("pass/sketch.wgsl")];
+                over_cells("sketch", &[look, own].concat())
+            }
+        }
+    }
 }
 
 /// The modules of a program over cells.
 pub fn modules() -> [Module; 2] {
-    [module(), wgsl!("pass/queue.wgsl")]
+    [wgsl!("pass/turn.wgsl"), wgsl!("pass/queue.wgsl")]
 }
 
 /// The program that decides what the next dispatch visits.
 pub fn arrange() -> Program {
-    Program::new("arrange", vec![module(), wgsl!("pass/arrange.wgsl")])
-}
-
-fn over_cells(entry: &'static str, own: Module) -> Program {
-    let [turn, queue] = modules();
-    Program::new(entry, vec![wgsl!("pass/shared.wgsl"), turn, queue, own])
-}
-
-/// The program of the first stage of a block.
-pub fn reset() -> Program {
-    over_cells("reset", wgsl!("pass/reset.wgsl"))
-}
-
-/// The program of the last stage of a block.
-pub fn census() -> Program {
-    over_cells("census", wgsl!("pass/census.wgsl"))
+    let modules = vec![wgsl!("pass/turn.wgsl"), wgsl!("pass/arrange.wgsl")];
+    Program::new("arrange", modules)
 }
 
 /// Where the values of a block's cells are in one buffer of words: first the states of all
@@ -225,10 +283,32 @@ impl Layout {
         2 * self.count(1) + which * self.count(2)
     }
 
-    /// The stages of the block in order, without step limits of dispatches. `first` is the
-    /// number of the first one, and `ray_steps` the step limit of a ray.
-    pub fn stages(&self, passes: &[Pass], first: u32, ray_steps: u32) -> Vec<Stage> {
-        let of_block = |divisor: u32| Stage {
+    /// The stages of the block, without step limits of dispatches. `first` is the number of the
+    /// first one, and `ray_steps` the step limit of a ray.
+    pub fn stages(&self, kinds: &[StageKind], first: u32, ray_steps: u32) -> Vec<Stage> {
+        // Cone levels take turns with two lists of parents.
+        let mut levels = 0;
+        let mut stages = Vec::new();
+        for (index, kind) in (0..).zip(kinds) {
+            let stage = self.stage(kind, ray_steps);
+            let lists = [
+                self.parents_at(levels % 2),
+                self.parents_at((levels + 1) % 2),
+            ];
+            levels += u32::from(matches!(kind, StageKind::Pass(Pass::March(_))));
+            stages.push(Stage {
+                number: first + index,
+                index,
+                listed: lists[1],
+                parents: lists[0],
+                ..stage
+            });
+        }
+        stages
+    }
+
+    fn stage(&self, kind: &StageKind, ray_steps: u32) -> Stage {
+        let at = |divisor: u32| Stage {
             divisor,
             limit: 1,
             tiles: self.cells(divisor).map(|n| n.div_ceil(8)).iter().product(),
@@ -241,38 +321,29 @@ impl Layout {
             mark: self.mark(),
             ..Stage::zeroed()
         };
-        let reset = Stage {
-            tiles: self.tally(2 * self.coarsest).div_ceil(RESET_WORDS),
-            tally: self.all(),
-            mark: self.tally(2 * self.coarsest),
-            ..of_block(1)
-        };
-        let census = Stage {
-            divisor: self.coarsest,
-            ..of_block(1)
-        };
-        let of_pass = |pass: &Pass| match pass {
-            Pass::March(level) => Stage {
+        match kind {
+            StageKind::Reset => Stage {
+                tiles: self.tally(2 * self.coarsest).div_ceil(RESET_WORDS),
+                tally: self.all(),
+                mark: self.tally(2 * self.coarsest),
+                ..at(1)
+            },
+            StageKind::Census => Stage {
+                divisor: self.coarsest,
+                ..at(1)
+            },
+            StageKind::Pass(Pass::March(level)) => Stage {
                 fudge: level.fudge as f32,
                 limit: level.steps,
-                ..self.under_parents(of_block(level.divisor))
+                ..self.under_parents(at(level.divisor))
             },
-            Pass::Trace => Stage {
+            StageKind::Pass(Pass::Trace) => Stage {
                 limit: ray_steps,
-                ..self.under_parents(of_block(1))
+                ..self.under_parents(at(1))
             },
-            Pass::Color | Pass::Prepare(_) => of_block(1),
-        };
-        let passes = passes.iter().map(of_pass);
-        let stages = std::iter::once(reset).chain(passes).chain([census]);
-        let numbered = |(index, stage)| Stage {
-            number: first + index,
-            index,
-            listed: self.parents_at(1 - index % 2),
-            parents: self.parents_at(index % 2),
-            ..stage
-        };
-        (0..).zip(stages).map(numbered).collect()
+            StageKind::Sketch(level) => at(level.divisor),
+            StageKind::Pass(_) | StageKind::Develop => at(1),
+        }
     }
 
     /// A stage that starts from its parents, unless its level is the coarsest.

@@ -207,4 +207,9 @@ pub struct Extras {
     pub depth_only: bool,
     /// Measure the device's time per pass.
     pub time: bool,
+    /// Keep a picture on the device that can be shown while it is made.
+    pub shown: bool,
+    /// Start from what the last frame left on the device: if only the look differs, from its
+    /// rays, and if only the exposure differs, from its colours.
+    pub reuse: bool,
 }

@@ -45,9 +45,15 @@ pub struct Block {
 
 impl Block {
     /// Cuts an image into blocks, row by row. Their edge is the largest multiple of `coarsest`
-    /// that is at most `edge`, but at least `coarsest`.
+    /// that is at most `edge`, but at least `coarsest`. An image with no more pixels than such a
+    /// block is one block.
     pub fn cut(size: [u32; 2], edge: u32, coarsest: u32) -> Vec<Block> {
         let edge = (edge / coarsest).max(1) * coarsest;
+        let [area, most] = [size, [edge; 2]].map(|s| u64::from(s[0]) * u64::from(s[1]));
+        let edge = match area <= most {
+            true => size[0].max(size[1]),
+            false => edge,
+        };
         let starts = |axis: usize| (0..size[axis]).step_by(edge as usize);
         let blocks = starts(1).flat_map(|y| starts(0).map(move |x| [x, y]));
         let block = |origin: [u32; 2]| Block {

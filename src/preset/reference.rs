@@ -14,18 +14,18 @@ const HEAD: &str = "# Presets
 
 <!-- Written by `cargo bench --bench pages -- presets`; do not edit. -->
 
-A preset is a TOML file with a title and the sections below. Only `scene.kind` is required,
-and `scene.formula` where the kind is \"distance\"; every other key has the default that its
-table shows. An unknown key or a wrong value is an error that names the file, the line and a valid
+A preset is a TOML file with a title and the sections below. Only `scene.kind` is required, and
+`scene.formula` if the kind is \"distance\". The tables show the defaults of all other keys. An
+unknown key or a wrong value is an error. The error names the file, the line and a valid
 alternative.
 
-`conemarch presets NAME` prints a built-in preset to start from, and
-`conemarch render PRESET --set section.key=value` changes single values, like
-`--set camera.fov=30`; words, fields and paths need no quotes there, like
-`--set scene.field=fbm:64x64,seed=3`. A whole number may stand for any number.
-[method.md](method.md) explains shell, detail, cones and bounds, and
-[benchmarks.md](benchmarks.md) shows what the modes and the keys of `[march]` cost in time and
-in error.
+`conemarch presets NAME` prints a built-in preset to start from. In `conemarch render PRESET`, each
+`--set section.key=value` changes one value, for example `--set camera.fov=30`. Words, fields and
+paths need no quotes there, for example `--set scene.field=fbm:64x64,seed=3`. A whole number may
+stand for any number.
+
+[method.md](method.md) explains shell, detail, cones and bounds. [benchmarks.md](benchmarks.md)
+shows what the modes and the keys of `[march]` cost in time and in error.
 
 ";
 

@@ -33,6 +33,8 @@ pub const EVERYTHING: Extras = Extras {
     levels: true,
     depth_only: false,
     time: false,
+    shown: false,
+    reuse: false,
 };
 /// Fronts and states of every level, and no colour.
 pub const LEVELS: Extras = Extras {
@@ -45,6 +47,17 @@ pub const LEVELS: Extras = Extras {
 pub const COUNTED: Extras = Extras {
     count: true,
     ..LEVELS
+};
+/// Depths alone.
+pub const DEPTHS: Extras = Extras {
+    levels: false,
+    ..LEVELS
+};
+/// The picture and its normals.
+pub const NORMALS: Extras = Extras {
+    count: false,
+    levels: false,
+    ..EVERYTHING
 };
 
 /// A render that takes longer than this hangs. The longest here takes some seconds on two

@@ -3,8 +3,8 @@
 
 use std::fs;
 
-use crate::folder::{Folder, text};
-use crate::tools::{done, fails, tiny};
+use crate::folder::{Folder, output, said, text};
+use crate::tools::tiny;
 
 /// What `render mandelbox` answers to wrong options; `--explain` answers the same.
 const OPTIONS: &str = r#"
@@ -83,7 +83,7 @@ fn all_fail(folder: &Folder, table: &str, args: impl Fn(&str) -> String) {
         let [more, code, says] = columns[..] else {
             panic!("three columns: {line}");
         };
-        fails(folder, &[(&args(more), code.parse().expect(line), says)]);
+        folder.fails(&args(more), code.parse().expect(line), says);
     }
 }
 
@@ -102,12 +102,8 @@ fn wrong_options_of_a_render() {
 fn wrong_presets() {
     let folder = folder();
     all_fail(&folder, PRESETS, |preset| tiny(preset, ""));
-    folder.fails(&["render", ""], 2, &["<PRESET>"]);
-    all_fail(
-        &folder,
-        "presets none.png ; 1 ; none.png: cannot be read",
-        str::to_string,
-    );
+    folder.fails_with(&["render", ""], 2, "<PRESET>");
+    folder.fails("presets none.png", 1, "none.png: cannot be read");
 }
 
 #[test]
@@ -115,15 +111,11 @@ fn devices_of_blanks_and_of_no_adapter() {
     let folder = Folder::new();
     for device in ["--device=", "--device= ", "--device=\t"] {
         for verb in [["render", "mandelbox"], ["bench", "steps"]] {
-            folder.fails(&[&verb[..], &[device]].concat(), 2, &["--device", "auto"]);
+            folder.fails_with(&[&verb[..], &[device]].concat(), 2, "--device|auto");
         }
     }
     let nobody = ["render", "mandelbox", "--device", "no such adapter"];
-    folder.fails(
-        &nobody,
-        1,
-        &["there is no adapter", "no such adapter", "cpu"],
-    );
+    folder.fails_with(&nobody, 1, "there is no adapter|no such adapter|cpu");
 }
 
 #[cfg(target_os = "linux")]
@@ -132,26 +124,18 @@ fn what_does_not_fit_into_memory_is_refused_with_a_size_that_does() {
     let folder = Folder::new();
     let huge = "--device cpu --size 65536x65536";
     let says = "65536x65536|iB of memory|--size ";
-    fails(&folder, &[(&format!("render mandelbox {huge}"), 1, says)]);
+    folder.fails(&format!("render mandelbox {huge}"), 1, says);
     for verb in ["error", "steps", "calibrate"] {
         let says = "bench-far|iB of memory|would fit";
-        fails(
-            &folder,
-            &[(&format!("bench {verb} bench-far {huge}"), 1, says)],
-        );
+        folder.fails(&format!("bench {verb} bench-far {huge}"), 1, says);
     }
     // The size that is advised is taken.
-    let refused = folder.run(&crate::tools::words(&format!("render mandelbox {huge}")));
-    let said = crate::folder::said(&refused);
-    let advised = said
-        .split("--size ")
-        .nth(1)
-        .and_then(|s| s.split(' ').next());
-    let advised = advised.expect("a size");
-    done(
-        &folder,
-        &format!("render mandelbox --device cpu --explain --size {advised}"),
-    );
+    let render = format!("render mandelbox {huge}");
+    let said = said(&output(&mut folder.command(&render)));
+    let advised = said.split("--size ").nth(1).expect("a size");
+    let advised = advised.split(' ').next().unwrap_or_default();
+    let explain = "render mandelbox --device cpu --explain --size";
+    folder.done(&format!("{explain} {advised}"));
 }
 
 /// What `bench` answers. A folder that was made is removed again after a failure.
@@ -183,16 +167,9 @@ fn wrong_measurements() {
     let folder = Folder::new();
     folder.write("file", "of nothing");
     fs::create_dir(folder.0.join("a")).expect("a folder");
-    folder.write(
-        "a/bench-far.toml",
-        text(&done(&folder, "presets bench-far")),
-    );
-    all_fail(&folder, BENCHES, |more| {
-        let size = if more.starts_with("cones") {
-            ""
-        } else {
-            "--size 40x24"
-        };
-        format!("bench {more} {size}")
+    folder.write("a/bench-far.toml", text(&folder.done("presets bench-far")));
+    all_fail(&folder, BENCHES, |more| match more.starts_with("cones") {
+        true => format!("bench {more}"),
+        false => format!("bench {more} --size 40x24"),
     });
 }

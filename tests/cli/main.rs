@@ -13,6 +13,9 @@ mod bench;
 #[path = "../common/folder.rs"]
 #[allow(dead_code, reason = "other files use the rest")]
 mod folder;
+#[path = "../common/pictures.rs"]
+#[allow(dead_code, reason = "other files use the rest")]
+mod images;
 mod pictures;
 mod preset_errors;
 mod presets;

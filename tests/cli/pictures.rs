@@ -3,26 +3,26 @@
 use std::fs;
 use std::path::Path;
 
-use exr::prelude::{AnyChannels, FlatSamples, Layer};
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Layer};
 
 use crate::folder::Folder;
-use crate::tools::{Picture, decode, done, fails, rendered, tiny};
+use crate::images::pixels;
+use crate::tools::{rendered, tiny};
 
-fn picture(folder: &Folder, more: &str) -> Picture {
+fn picture(folder: &Folder, more: &str) -> (png::Info<'static>, Vec<u8>) {
     rendered(folder, "mandelbox", &format!("{more} -o l.png"));
-    decode(&folder.bytes("l.png"))
+    pixels(folder.bytes("l.png"))
 }
 
 #[test]
 fn layers_and_depths_are_what_they_say() {
     let folder = Folder::new();
-    let color = picture(&folder, "").pixels;
+    let (_, color) = picture(&folder, "");
     for layer in ["depth", "normal", "position", "steps", "state"] {
         for (bits, bytes) in [("8", 1), ("16", 2)] {
-            let found = picture(&folder, &format!("--layer {layer} --depth {bits}"));
+            let (info, pixels) = picture(&folder, &format!("--layer {layer} --depth {bits}"));
             // Colours are sRGB, data are not.
-            assert!(found.info.srgb.is_none(), "{layer}");
-            let pixels = found.pixels;
+            assert!(info.srgb.is_none(), "{layer}");
             let channels = if layer == "depth" { 1 } else { 3 };
             assert_eq!(pixels.len(), 24 * 16 * channels * bytes, "{layer} {bits}");
             assert_ne!(pixels, color, "{layer} shows colour");
@@ -37,40 +37,33 @@ fn layers_and_depths_are_what_they_say() {
         }
     }
     // 16 bits are more than 8 bits twice.
-    let deep = picture(&folder, "--depth 16");
-    assert!(deep.info.srgb.is_some());
-    let deep = deep.pixels;
+    let (info, deep) = picture(&folder, "--depth 16");
+    assert!(info.srgb.is_some());
     assert!(deep.chunks(2).any(|p| p[0] != p[1]));
-    let off = deep
-        .chunks(2)
-        .zip(&color)
-        .filter(|(d, c)| d[0].abs_diff(**c) > 1);
+    let pairs = deep.chunks(2).zip(&color);
+    let off = pairs.filter(|(d, c)| d[0].abs_diff(**c) > 1);
     assert_eq!(off.count(), 0, "8 and 16 bits show different pictures");
 }
 
 #[test]
 fn a_png_tells_its_title_program_and_preset_in_chunks_that_all_programs_read() {
     let folder = Folder::new();
-    let info = picture(&folder, "--set title=Box").info;
+    let info = picture(&folder, "--set title=Box").0;
     let text = |keyword: &str| {
-        let found = info
-            .uncompressed_latin1_text
-            .iter()
-            .find(|c| c.keyword == keyword);
+        let mut chunks = info.uncompressed_latin1_text.iter();
+        let found = chunks.find(|c| c.keyword == keyword);
         found.map(|c| c.text.as_str()).unwrap_or_default()
     };
     assert_eq!(text("Title"), "Box");
-    assert_eq!(
-        text("Software"),
-        concat!("conemarch ", env!("CARGO_PKG_VERSION"))
-    );
+    let program = concat!("conemarch ", env!("CARGO_PKG_VERSION"));
+    assert_eq!(text("Software"), program);
     assert!(text("conemarch preset").contains("title = \"Box\""));
     assert!(info.utf8_text.is_empty());
     // Other letters need the other chunk.
-    let info = picture(&folder, "--set title=Würfel").info;
+    let info = picture(&folder, "--set title=Würfel").0;
     let unicode: Vec<&str> = info.utf8_text.iter().map(|c| c.keyword.as_str()).collect();
     assert_eq!(unicode, ["Title", "conemarch preset"]);
-    done(&folder, "render l.png --explain");
+    folder.done("render l.png --explain");
 }
 
 /// A picture of another program, with one text chunk.
@@ -88,65 +81,43 @@ fn foreign(fill: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>)) -> Vec<u8> {
 #[test]
 fn a_preset_is_read_from_any_kind_of_text_chunk() {
     let folder = Folder::new();
-    let (keyword, text) = (
-        "conemarch preset".to_string(),
-        "[scene]\nkind = \"slab\"\n".to_string(),
-    );
-    let [k, t] = [&keyword, &text];
-    folder.write(
-        "a.png",
-        foreign(|e| e.add_text_chunk(k.clone(), t.clone()).unwrap()),
-    );
-    folder.write(
-        "b.png",
-        foreign(|e| e.add_ztxt_chunk(k.clone(), t.clone()).unwrap()),
-    );
-    folder.write(
-        "c.png",
-        foreign(|e| e.add_itxt_chunk(k.clone(), t.clone()).unwrap()),
-    );
-    for name in ["a.png", "b.png", "c.png"] {
-        done(&folder, &format!("render {name} --explain"));
+    let key = || "conemarch preset".to_string();
+    let text = || "[scene]\nkind = \"slab\"\n".to_string();
+    for bytes in [
+        foreign(|e| e.add_text_chunk(key(), text()).unwrap()),
+        foreign(|e| e.add_ztxt_chunk(key(), text()).unwrap()),
+        foreign(|e| e.add_itxt_chunk(key(), text()).unwrap()),
+    ] {
+        folder.write("a.png", bytes);
+        folder.done("render a.png --explain");
     }
     folder.write("none.png", foreign(|_| {}));
     folder.write("not.png", b"\x89PNG\r\n\x1a\nnonsense");
-    fails(
-        &folder,
-        &[
-            (&tiny("none.png", ""), 1, "none.png: carries no preset"),
-            (&tiny("not.png", ""), 1, "not.png: is a broken PNG"),
-        ],
-    );
+    folder.fails(&tiny("none.png", ""), 1, "none.png: carries no preset");
+    folder.fails(&tiny("not.png", ""), 1, "not.png: is a broken PNG");
 }
 
 #[test]
 fn jpeg_and_webp_show_the_picture() {
     let folder = Folder::new();
-    let png = picture(&folder, "").pixels;
+    let (_, png) = picture(&folder, "");
     rendered(&folder, "mandelbox", "-o a.webp");
     let webp = image::load_from_memory(&folder.bytes("a.webp")).expect("a WebP");
     assert_eq!(webp.into_rgb8().into_raw(), png, "WebP is without loss");
     let jpeg = |more: &str| {
         rendered(&folder, "mandelbox", more);
         let bytes = folder.bytes("a.jpg");
-        let pixels = image::load_from_memory(&bytes)
-            .expect("a JPEG")
-            .into_rgb8()
-            .into_raw();
-        let off = pixels
-            .iter()
-            .zip(&png)
-            .map(|(a, b)| f64::from(a.abs_diff(*b)));
-        (bytes.len(), off.sum::<f64>() / png.len() as f64)
+        let picture = image::load_from_memory(&bytes).expect("a JPEG").into_rgb8();
+        let pairs = picture.iter().zip(&png);
+        let off: f64 = pairs.map(|(a, b)| f64::from(a.abs_diff(*b))).sum();
+        (bytes.len(), off / png.len() as f64)
     };
     let (usual, off) = jpeg("-o a.jpg");
     assert!(off > 0.0 && off < 6.0, "{off}");
     assert_eq!(jpeg("-o a.jpg --quality 92").0, usual);
     let (small, worse) = jpeg("-o a.jpg --quality 20");
-    assert!(
-        small < usual && worse > off,
-        "{small} {usual} {worse} {off}"
-    );
+    let worth = small < usual && worse > off;
+    assert!(worth, "{small} {usual} {worse} {off}");
     // A layer of one channel.
     rendered(&folder, "mandelbox", "-o d.jpeg --layer depth");
     let depth = image::load_from_memory(&folder.bytes("d.jpeg")).expect("a JPEG");
@@ -174,10 +145,8 @@ fn an_exr_has_exactly_the_promised_channels() {
         rendered(&folder, "mandelbox", more);
         let layer = exr_layer(&folder.0.join(&more[3..8]));
         let list = &layer.channel_data.list;
-        assert!(
-            list.iter()
-                .all(|c| matches!(c.sample_data, FlatSamples::F32(_)))
-        );
+        let float = |c: &AnyChannel<_>| matches!(c.sample_data, FlatSamples::F32(_));
+        assert!(list.iter().all(float));
         let names: Vec<String> = list.iter().map(|c| c.name.to_string()).collect();
         assert_eq!(names.join(" "), format!("{promised}{last}"));
     }
@@ -187,11 +156,8 @@ fn an_exr_has_exactly_the_promised_channels() {
     assert_eq!(depth.len(), 24 * 16);
     assert!(of("A").iter().all(|a| *a == 1.0));
     for ((t, z), s) in depth.iter().zip(&planar).zip(&state) {
-        assert_eq!(
-            (*t == 1e10, *z == 1e10),
-            (*s == 0.0, *s == 0.0),
-            "depth {t} {z}, state {s}"
-        );
+        let far = [*t, *z].map(|x| x == 1e10);
+        assert_eq!(far, [*s == 0.0; 2], "depth {t} {z}, state {s}");
     }
     assert!(state.contains(&1.0) && state.contains(&0.0));
     // Both are the same on the axis, and the planar one is shorter beside it: by the ray's
@@ -202,11 +168,8 @@ fn an_exr_has_exactly_the_promised_channels() {
     let mut shorter = 0;
     for i in (0..state.len()).filter(|i| state[*i] == 1.0) {
         let along: f32 = (0..3).map(|a| (position[a][i] - eye[a]) * forward[a]).sum();
-        assert!(
-            (along - planar[i]).abs() < 1e-4 * along,
-            "{along} {}",
-            planar[i]
-        );
+        let off = (along - planar[i]).abs();
+        assert!(off < 1e-4 * along, "{along} {}", planar[i]);
         assert!(planar[i] <= depth[i]);
         shorter += usize::from(planar[i] < 0.999 * depth[i]);
     }
@@ -226,17 +189,11 @@ fn an_exr_tells_where_it_comes_from_and_is_the_same_every_time() {
     let software = image.layer_data.attributes.software_name.expect("a name");
     assert!(software.to_string().starts_with("conemarch "));
     let colors = image.attributes.chromaticities.expect("chromaticities");
-    assert_eq!(
-        (colors.red.0, colors.green.1, colors.white.0),
-        (0.64, 0.60, 0.3127)
-    );
+    let colors = [colors.red.0, colors.green.1, colors.white.0];
+    assert_eq!(colors, [0.64, 0.60, 0.3127]);
     assert_eq!(image.attributes.pixel_aspect, 1.0);
-    let texts = image
-        .layer_data
-        .attributes
-        .other
-        .into_iter()
-        .chain(image.attributes.other);
+    let texts = image.layer_data.attributes.other.into_iter();
+    let texts = texts.chain(image.attributes.other);
     let texts: Vec<(String, String)> = texts
         .map(|(name, value)| (name.to_string(), value.into_text().unwrap().to_string()))
         .collect();
@@ -244,11 +201,8 @@ fn an_exr_tells_where_it_comes_from_and_is_the_same_every_time() {
     assert!(text("conemarch camera").starts_with("eye = [10.0, -17.0, 12.0]\ntarget = "));
     folder.write("again.toml", text("conemarch preset"));
     rendered(&folder, "again.toml", "-o c.exr");
-    assert!(
-        bytes == folder.bytes("c.exr"),
-        "its preset makes another picture"
-    );
-    assert!(fs::exists(folder.0.join("c.exr")).unwrap());
+    let again = bytes == folder.bytes("c.exr");
+    assert!(again, "its preset makes another picture");
 }
 
 #[test]
@@ -260,13 +214,10 @@ fn errors_are_a_layer() {
         let said = rendered(&folder, "bench-thin", &more);
         let at = |word: &str| said.find(word).unwrap_or(usize::MAX);
         assert!(at("the truth to compare with") < at("e.png"), "{said}");
-        let pixels = decode(&folder.bytes("e.png")).pixels;
-        let red = pixels
-            .chunks(3)
-            .filter(|c| c[0] > c[2].saturating_add(150))
-            .count();
+        let (_, pixels) = pixels(folder.bytes("e.png"));
         fs::remove_file(folder.0.join("e.png")).unwrap();
-        red
+        let red = |c: &&[u8]| c[0] > c[2].saturating_add(150);
+        pixels.chunks(3).filter(red).count()
     };
     assert_eq!(red("truth"), 0);
     assert!(red("slides-fast") > 10);

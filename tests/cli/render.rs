@@ -2,8 +2,9 @@
 
 use serde_json::json;
 
-use crate::folder::{Folder, said, text};
-use crate::tools::{decode, done, fails, json, names, number, rendered, tiny};
+use crate::folder::{Folder, holds, output, said, text};
+use crate::images::pixels;
+use crate::tools::{json, names, number, rendered, tiny};
 
 #[test]
 fn a_render_is_named_after_its_preset_and_renders_again() {
@@ -11,29 +12,24 @@ fn a_render_is_named_after_its_preset_and_renders_again() {
     let said = rendered(&folder, "mandelbox", "--set camera.fov=30 -o mandelbox.png");
     assert!(said.contains("rendering on the CPU"), "{said}");
     let summary = said.lines().last().unwrap_or_default();
-    assert!(
-        summary.starts_with("mandelbox.png  24 x 16  march and trace "),
-        "{said}"
-    );
-    assert!(
-        summary.contains(" ms, colour ") && summary.contains(" %, unconverged "),
-        "{said}"
-    );
+    let start = "mandelbox.png  24 x 16  march and trace ";
+    assert!(summary.starts_with(start), "{said}");
+    holds(summary, &[" ms, colour ", " %, unconverged "]);
 
-    let picture = decode(&folder.bytes("mandelbox.png"));
-    assert_eq!((picture.info.width, picture.info.height), (24, 16));
-    assert_eq!(picture.info.color_type, png::ColorType::Rgb);
-    assert_eq!(picture.info.bit_depth, png::BitDepth::Eight);
-    assert!(picture.info.srgb.is_some());
-    let even = picture.pixels.chunks(3).all(|p| p == &picture.pixels[..3]);
+    let (info, pixels) = pixels(folder.bytes("mandelbox.png"));
+    assert_eq!((info.width, info.height), (24, 16));
+    assert_eq!(info.color_type, png::ColorType::Rgb);
+    assert_eq!(info.bit_depth, png::BitDepth::Eight);
+    assert!(info.srgb.is_some());
+    let even = pixels.chunks(3).all(|p| p == &pixels[..3]);
     assert!(!even, "the picture is of one colour");
 
     // The picture carries its plan: no option is needed to make it again.
     let again = "render mandelbox.png --device cpu -o";
-    done(&folder, &format!("{again} again.png"));
+    folder.done(&format!("{again} again.png"));
     assert_eq!(folder.bytes("mandelbox.png"), folder.bytes("again.png"));
     // Overrides apply to it, so that equal bytes above mean something.
-    done(&folder, &format!("{again} other.png --set camera.fov=31"));
+    folder.done(&format!("{again} other.png --set camera.fov=31"));
     assert_ne!(folder.bytes("mandelbox.png"), folder.bytes("other.png"));
 }
 
@@ -43,37 +39,28 @@ fn a_picture_without_a_name_replaces_only_its_own_like() {
     let folder = Folder::new();
     let scene = "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n";
     folder.write("my.toml", format!("{scene}[image]\nsize = [24, 16]\n"));
-    let render = |more: &str| done(&folder, &format!("render my.toml --device cpu {more}"));
+    let render = |more: &str| folder.done(&format!("render my.toml --device cpu {more}"));
     render("");
     let whole = folder.bytes("my.png");
     render("--size 24x16");
     render("--layer depth");
     render("--size 8x4");
     render("--size 8x4 --layer state");
-    let all = [
-        "my-8x4.png",
-        "my-8x4.state.png",
-        "my.depth.png",
-        "my.png",
-        "my.toml",
-    ];
-    assert_eq!(folder.files(), all);
+    let all = "my-8x4.png my-8x4.state.png my.depth.png my.png my.toml";
+    assert_eq!(folder.files().join(" "), all);
     assert_eq!(folder.bytes("my.png"), whole);
-    assert_eq!(decode(&folder.bytes("my-8x4.png")).info.width, 8);
+    assert_eq!(pixels(folder.bytes("my-8x4.png")).0.width, 8);
     let other = "render my.toml --device cpu --set camera.fov=33";
-    fails(
-        &folder,
-        &[(other, 2, "`my.png` exists and has other settings|-o")],
-    );
+    folder.fails(other, 2, "`my.png` exists and has other settings|-o");
     assert_eq!(folder.bytes("my.png"), whole);
     // Where there is none it is made, and made again.
     let smaller = format!("{other} --size 6x4");
-    done(&folder, &smaller);
-    done(&folder, &smaller);
+    folder.done(&smaller);
+    folder.done(&smaller);
     let another = "render my.toml --device cpu --set camera.fov=34 --size 6x4";
-    fails(&folder, &[(another, 2, "`my-6x4.png`|-o")]);
+    folder.fails(another, 2, "`my-6x4.png`|-o");
     // -o may replace anything.
-    done(&folder, &format!("{other} -o my.png"));
+    folder.done(&format!("{other} -o my.png"));
     assert_ne!(folder.bytes("my.png"), whole);
 }
 
@@ -82,13 +69,11 @@ fn an_existing_picture_is_replaced_only_by_a_whole_one() {
     let folder = Folder::new();
     folder.write("a.png", "precious");
     let wrong = "render mandelbox --size 8x8 -o a.png --device";
-    fails(
-        &folder,
-        &[(&format!("{wrong} 99"), 1, "99"), (wrong, 2, "--device")],
-    );
+    folder.fails(&format!("{wrong} 99"), 1, "99");
+    folder.fails(wrong, 2, "--device");
     assert_eq!(folder.bytes("a.png"), b"precious");
     rendered(&folder, "mandelbox", "-o a.png");
-    assert_eq!(decode(&folder.bytes("a.png")).info.width, 24);
+    assert_eq!(pixels(folder.bytes("a.png")).0.width, 24);
     assert_eq!(folder.files(), ["a.png"]);
 }
 
@@ -99,56 +84,38 @@ fn names_need_not_be_utf_8() {
     use std::os::unix::ffi::OsStrExt;
     let folder = Folder::new();
     let named = |bytes: &'static [u8]| std::ffi::OsStr::from_bytes(bytes);
-    let preset = text(&done(&folder, "presets mandelbox"));
+    let preset = text(&folder.done("presets mandelbox"));
     std::fs::write(folder.0.join(named(b"b\xffx.toml")), preset).unwrap();
-    let run = |args: &str, last: &'static [u8]| {
-        let mut command = folder.command(&crate::tools::words(args));
-        command
-            .arg(named(last))
-            .output()
-            .expect("the program starts")
-    };
-    let render = "render --device cpu --size 24x16 -o a.png";
+    let run = |args: &str, last: &'static [u8]| output(folder.command(args).arg(named(last)));
+    let steps = "bench steps --device cpu --mode ray --size 8x8";
+    let named_picture = "render mandelbox --device cpu --size 24x16 -o";
     for output in [
-        run(render, b"b\xffx.toml"),
-        run(
-            "bench steps --device cpu --mode ray --size 8x8",
-            b"b\xffx.toml",
-        ),
-        run(
-            "render mandelbox --device cpu --size 24x16 -o",
-            b"c\xff.png",
-        ),
+        run("render --device cpu --size 24x16 -o a.png", b"b\xffx.toml"),
+        run(steps, b"b\xffx.toml"),
+        run(named_picture, b"c\xff.png"),
         run("presets", b"c\xff.png"),
     ] {
         assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     }
-    assert_eq!(
-        folder.files(),
-        ["a.png", "b\u{fffd}x.toml", "c\u{fffd}.png"]
-    );
+    let files = ["a.png", "b\u{fffd}x.toml", "c\u{fffd}.png"];
+    assert_eq!(folder.files(), files);
     // Elsewhere text is needed, and the error says where.
     let output = run("render mandelbox --set", b"title=\xff");
     assert_eq!(output.status.code(), Some(2));
     let told = said(&output);
-    assert!(
-        told.starts_with("error: the argument `title=\u{fffd}` is not UTF-8"),
-        "{told}"
-    );
+    let start = "error: the argument `title=\u{fffd}` is not UTF-8";
+    assert!(told.starts_with(start), "{told}");
 }
 
 #[test]
 fn the_command_that_is_given_is_explained() {
     let folder = Folder::new();
-    let explained = text(&done(&folder, "render mandelbox --explain --size 64x64"));
+    let explained = text(&folder.done("render mandelbox --explain --size 64x64"));
     assert!(explained.starts_with("64 x 64, mode safe"), "{explained}");
-    assert!(
-        explained.contains("wgsl/formula/mandelbox.wgsl"),
-        "{explained}"
-    );
+    holds(&explained, &["wgsl/formula/mandelbox.wgsl"]);
     let has = |more: &str, part: &str| {
         let explain = format!("{} --explain", tiny("mandelbox", more));
-        text(&done(&folder, &explain)).contains(part)
+        text(&folder.done(&explain)).contains(part)
     };
     // Nothing is counted, coloured or kept that nobody asked for.
     let counters = "wgsl/pass/counters.wgsl";
@@ -173,7 +140,7 @@ fn the_command_that_is_given_is_explained() {
 fn stats_have_the_promised_fields() {
     let folder = Folder::new();
     rendered(&folder, "mandelbox", "--stats s.json");
-    let piped = done(&folder, &tiny("mandelbox", "--stats - -o b.png"));
+    let piped = folder.done(&tiny("mandelbox", "--stats - -o b.png"));
     for bytes in [folder.bytes("s.json"), piped.stdout] {
         let stats = json(&bytes);
         let mut fields = names(&stats);
@@ -188,29 +155,17 @@ fn stats_have_the_promised_fields() {
         assert!((all - 1.0).abs() < 1e-12 && share("hit") > 0.0 && share("hit") < 1.0);
         let passes = stats["passes"].as_array().expect("a list");
         let found: Vec<&str> = passes.iter().filter_map(|p| p["name"].as_str()).collect();
-        let promised = [
-            "march 1/16",
-            "march 1/8",
-            "march 1/4",
-            "march 1/2",
-            "trace",
-            "color",
-        ];
-        assert_eq!(found, promised);
+        let promised = "march 1/16, march 1/8, march 1/4, march 1/2, trace, color";
+        assert_eq!(found.join(", "), promised);
         for pass in passes {
             assert_eq!(names(pass).len(), 6, "{pass}");
             assert!(pass["wall_ms"].is_number(), "{pass}");
-            assert_eq!(
-                pass["evaluations"].is_null(),
-                pass["name"] == "color",
-                "{pass}"
-            );
+            let uncounted = pass["evaluations"].is_null();
+            assert_eq!(uncounted, pass["name"] == "color", "{pass}");
             assert!(pass["gpu_ms"].is_null(), "the CPU has no device time");
         }
-        let sum: f64 = passes
-            .iter()
-            .filter_map(|p| p["evaluations"].as_f64())
-            .sum();
+        let counts = passes.iter().filter_map(|p| p["evaluations"].as_f64());
+        let sum: f64 = counts.sum();
         assert!((sum / (24.0 * 16.0) - share("evaluations_per_pixel")).abs() < 1e-9);
     }
 }
@@ -230,25 +185,19 @@ fn the_cone_maps_of_a_heightfield_are_a_pass_of_their_own() {
         let wall = number(stats, "wall_ms");
         assert!((sum - wall).abs() < 1e-6 * wall.max(1.0), "{sum} {wall}");
     };
-    let output = done(&folder, &tiny("terrain", small));
-    let line = said(&output);
-    assert!(
-        line.contains("cone map ") && line.contains(" ms, march"),
-        "{line}"
-    );
+    let output = folder.done(&tiny("terrain", small));
+    holds(&said(&output), &["cone map ", " ms, march"]);
     let stats = json(&output.stdout);
     let first = &stats["passes"][0];
-    assert_eq!(
-        (&first["name"], &first["cells"]),
-        (&"prepare".into(), &(32 * 24).into())
-    );
+    assert_eq!(first["name"], "prepare");
+    assert_eq!(first["cells"], 32 * 24);
     assert!(first["evaluations"].is_null());
     assert!(number(&stats, "evaluations_per_pixel") > 0.0);
     assert_eq!(stats["passes"].as_array().map(Vec::len), Some(1 + 5 + 1));
     adds_up(&stats);
     // A picture may need a map more than its depths do: each pass keeps its own time.
     let paint = format!("{small} --set scene.paint=exact --set scene.tracer=max-mip");
-    let stats = json(&done(&folder, &tiny("terrain", &paint)).stdout);
+    let stats = json(&folder.done(&tiny("terrain", &paint)).stdout);
     let passes = stats["passes"].as_array().expect("a list");
     assert_eq!(passes.iter().filter(|p| p["name"] == "prepare").count(), 1);
     adds_up(&stats);

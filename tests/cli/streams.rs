@@ -5,21 +5,21 @@ use std::process::{Child, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::folder::{Folder, said, signal, text};
-use crate::tools::{done, fails, rendered, tiny, words};
+use crate::folder::{Folder, output, said, signal, text};
+use crate::tools::{rendered, tiny};
 
 #[test]
 fn standard_output_gets_the_same_bytes_as_a_file() {
     let folder = Folder::new();
     rendered(&folder, "mandelbox", "-o a.png");
-    let piped = done(&folder, &tiny("mandelbox", "-o -"));
+    let piped = folder.done(&tiny("mandelbox", "-o -"));
     assert_eq!(piped.stdout, folder.bytes("a.png"));
     assert_eq!(folder.files(), ["a.png"]);
 }
 
 /// Starts a command whose standard output is closed at once.
 fn unread(folder: &Folder, args: &str) -> Output {
-    let mut command = folder.command(&words(args));
+    let mut command = folder.command(args);
     let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("the program starts");
     drop(child.stdout.take());
@@ -42,10 +42,8 @@ fn a_picture_that_nobody_reads_is_a_failure() {
         let said = said(&output);
         assert_eq!(output.status.code(), Some(1), "{more:?}: {said}");
         let last = said.lines().last().unwrap_or_default();
-        assert!(
-            last.starts_with("error: the reader of standard output"),
-            "{said}"
-        );
+        let unread = "error: the reader of standard output";
+        assert!(last.starts_with(unread), "{said}");
         assert!(folder.files().is_empty(), "{:?}", folder.files());
     }
 }
@@ -63,20 +61,11 @@ mod full {
     fn a_full_disk_is_an_error_that_names_the_file_and_leaves_nothing() {
         let folder = Folder::new();
         std::os::unix::fs::symlink("/dev/full", folder.0.join("full.png")).expect("a link");
+        let full_png = tiny("mandelbox", "-o full.png");
+        folder.fails(&full_png, 1, "full.png|No space left|elsewhere");
         let stats = tiny("mandelbox", "-o a.png --stats /dev/full");
-        fails(
-            &folder,
-            &[
-                (
-                    &tiny("mandelbox", "-o full.png"),
-                    1,
-                    "full.png|No space left|elsewhere",
-                ),
-                (&stats, 1, "/dev/full: cannot be written"),
-            ],
-        );
-        let output = folder.command(&["presets"]).stdout(full()).output();
-        let output = output.expect("the program starts");
+        folder.fails(&stats, 1, "/dev/full: cannot be written");
+        let output = output(folder.command("presets").stdout(full()));
         assert_eq!(output.status.code(), Some(1), "{}", said(&output));
         assert!(said(&output).starts_with("error: standard output cannot be written"));
     }
@@ -85,7 +74,7 @@ mod full {
     fn nobody_need_listen_to_standard_error() {
         let folder = Folder::new();
         let deaf = |args: &str| {
-            let mut command = folder.command(&words(args));
+            let mut command = folder.command(args);
             let status = command.stderr(full()).stdout(Stdio::null()).status();
             status.expect("the program starts").code()
         };
@@ -103,33 +92,32 @@ mod full {
 fn a_preset_that_is_no_file_is_refused_at_once() {
     use std::process::Command;
     let folder = Folder::new();
-    let made = Command::new("mkfifo")
-        .arg(folder.0.join("pipe.toml"))
-        .status();
+    let pipe = folder.0.join("pipe.toml");
+    let made = Command::new("mkfifo").arg(pipe).status();
     assert!(made.expect("mkfifo").success());
     for preset in ["/dev/zero", "/dev/null", "pipe.toml"] {
         let says = format!("{preset}|no regular file");
-        fails(&folder, &[(&tiny(preset, ""), 1, &says)]);
+        folder.fails(&tiny(preset, ""), 1, &says);
     }
     // The program's own input is open already, and is read to its end.
-    folder.write("in.toml", text(&done(&folder, "presets mandelbox")));
+    folder.write("in.toml", text(&folder.done("presets mandelbox")));
     let read = fs::File::open(folder.0.join("in.toml")).expect("written above");
     let mut cat = Command::new("cat");
     let mut cat = cat.stdin(read).stdout(Stdio::piped()).spawn().expect("cat");
-    let mut command = folder.command(&["render", "/dev/stdin", "--explain"]);
+    let mut command = folder.command("render /dev/stdin --explain");
     let pipe = cat.stdout.take().expect("a pipe");
-    let output = command.stdin(pipe).output().expect("the program starts");
+    let output = output(command.stdin(pipe));
     assert!(cat.wait().expect("an end").success());
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     assert_eq!(
         text(&output),
-        text(&done(&folder, "render mandelbox --explain"))
+        text(&folder.done("render mandelbox --explain"))
     );
 }
 
 /// A command that runs far longer than a test may, once it has begun.
 fn begun(folder: &Folder, args: &str, stderr: Stdio, is_begun: impl Fn() -> bool) -> Child {
-    let mut command = folder.command(&words(args));
+    let mut command = folder.command(args);
     let command = command.stdout(Stdio::null()).stderr(stderr);
     let child = command.spawn().expect("the program starts");
     let start = Instant::now();
@@ -149,10 +137,8 @@ fn ended(child: Child, signals: &[&str]) -> (Option<i32>, String) {
     }
     let sent = Instant::now();
     let output = child.wait_with_output().expect("an end");
-    assert!(
-        sent.elapsed() < Duration::from_secs(20),
-        "the signal was ignored"
-    );
+    let soon = sent.elapsed() < Duration::from_secs(20);
+    assert!(soon, "the signal was ignored");
     (output.status.code(), said(&output))
 }
 
@@ -173,10 +159,8 @@ fn an_interrupt_leaves_no_file_and_its_own_exit_code() {
         sleep(Duration::from_millis(100));
         let (found, said) = ended(child, signals);
         assert_eq!(found, Some(code), "{said}");
-        assert_eq!(
-            said.lines().last(),
-            Some("error: cancelled; nothing was written")
-        );
+        let last = said.lines().last();
+        assert_eq!(last, Some("error: cancelled; nothing was written"));
         assert!(folder.files().is_empty(), "{:?}", folder.files());
     }
 }
@@ -190,9 +174,8 @@ fn an_interrupt_leaves_no_empty_folder() {
         fs::create_dir(folder.0.join("was")).expect("a folder");
         let steps = "bench steps bench-far --device cpu --size 3000x3000 --heat";
         let args = format!("{steps} {given}");
-        let child = begun(&folder, &args, Stdio::piped(), || {
-            folder.0.join(made).exists()
-        });
+        let made = folder.0.join(made);
+        let child = begun(&folder, &args, Stdio::piped(), || made.exists());
         sleep(Duration::from_millis(200));
         assert_eq!(ended(child, &["INT"]).0, Some(130));
         assert_eq!(folder.files(), ["was"]);

@@ -20,44 +20,43 @@ impl Folder {
         Self(folder.path().to_path_buf(), folder)
     }
 
-    pub fn command(&self, args: &[&str]) -> Command {
+    /// The program with the words of a line, none of which may hold a blank.
+    pub fn command(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_conemarch"));
-        command.args(args).current_dir(&self.0);
+        command.args(line.split_whitespace()).current_dir(&self.0);
         command.stdin(Stdio::null());
         command
     }
 
-    pub fn run(&self, args: &[&str]) -> Output {
-        self.command(args).output().expect("the program starts")
-    }
-
-    /// Runs what must succeed.
-    pub fn done(&self, args: &[&str]) -> Output {
-        let output = self.run(args);
-        assert_eq!(output.status.code(), Some(0), "{args:?}: {}", said(&output));
+    /// Runs a command line that must succeed.
+    pub fn done(&self, line: &str) -> Output {
+        let output = output(&mut self.command(line));
+        assert_eq!(output.status.code(), Some(0), "{line}: {}", said(&output));
         output
     }
 
-    /// Runs what must fail with a code and one sentence that holds some words, and
-    /// must leave no new file.
-    pub fn fails(&self, args: &[&str], code: i32, words: &[&str]) {
+    /// Runs a command line that must fail with a code and one sentence that holds some
+    /// parts, with `|` between them, and must leave no new file.
+    pub fn fails(&self, line: &str, code: i32, parts: &str) {
+        let args: Vec<&str> = line.split_whitespace().collect();
+        self.fails_with(&args, code, parts);
+    }
+
+    /// The same for words that may be empty or hold blanks.
+    pub fn fails_with(&self, args: &[&str], code: i32, parts: &str) {
         let before = self.files();
-        let output = self.run(args);
+        let output = output(self.command("").args(args));
         let said = said(&output);
         assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
         let errors: Vec<&str> = said.lines().filter(|l| l.starts_with("error: ")).collect();
         assert_eq!(errors.len(), 1, "one sentence for {args:?}: {said}");
         assert_eq!(said.lines().last(), Some(errors[0]), "{said}");
-        for word in words {
-            assert!(
-                errors[0].contains(word),
-                "{args:?}: `{word}` not in: {said}"
-            );
+        for part in parts.split('|') {
+            let held = errors[0].contains(part);
+            assert!(held, "{args:?}: `{part}` not in: {said}");
         }
-        assert!(
-            output.stdout.is_empty(),
-            "{args:?} wrote to standard output"
-        );
+        let silent = output.stdout.is_empty();
+        assert!(silent, "{args:?} wrote to standard output");
         assert_eq!(self.files(), before, "{args:?} left a file");
     }
 
@@ -75,6 +74,18 @@ impl Folder {
 
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         fs::write(self.0.join(name), content).expect(name);
+    }
+}
+
+/// Runs a command to its end.
+pub fn output(command: &mut Command) -> Output {
+    command.output().expect("the program starts")
+}
+
+/// Checks that a text holds some parts.
+pub fn holds(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "`{part}` not in: {text}");
     }
 }
 

@@ -1,17 +1,15 @@
 //! The sides of boxes, on both executors: whatever finds them, they face the way from which they
 //! are seen.
 
-use conemarch::base::work::State;
 use conemarch::heightfield::tracer::{Accuracy, TracerKind};
 use conemarch::picture::frame::Frame;
-use conemarch::plan::{Extras, Plan};
+use conemarch::plan::Plan;
 use glam::DVec3;
 
-use crate::cases::first_box;
+use crate::adapter::{HIT, NORMALS};
+use crate::cases::{first_box, of_accuracy};
 use crate::scenes::{SCENES, local, ready};
 use crate::{both, plan};
-
-const HIT: u8 = State::Hit as u8;
 
 /// The scenes of boxes, traced by a tracer.
 fn boxes(tracer: TracerKind) -> impl Iterator<Item = (String, Plan)> {
@@ -23,26 +21,16 @@ fn boxes(tracer: TracerKind) -> impl Iterator<Item = (String, Plan)> {
     })
 }
 
-/// The frames of a plan with normals.
-fn rendered(plan: &Plan) -> [Frame; 2] {
-    let normals = Extras {
-        normals: true,
-        ..Extras::default()
-    };
-    both(plan, normals)
-}
-
 fn normal(frame: &Frame, pixel: usize) -> DVec3 {
     DVec3::from_array(frame.normal[pixel].map(f64::from))
 }
 
 #[test]
 fn the_sides_of_boxes_face_sideways() {
-    let kinds = TracerKind::ALL.into_iter();
-    for tracer in kinds.filter(|kind| kind.facts().accuracy != Accuracy::Approximate) {
+    for tracer in of_accuracy(|own| own != Accuracy::Approximate) {
         for (name, plan) in boxes(tracer) {
             let (ready, view) = (ready(&plan), plan.view());
-            for frame in rendered(&plan) {
+            for frame in both(&plan, NORMALS) {
                 check_normals(&name, &frame, |pixel| {
                     let ray = local(&ready.placement, view.eye, &view.view_ray(pixel));
                     let (_, normal) = first_box(&ready.surface, &ray)?;
@@ -75,13 +63,11 @@ fn check_normals(what: &str, frame: &Frame, truth: impl Fn([u32; 2]) -> Option<D
 
 #[test]
 fn bisections_and_secants_find_the_sides_of_boxes_too() {
-    let truths: Vec<_> = boxes(TracerKind::Walk)
-        .map(|(_, plan)| rendered(&plan))
-        .collect();
-    let kinds = TracerKind::ALL.into_iter();
-    for tracer in kinds.filter(|kind| kind.facts().accuracy == Accuracy::Approximate) {
+    let truths = boxes(TracerKind::Walk).map(|(_, plan)| both(&plan, NORMALS));
+    let truths: Vec<_> = truths.collect();
+    for tracer in of_accuracy(|own| own == Accuracy::Approximate) {
         for ((name, plan), truths) in boxes(tracer).zip(&truths) {
-            for (own, truth) in rendered(&plan).iter().zip(truths) {
+            for (own, truth) in both(&plan, NORMALS).iter().zip(truths) {
                 // Where these tracers find the first hit, they know what they met.
                 let both = |i: &usize| own.state[*i] == HIT && truth.state[*i] == HIT;
                 let same = |i: &usize| (own.depth[*i] - truth.depth[*i]).abs() < 1e-4;

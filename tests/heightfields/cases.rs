@@ -160,9 +160,8 @@ pub fn ray(surface: &HeightSurface, kind: u64, random: &mut Random) -> LocalRay 
 /// Rays of all kinds over a surface, the same in every run.
 pub fn rays(surface: &HeightSurface, count: u64, seed: u64) -> Vec<LocalRay> {
     let mut random = Random::new(seed);
-    (0..count)
-        .map(|i| ray(surface, i % KINDS, &mut random))
-        .collect()
+    let kinds = (0..count).map(|i| i % KINDS);
+    kinds.map(|kind| ray(surface, kind, &mut random)).collect()
 }
 
 /// A tracer and what to call it.
@@ -202,12 +201,16 @@ pub fn tracer(
     settings.tracer.make(surface, cones.as_ref(), settings, 0.0)
 }
 
+/// The kinds of tracers whose accuracy is wanted.
+pub fn of_accuracy(wanted: impl Fn(Accuracy) -> bool) -> impl Iterator<Item = TracerKind> {
+    let kinds = TracerKind::ALL.into_iter();
+    kinds.filter(move |kind| wanted(kind.facts().accuracy))
+}
+
 /// Every tracer of an accuracy with a reference map, and each in all its variants.
 pub fn tracers(surface: &Arc<HeightSurface>, accuracy: Accuracy) -> Vec<Named> {
-    let kinds = TracerKind::ALL
-        .iter()
-        .filter(|k| k.facts().accuracy == accuracy);
-    kinds.flat_map(|kind| variants(surface, *kind)).collect()
+    let kinds = of_accuracy(|own| own == accuracy);
+    kinds.flat_map(|kind| variants(surface, kind)).collect()
 }
 
 fn variants(surface: &Arc<HeightSurface>, kind: TracerKind) -> Vec<Named> {
@@ -226,11 +229,8 @@ fn variants(surface: &Arc<HeightSurface>, kind: TracerKind) -> Vec<Named> {
     match kind.facts().accuracy {
         Accuracy::Exact => {
             let generator = settings.generator().expect("of the first kind");
-            add(
-                ", generated",
-                &settings,
-                Some(made(generator, surface, 3.0)),
-            );
+            let generated = Some(made(generator, surface, 3.0));
+            add(", generated", &settings, generated);
             add("", &settings, plain);
         }
         // Cells alone, and nodes that soon or late grow with the distance: rays have a height or

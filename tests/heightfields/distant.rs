@@ -16,23 +16,18 @@ use conemarch::heightfield::tracer::{
 use conemarch::measure::tracer_stats::{first_hits, measure, view_rays};
 use rayon::prelude::*;
 
-use crate::cases::{Case, END, alone, case, cases, made, rays, run, traced, tracer};
+use crate::cases::{Case, END, alone, case, cases, made, of_accuracy, rays, run, traced, tracer};
 
 /// A parameter that no ray of a test comes to.
 const NEVER: f64 = 2.0 * END;
 
 /// The tracers that are off by a pixel, where a texel is as wide as one at a parameter.
 fn distant(surface: &Arc<HeightSurface>, map: &Arc<ConeMap>, lod: f64) -> Vec<Arc<Tracer>> {
-    let kinds = TracerKind::ALL.into_iter();
-    let made = kinds
-        .filter(|kind| kind.facts().accuracy == Accuracy::Pixel)
-        .map(|kind| {
-            let settings = TracerSettings {
-                lod: Some(lod),
-                ..kind.into()
-            };
-            tracer(surface, &settings, Some(map.clone())).unwrap()
-        });
+    let made = of_accuracy(|own| own == Accuracy::Pixel).map(|kind| {
+        let mut settings = TracerSettings::from(kind);
+        settings.lod = Some(lod);
+        tracer(surface, &settings, Some(map.clone())).unwrap()
+    });
     made.collect()
 }
 
@@ -45,11 +40,8 @@ fn as_long_as_texels_are_wider_than_pixels_it_is_the_walk() {
     let check = |case: &Case| {
         let map = made(Generator::Walk, &case.surface, 2.0);
         let walk = walk(&case.surface, &map);
-        for own in [0.0, NEVER]
-            .map(|lod| distant(&case.surface, &map, lod))
-            .iter()
-            .flatten()
-        {
+        let all = [0.0, NEVER].map(|lod| distant(&case.surface, &map, lod));
+        for own in all.iter().flatten() {
             for ray in rays(&case.surface, 1200, 31) {
                 let (truth, own) = (run(&walk, &ray, END), run(own, &ray, END));
                 assert_eq!(own, truth, "{}: {ray:?}", case.name);

@@ -79,10 +79,8 @@ fn exact_tracers_find_the_first_hit() {
             }
             if let Some(first) = faults.first() {
                 let count = faults.len();
-                told.push(format!(
-                    "{}, {}: {count} wrong, {first}",
-                    case.name, own.name
-                ));
+                let what = format!("{}, {}", case.name, own.name);
+                told.push(format!("{what}: {count} wrong, {first}"));
             }
         }
         let hits = truths.iter().filter(|t| t.0 == Step::Hit).count();
@@ -124,10 +122,8 @@ fn rising_rays_pass_over_what_lies_under_them() {
     for own in exact(&surface).iter().filter(|own| own.kind.needs_map()) {
         let steps = steps(&own.tracer);
         let name = &own.name;
-        assert!(
-            5 * steps < 3 * cells,
-            "{name}: {steps} steps over {cells} cells"
-        );
+        let few = 5 * steps < 3 * cells;
+        assert!(few, "{name}: {steps} steps over {cells} cells");
     }
 }
 
@@ -157,9 +153,8 @@ fn cones_are_not_wider_than_they_may_be() {
     let block = surface(alone([97, 97], Patches::Boxes), z);
     let reference = Tracer::reference(block.clone());
     let mut random = Random::new(8);
-    let rays: Vec<_> = (0..4000)
-        .map(|_| clipping(&mut random, DVec2::splat(48.5)))
-        .collect();
+    let rays = (0..4000).map(|_| clipping(&mut random, DVec2::splat(48.5)));
+    let rays: Vec<_> = rays.collect();
     let bad = |tracer: &Tracer| {
         let faults = rays.iter().filter_map(|ray| {
             let truth = run(&reference, ray, END).unwrap();
@@ -220,10 +215,8 @@ fn what_does_not_fit_is_refused() {
         tracer(&block, &settings, Some(Arc::new(map))).err()
     };
     assert_eq!(made(&|_| {}), None);
-    assert_eq!(
-        tracer(&block, &settings, None).unwrap_err(),
-        TraceError::Missing("walk")
-    );
+    let error = tracer(&block, &settings, None).unwrap_err();
+    assert_eq!(error, TraceError::Missing("walk"));
     let refused = |change: &dyn Fn(&mut ConeMap)| match made(change) {
         Some(TraceError::Misfit { what, .. }) => what,
         Some(TraceError::Kind { .. }) => "kind",

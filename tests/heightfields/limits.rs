@@ -1,18 +1,20 @@
 //! Limits of steps over heightfields: rays and shadow rays have as many steps as they can take, and
 //! if they are given fewer, the picture says so.
 
-use conemarch::heightfield::tracer::{Accuracy, TracerKind};
+use conemarch::heightfield::tracer::Accuracy;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use glam::DVec3;
 
+use crate::adapter::{DEPTHS, NORMALS};
+use crate::cases::of_accuracy;
 use crate::common::folder::Folder;
+use crate::common::pictures::raw;
 use crate::{both, camera, plan};
 
 /// A scene with each of the exact tracers.
 fn exact(scene: &str) -> impl Iterator<Item = Plan> {
-    let kinds = TracerKind::ALL.iter();
-    let exact = kinds.filter(|kind| kind.facts().accuracy == Accuracy::Exact);
+    let exact = of_accuracy(|own| own == Accuracy::Exact);
     exact.map(move |kind| plan(&format!("{scene}\ntracer = '{}'", kind.name())))
 }
 
@@ -52,8 +54,7 @@ fn shadows_reach_across_the_block_from_wherever_they_are_seen() {
     // A wall at the low end of x, and light from there so low that all the floor is dark.
     let heights = (0..64 * 64).map(|i| f32::from(u8::from(i % 64 < 2)));
     let folder = Folder::new();
-    let bytes: Vec<u8> = heights.flat_map(f32::to_le_bytes).collect();
-    folder.write("wall-64x64.raw", bytes);
+    folder.write("wall-64x64.raw", raw(&heights.collect::<Vec<_>>()));
     let file = folder.0.join("wall-64x64.raw");
     let mut plan = plan(&format!("field = '{}'\ndepth = 4", file.display()));
     plan.size = [60, 60];
@@ -67,11 +68,7 @@ fn shadows_reach_across_the_block_from_wherever_they_are_seen() {
         for plan in [&mut plan, &mut open] {
             plan.camera = camera([3.0, 0.0, height], [5.0, 0.0, 0.0], 70.0);
         }
-        let normals = Extras {
-            normals: true,
-            ..Extras::default()
-        };
-        for (dark, lit) in both(&plan, normals).into_iter().zip(both(&open, normals)) {
+        for (dark, lit) in both(&plan, NORMALS).into_iter().zip(both(&open, NORMALS)) {
             let position = dark.positions(&plan.view());
             let floor = |i: &usize| dark.normal[*i][2] > 0.99 && position[*i][2] < 0.1;
             let floor: Vec<usize> = (0..dark.state.len()).filter(floor).collect();
@@ -87,11 +84,7 @@ fn shadows_reach_across_the_block_from_wherever_they_are_seen() {
 fn no_ray_of_an_exact_tracer_lacks_steps() {
     // Spikes seen along their tips: some rays pass by hundreds of them.
     let scene = "field = 'spikes:256x256'\nwrap = 'xy'\ntiles = [16, 16]\ndepth = 0.02";
-    let depths = Extras {
-        depth_only: true,
-        ..Extras::default()
-    };
-    let lost = |plan: &Plan| both(plan, depths).map(|frame| frame.census()[2]);
+    let lost = |plan: &Plan| both(plan, DEPTHS).map(|frame| frame.census()[2]);
     for mut plan in exact(scene) {
         plan.size = [100, 50];
         plan.camera = camera([0.0, 0.0, 0.0195], [6.0, 2.0, 0.012], 4.0);

@@ -29,12 +29,10 @@ mod statistics;
 mod textures;
 mod twins;
 
-use conemarch::cpu;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset;
-use conemarch::scene::Assets;
 
 /// A plan of a heightfield, seen from above. `scene` has the lines of its `[scene]`.
 fn plan(scene: &str) -> Plan {
@@ -56,8 +54,7 @@ fn camera(eye: [f64; 3], target: [f64; 3], fov: f64) -> Camera {
 
 /// The frames of a plan on the CPU and on the device.
 fn both(plan: &Plan, extras: Extras) -> [Frame; 2] {
-    let here = cpu::render(plan, &Assets::default(), extras, &mut |_| true).unwrap();
-    [here, adapter::render(plan, extras)]
+    [adapter::on_cpu(plan, extras), adapter::render(plan, extras)]
 }
 
 /// The number of pixels whose colours are apart by more than a tolerance.

@@ -11,6 +11,7 @@ use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::scene::{self, Assets, Solid};
 use glam::DVec3;
 
+use crate::adapter::DEPTHS;
 use crate::cases::made;
 use crate::scenes::{ready, solid};
 use crate::{apart, both, plan};
@@ -67,10 +68,8 @@ fn paint_is_how_wide_the_cones_are() {
             let cones = &map.ratios[number * by.channels()..][..by.channels()];
             let mean = cones.iter().sum::<f64>() / cones.len() as f64;
             let wanted = (mean / 7.0).min(1.0).sqrt();
-            assert!(
-                (hue - wanted).abs() < 1e-6,
-                "{by:?}, {place:?}: {hue} for {wanted}"
-            );
+            let off = (hue - wanted).abs();
+            assert!(off < 1e-6, "{by:?}, {place:?}: {hue} for {wanted}");
             hues.push((1e6 * hue) as u32);
         }
         hues.sort_unstable();
@@ -93,19 +92,12 @@ fn both_executors_paint_alike() {
 
 #[test]
 fn depths_alone_need_no_map_to_paint_by() {
-    let depths = Extras {
-        depth_only: true,
-        ..Extras::default()
-    };
     let fresh = || painted(PAINTED[0]);
     let maps = |frame: &Frame| {
-        let prepared = frame
-            .passes
-            .iter()
-            .filter(|p| matches!(p.pass, Pass::Prepare(_)));
-        prepared.count()
+        let passes = frame.passes.iter().map(|p| p.pass);
+        passes.filter(|p| matches!(p, Pass::Prepare(_))).count()
     };
-    for (extras, wanted) in [(Extras::default(), 2), (depths, 1)] {
+    for (extras, wanted) in [(Extras::default(), 2), (DEPTHS, 1)] {
         let said = pass::explain(&fresh(), &Assets::default(), extras).unwrap();
         assert_eq!(said.matches("prepare").count(), wanted, "{said}");
         assert_eq!(both(&fresh(), extras).each_ref().map(maps), [wanted; 2]);
@@ -113,7 +105,7 @@ fn depths_alone_need_no_map_to_paint_by() {
     // Assets that have served a render without the paint still have it afterwards.
     let assets = Assets::default();
     let render = |extras| cpu::render(&fresh(), &assets, extras, &mut |_| true).unwrap();
-    let (without, with) = (render(depths), render(Extras::default()));
+    let (without, with) = (render(DEPTHS), render(Extras::default()));
     assert_eq!(without.depth, with.depth);
     let [own, _] = both(&fresh(), Extras::default());
     assert_eq!(with.radiance, own.radiance);

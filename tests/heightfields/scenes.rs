@@ -8,12 +8,13 @@ use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::placement::Placement;
 use conemarch::heightfield::tracer::{LocalRay, Tracer};
 use conemarch::measure::tracer_stats::first_hits;
-use conemarch::plan::{Extras, Plan};
+use conemarch::plan::Plan;
 use conemarch::scene::heightfield::Heightfield;
 use conemarch::scene::{AnySolid, Assets, Scene, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::adapter::LEVELS;
 use crate::common::overclaims::{brought_near, overclaims};
 use crate::common::random::Random;
 use crate::{both, camera, plan};
@@ -59,22 +60,14 @@ fn truths(plan: &Plan, ready: &Ready) -> Vec<f64> {
     let view = plan.view();
     let [w, h] = plan.size;
     let pixels = (0..w * h).map(|i| view.view_ray([i % w, i / w]));
-    let rays: Vec<_> = pixels
-        .map(|ray| local(&ready.placement, view.eye, &ray))
-        .collect();
-    let hits = first_hits(&Tracer::reference(ready.surface.clone()), &rays);
-    hits.into_iter()
-        .map(|s| s.unwrap_or(f64::INFINITY))
-        .collect()
+    let rays = pixels.map(|ray| local(&ready.placement, view.eye, &ray));
+    let rays: Vec<_> = rays.collect();
+    let hits = first_hits(&Tracer::reference(ready.surface.clone()), &rays).into_iter();
+    hits.map(|s| s.unwrap_or(f64::INFINITY)).collect()
 }
 
 #[test]
 fn no_cell_starts_behind_a_surface_at_any_size_and_angle() {
-    let levels = Extras {
-        levels: true,
-        depth_only: true,
-        ..Extras::default()
-    };
     // From above, along the ground beside it, and from next to the surface in the middle.
     let views = [
         ([5.0, -9.0, 7.0], [0.0, 0.3, 0.5]),
@@ -93,7 +86,7 @@ fn no_cell_starts_behind_a_surface_at_any_size_and_angle() {
                 for size in [[1, 1], [97, 61], [33, 17], [1, 210], [200, 1]] {
                     plan.size = size;
                     let t = truths(&plan, &ready);
-                    for frame in both(&plan, levels) {
+                    for frame in both(&plan, LEVELS) {
                         let what = format!("{scene}, from {eye:?}, fov {fov}, {size:?}");
                         assert_eq!(frame.levels.len(), 5, "{what}");
                         assert_eq!(overclaims(&frame, &t), 0, "{what}");
@@ -189,15 +182,11 @@ fn empty_balls_hold_nothing_of_a_surface() {
             })
             .collect();
         for (p, (clear, nearest)) in points.iter().zip(&found) {
-            assert!(
-                *clear <= nearest + 1e-9,
-                "{name}: {clear} for {nearest} at {p}"
-            );
+            let empty = *clear <= nearest + 1e-9;
+            assert!(empty, "{name}: {clear} for {nearest} at {p}");
         }
-        let large = found
-            .iter()
-            .filter(|(clear, nearest)| *clear > 0.3 * nearest);
-        let large = large.count();
+        let large = |(clear, nearest): &&(f64, f64)| *clear > 0.3 * nearest;
+        let large = found.iter().filter(large).count();
         assert!(large > 300, "{name}: only {large} balls of any size");
     }
 }

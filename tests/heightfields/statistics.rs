@@ -76,10 +76,8 @@ fn walk_over_pyramid(field: Pattern) -> [f64; 3] {
 fn the_walk_takes_fewer_steps_than_the_pyramid_on_terrain() {
     for field in [Pattern::Fbm, Pattern::Ridges] {
         let ratios = walk_over_pyramid(field);
-        assert!(
-            ratios[0] <= 1.0 && ratios[1] <= 1.0,
-            "{field:?}: {ratios:?}"
-        );
+        let fewer = ratios[0] <= 1.0 && ratios[1] <= 1.0;
+        assert!(fewer, "{field:?}: {ratios:?}");
         if field == Pattern::Fbm {
             for (own, wanted) in ratios.iter().zip([0.65, 0.85, 1.05]) {
                 assert!((own / wanted - 1.0).abs() < 0.15, "{ratios:?}");
@@ -115,10 +113,8 @@ fn statistics_count_what_is_missed() {
         measure(own, &rays, &first_hits(&reference, &rays))
     };
     let coarse = view(&linear(4, 0), 60.0);
-    assert!(
-        coarse.skipped > 0.05 && coarse.error_texels > 0.5,
-        "{coarse:?}"
-    );
+    let missed = coarse.skipped > 0.05 && coarse.error_texels > 0.5;
+    assert!(missed, "{coarse:?}");
     let steps = (1.0..=4.0).contains(&coarse.steps_mean) && coarse.steps_p99 == 4;
     assert!(steps, "{coarse:?}");
     let fine = view(&linear(512, 20), 60.0);

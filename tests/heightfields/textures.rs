@@ -12,7 +12,7 @@ use image::{ExtendedColorType, ImageFormat};
 use png::{BitDepth, ColorType};
 
 use crate::cases::surface;
-use crate::common::folder::{Folder, said, text};
+use crate::common::folder::{Folder, holds, said, text};
 use crate::common::pictures::png;
 use crate::{apart, both, camera};
 
@@ -20,9 +20,8 @@ use crate::{apart, both, camera};
 const SIZE: [u32; 2] = [6, 4];
 
 fn texels() -> Vec<u8> {
-    (0..SIZE[0] * SIZE[1] * 3)
-        .map(|i| (i * 79 % 251) as u8)
-        .collect()
+    let numbers = 0..SIZE[0] * SIZE[1] * 3;
+    numbers.map(|i| (i * 79 % 251) as u8).collect()
 }
 
 /// The linear colour of a texel.
@@ -48,10 +47,8 @@ fn a_texel_lies_on_each_sample_of_a_map_of_the_same_size() {
     let texture = written(&folder);
     let same = |surface: &HeightSurface, cell, uv, wanted: DVec3| {
         let own = texture.at(surface, cell, uv);
-        assert!(
-            (own - wanted).abs().max_element() < 1e-12,
-            "{cell:?} {uv:?}: {own} {wanted}"
-        );
+        let right = own.abs_diff_eq(wanted, 1e-12);
+        assert!(right, "{cell:?} {uv:?}: {own} {wanted}");
     };
     // Patches have samples at their corners; tiles and borders come round.
     let tiled = flat(SIZE, true, Patches::Bilinear, [2, 3]);
@@ -89,25 +86,15 @@ fn grey_and_sixteen_bits_are_read() {
     use BitDepth::{Eight, Sixteen};
     use ColorType::{Grayscale, GrayscaleAlpha, Rgb, Rgba};
     type Row<'a> = (ColorType, BitDepth, &'a [u8], [f64; 3], bool);
+    // 0x6400 of 65535 is 99.6 of 255, and 0x8080 is exactly 128.
+    let deep = &[0x64, 0, 0xff, 0xff, 0, 0];
+    let clear = &[0, 0, 0, 0, 0xff, 0xff, 0xff, 0xfe];
     let rows: [Row; 7] = [
         (Grayscale, Eight, &[100], [100.0; 3], false),
         (GrayscaleAlpha, Eight, &[100, 7], [100.0; 3], true),
-        // 0x6400 of 65535 is 99.6 of 255, and 0x8080 is exactly 128.
-        (
-            Rgb,
-            Sixteen,
-            &[0x64, 0, 0xff, 0xff, 0, 0],
-            [100.0, 255.0, 0.0],
-            false,
-        ),
+        (Rgb, Sixteen, deep, [100.0, 255.0, 0.0], false),
         (Grayscale, Sixteen, &[0x80, 0x80], [128.0; 3], false),
-        (
-            Rgba,
-            Sixteen,
-            &[0, 0, 0, 0, 0xff, 0xff, 0xff, 0xfe],
-            [0.0, 0.0, 255.0],
-            true,
-        ),
+        (Rgba, Sixteen, clear, [0.0, 0.0, 255.0], true),
         (Rgba, Eight, &[1, 2, 3, 254], [1.0, 2.0, 3.0], true),
         // Alpha that hides nothing.
         (Rgba, Eight, &[1, 2, 3, 255], [1.0, 2.0, 3.0], false),
@@ -142,10 +129,8 @@ fn jpeg_and_webp_are_read_by_their_content() {
     let bytes = Texture::read(&path).unwrap().bytes();
     for texel in bytes[8..].chunks_exact(4) {
         let near = |(a, b): (&u8, &u8)| a.abs_diff(*b) <= 2;
-        assert!(
-            texel.iter().zip(&[200, 120, 40, 255]).all(near),
-            "{texel:?}"
-        );
+        let mut pairs = texel.iter().zip(&[200, 120, 40, 255]);
+        assert!(pairs.all(near), "{texel:?}");
     }
     for (name, whole) in [("a.jpg", "flat.png"), ("a.webp", "t")] {
         folder.write(name, &folder.bytes(whole)[..40]);
@@ -170,21 +155,18 @@ fn both_executors_color_alike_and_by_the_texture() {
     let folder = Folder::new();
     written(&folder);
     let file = folder.0.join("t.png").display().to_string();
-    for (wrap, surface) in [
-        ("none", "bilinear"),
-        ("none", "boxes"),
-        ("xy", "bilinear"),
-        ("xy", "boxes"),
-    ] {
-        let [here, there] = both(&plan(&file, wrap, surface), Extras::default());
-        let wrong = apart(&here, &there, 0.01);
-        assert!(wrong <= 40, "{wrap} {surface}: {wrong} pixels apart");
-        let plain = crate::adapter::render(&plan("none", wrap, surface), Extras::default());
-        assert_eq!(plain.depth, there.depth);
-        let (moved, hits) = (apart(&plain, &there, 0.01), there.census()[0]);
-        // Walls and what lies in shadow differ little.
-        let most = 2 * moved > hits;
-        assert!(most && hits > 1000, "{moved} of {hits} pixels colored");
+    for wrap in ["none", "xy"] {
+        for surface in ["bilinear", "boxes"] {
+            let [here, there] = both(&plan(&file, wrap, surface), Extras::default());
+            let wrong = apart(&here, &there, 0.01);
+            assert!(wrong <= 40, "{wrap} {surface}: {wrong} pixels apart");
+            let plain = crate::adapter::render(&plan("none", wrap, surface), Extras::default());
+            assert_eq!(plain.depth, there.depth);
+            let (moved, hits) = (apart(&plain, &there, 0.01), there.census()[0]);
+            // Walls and what lies in shadow differ little.
+            let most = 2 * moved > hits;
+            assert!(most && hits > 1000, "{moved} of {hits} pixels colored");
+        }
     }
 }
 
@@ -194,9 +176,8 @@ fn a_truth_depends_on_the_texels_of_a_file() {
     let contents = |size, texels: &[u8]| {
         folder.write("t.png", png(size, ColorType::Rgb, BitDepth::Eight, texels));
         let file = folder.0.join("t.png").display().to_string();
-        plan(&file, "none", "bilinear")
-            .scene
-            .contents(&Assets::default())
+        let scene = plan(&file, "none", "bilinear").scene;
+        scene.contents(&Assets::default())
     };
     let before = contents(SIZE, &texels());
     let mut other = texels();
@@ -206,39 +187,30 @@ fn a_truth_depends_on_the_texels_of_a_file() {
     assert_ne!(contents([12, 2], &texels()), before);
 }
 
-fn words_of(command: &str) -> Vec<&str> {
-    command.split(' ').collect()
-}
-
 #[test]
 fn what_colors_nothing_is_refused_or_told() {
     let folder = Folder::new();
     written(&folder);
     folder.write("cut.png", &folder.bytes("t.png")[..60]);
     folder.write("t.txt", "colours");
-    folder.write(
-        "clear.png",
-        png([1, 1], ColorType::Rgba, BitDepth::Eight, &[9, 9, 9, 0]),
-    );
+    let clear = png([1, 1], ColorType::Rgba, BitDepth::Eight, &[9, 9, 9, 0]);
+    folder.write("clear.png", clear);
     let terrain = "render terrain --device cpu --set scene.field=fbm:8x8 --size 24x16 -o a.png";
     let with = |texture: &str| format!("{terrain} --set scene.texture={texture}");
-    for (command, words) in [
-        (with("there.png"), &["there.png", "cannot be read"][..]),
-        (with("cut.png"), &["cut.png", "ends before its end"]),
-        (with("t.txt"), &["t.txt", "is no PNG", "JPEG", "WebP"]),
-        (with("."), &["is a folder"]),
-        (
-            with("t.png") + " --set scene.paint=exact",
-            &["scene.paint", "height"],
-        ),
+    for (texture, parts) in [
+        ("there.png", "there.png|cannot be read"),
+        ("cut.png", "cut.png|ends before its end"),
+        ("t.txt", "t.txt|is no PNG|JPEG|WebP"),
+        (".", "is a folder"),
+        ("t.png --set scene.paint=exact", "scene.paint|height"),
     ] {
-        folder.fails(&words_of(&command), 2, words);
+        folder.fails(&with(texture), 2, parts);
     }
-    let told = said(&folder.done(&words_of(&with("clear.png"))));
-    assert!(told.contains("note: clear.png is transparent"), "{told}");
+    let told = said(&folder.done(&with("clear.png")));
+    holds(&told, &["note: clear.png is transparent"]);
     // Depths need no colours.
     let explain = with("t.png") + " --explain";
-    let shown = |command: &str| text(&folder.done(&words_of(command)));
+    let shown = |command: &str| text(&folder.done(command));
     assert!(shown(&explain).contains("texture.wgsl"));
     assert!(!shown(&(explain + " --layer depth")).contains("texture.wgsl"));
 }
@@ -262,11 +234,10 @@ fn what_is_read_is_never_written_over() {
     ] {
         let (command, words) = line.split_once(": ").unwrap();
         let command = command.replace("COLORED", &colored);
-        let words: Vec<&str> = words.split(", ").collect();
-        folder.fails(&words_of(&command), 2, &words);
+        folder.fails(&command, 2, &words.replace(", ", "|"));
     }
     // A built-in preset is no file, whatever an output is called.
     let own = "render mandelbox --device cpu --size 8x8 -o b.png --stats mandelbox";
-    folder.done(&words_of(own));
+    folder.done(own);
     assert_eq!(["t.png", "p.toml"].map(|name| folder.bytes(name)), before);
 }

@@ -13,27 +13,17 @@ use conemarch::heightfield::pattern::Pattern;
 use png::{BitDepth, ColorType};
 
 use crate::fields::plain;
-use crate::folder::{Folder, said, text};
+use crate::folder::{Folder, holds, output, said, text};
 use crate::pictures::{grey, pixels, png, raw, wide};
-
-/// The words of a command line.
-pub fn words(line: &str) -> Vec<&str> {
-    line.split(' ').collect()
-}
-
-/// Runs a command line that must succeed.
-pub fn done(folder: &Folder, line: &str) -> Output {
-    folder.done(&words(line))
-}
 
 /// Makes a map on the CPU.
 pub fn make(folder: &Folder, line: &str) -> Output {
-    done(folder, &format!("conemap make {line} --device cpu"))
+    folder.done(&format!("conemap make {line} --device cpu"))
 }
 
 /// What `inspect` tells.
 fn inspect(folder: &Folder, line: &str) -> String {
-    text(&done(folder, &format!("conemap inspect {line}")))
+    text(&folder.done(&format!("conemap inspect {line}")))
 }
 
 fn read(folder: &Folder, name: &str) -> MapFile {
@@ -74,20 +64,14 @@ fn notes(output: &Output) -> Vec<String> {
 #[test]
 fn help_lists_verbs_generators_and_layouts() {
     let folder = Folder::new();
-    let help = text(&done(&folder, "conemap --help"));
-    for verb in ["make", "inspect", "convert"] {
-        assert!(help.contains(verb), "{help}");
-    }
-    let help = text(&done(&folder, "conemap make --help"));
-    let options = ["--wrap", "--invert", "[default: exact]"].into_iter();
+    let help = text(&folder.done("conemap --help"));
+    holds(&help, &["make", "inspect", "convert"]);
+    let help = text(&folder.done("conemap make --help"));
+    holds(&help, &["--wrap", "--invert", "[default: exact]"]);
     let layouts = Layout::ALL.into_iter().filter(|l| *l != Layout::Full);
-    for word in options
-        .chain(layouts.map(Layout::name))
-        .chain(Generator::ALL.map(Generator::name))
-        .chain(Pattern::ALL.map(Pattern::name))
-    {
-        assert!(help.contains(word), "{word}: {help}");
-    }
+    holds(&help, &layouts.map(Layout::name).collect::<Vec<_>>());
+    holds(&help, &Generator::ALL.map(Generator::name));
+    holds(&help, &Pattern::ALL.map(Pattern::name));
 }
 
 #[test]
@@ -105,15 +89,12 @@ fn a_map_is_what_its_generator_makes_of_the_heights() {
         wrap: [true, false],
         ..LoadOptions::default()
     };
-    let heights = load(folder.0.join("rock.png"), &options)
-        .expect("heights")
-        .heights;
+    let loaded = load(folder.0.join("rock.png"), &options);
+    let heights = loaded.expect("heights").heights;
     let map = plain(Generator::Exact, &heights);
     let made = read(&folder, "rock-cones.exr");
-    assert_eq!(
-        (made.map.kind, made.map.wrap),
-        (MapKind::Samples, [true, false])
-    );
+    assert_eq!(made.map.kind, MapKind::Samples);
+    assert_eq!(made.map.wrap, [true, false]);
     assert_eq!(made.label.generator.as_deref(), Some("exact"));
     assert_eq!(made.heights.as_deref(), Some(heights.data()));
     for (after, before) in made.map.ratios.iter().zip(&map.ratios) {
@@ -155,14 +136,14 @@ fn every_generator_and_layout_goes_through_every_verb() {
             let word = layout.name();
             let line = format!("conemap convert a.exr -o b.png --layout {word}");
             if let Some(why) = layout.lacks(generator.kind()) {
-                folder.fails(&words(&line), 2, &[word, why]);
+                folder.fails(&line, 2, &format!("{word}|{why}"));
                 continue;
             }
-            done(&folder, &line);
+            folder.done(&line);
             let there = read(&folder, "b.png");
             assert_eq!(there.format.layout, layout);
             assert_eq!(there.label, exact.label);
-            done(&folder, "conemap convert b.png -o back.exr");
+            folder.done("conemap convert b.png -o back.exr");
             assert!(no_wider(&there, &exact) && no_wider(&read(&folder, "back.exr"), &there));
             fs::remove_file(folder.0.join("b.png")).expect("a file");
         }
@@ -172,34 +153,25 @@ fn every_generator_and_layout_goes_through_every_verb() {
 #[test]
 fn options_reach_the_file() {
     let folder = Folder::new();
-    make(
-        &folder,
-        "sine:8x8 --layout pair --bits 8 --ratio linear -o a.png",
-    );
+    let make = |line: &str| make(&folder, &format!("sine:8x8 {line}"));
+    make("--layout pair --bits 8 --ratio linear -o a.png");
     let format = read(&folder, "a.png").format;
-    assert_eq!(
-        (format.layout, format.bits, format.ratio),
-        (Layout::Pair, Bits::Eight, RatioScale::Linear)
-    );
-    make(
-        &folder,
-        "sine:8x8 --generator walk --offset 1.5 --boxes -o w.exr",
-    );
+    let found = (format.layout, format.bits, format.ratio);
+    assert_eq!(found, (Layout::Pair, Bits::Eight, RatioScale::Linear));
+    make("--generator walk --offset 1.5 --boxes -o w.exr");
     let file = read(&folder, "w.exr");
     assert_eq!((file.map.offset, file.map.size), (1.5, [8, 8]));
     assert_eq!(file.label.patches, Patches::Boxes);
-    let search = "--generator relaxed-search --search-steps 9 --least-of-nine -o s.exr";
-    make(&folder, &format!("sine:8x8 {search}"));
+    make("--generator relaxed-search --search-steps 9 --least-of-nine -o s.exr");
     let by = read(&folder, "s.exr").label.generator.unwrap_or_default();
     assert_eq!(by, "relaxed-search, 9 steps, least of nine");
     // Standard output gets the bytes that a file would.
-    let piped = make(&folder, "sine:8x8 -o -");
-    make(&folder, "sine:8x8 -o b.png");
+    let piped = make("-o -");
+    make("-o b.png");
     assert_eq!(piped.stdout, folder.bytes("b.png"));
     // The normals of deeper heights lean farther.
     for depth in ["0.1", "1"] {
-        let into = format!("--layout relief --depth {depth} -o n{depth}.png");
-        make(&folder, &format!("sine:8x8 {into}"));
+        make(&format!("--layout relief --depth {depth} -o n{depth}.png"));
     }
     let lean = |name| {
         let shares = &read(&folder, name).shading[0].shares;
@@ -209,15 +181,12 @@ fn options_reach_the_file() {
     // The file says what its slopes mean.
     for slopes in Slopes::ALL {
         let word = slopes.name();
-        make(&folder, &format!("sine:8x8 --slopes {word} -o {word}.png"));
+        make(&format!("--slopes {word} -o {word}.png"));
         let name = format!("{word}.png");
         assert_eq!(read(&folder, &name).format.slopes, slopes);
         let told = inspect(&folder, &name);
-        assert_eq!(
-            told.contains("half slopes"),
-            slopes == Slopes::Half,
-            "{told}"
-        );
+        let halved = told.contains("half slopes");
+        assert_eq!(halved, slopes == Slopes::Half, "{told}");
     }
     assert!(lean("half.png") < lean("whole.png"));
 }
@@ -228,7 +197,8 @@ fn a_device_writes_the_files_that_the_cpu_writes() {
     for layout in ["dummer", "relief"] {
         let written = ["cpu", "0"].map(|device| {
             let into = format!("--layout {layout} --bits 16 --device {device} -o -");
-            done(&folder, &format!("conemap make fbm:150x70 --wrap x {into}")).stdout
+            let line = format!("conemap make fbm:150x70 --wrap x {into}");
+            folder.done(&line).stdout
         });
         assert_eq!(written[0], written[1], "{layout}");
     }
@@ -237,66 +207,42 @@ fn a_device_writes_the_files_that_the_cpu_writes() {
 #[test]
 fn inspect_tells_what_there_is() {
     let folder = Folder::new();
-    folder.write(
-        "steps-4x2.raw",
-        raw(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]),
-    );
+    let steps = [0.0, 0.0, 0.0, 1.0].repeat(2);
+    folder.write("steps-4x2.raw", raw(&steps));
     make(&folder, "steps-4x2.raw -o m.exr");
     // Ratios 3, 2, 1 and two without bounds, twice; the width is 4.
-    for (file, words) in [
-        (
-            "m.exr",
-            &[
-                "m.exr\n",
-                "4 x 2, kind samples",
-                "4 x 2 samples, wrap none, SHA-256 ",
-                "made by   exact",
-                "EXR, 32-bit floats, 1 means 4 texels",
-                "from 1 to 65536; 0 % are 0, 25.0 % are 4 or wider",
-                "       1 to 2   25.0 %  ████████",
-                "       2 to 4   50.0 %  ████████",
-            ][..],
-        ),
-        (
-            "steps-4x2.raw",
-            &[
-                "4 x 2 samples",
-                "mean 0.25",
-                "0.0 to 0.1   75.0 %",
-                "raw, 32-bit floats",
-            ],
-        ),
-    ] {
-        let told = inspect(&folder, file);
-        for words in words {
-            assert!(told.contains(words), "`{words}` not in:\n{told}");
-        }
-    }
+    let of_map = [
+        "m.exr\n",
+        "4 x 2, kind samples",
+        "4 x 2 samples, wrap none, SHA-256 ",
+        "made by   exact",
+        "EXR, 32-bit floats, 1 means 4 texels",
+        "from 1 to 65536; 0 % are 0, 25.0 % are 4 or wider",
+        "       1 to 2   25.0 %  ████████",
+        "       2 to 4   50.0 %  ████████",
+    ];
+    holds(&inspect(&folder, "m.exr"), &of_map);
+    let told = inspect(&folder, "steps-4x2.raw");
+    holds(&told, &["4 x 2 samples", "mean 0.25", "raw, 32-bit floats"]);
+    holds(&told, &["0.0 to 0.1   75.0 %"]);
 }
 
 #[test]
 fn a_map_of_other_heights_is_refused() {
     let folder = with_rock();
     make(&folder, "rock.png --wrap xy -o m.png");
-    let output = done(
-        &folder,
-        "conemap inspect m.png --heights rock.png --wrap xy",
-    );
-    assert!(said(&output).contains("m.png belongs to rock.png"));
+    let inspect = "conemap inspect m.png --heights";
+    let output = folder.done(&format!("{inspect} rock.png --wrap xy"));
+    holds(&said(&output), &["m.png belongs to rock.png"]);
+    let wraps = "wrap along xy|wrap along none|--wrap none";
+    let others = "m.png|other heights|--invert";
     for (heights, telling) in [
-        (
-            "rock.png",
-            &["wrap along xy", "wrap along none", "--wrap none"][..],
-        ),
-        (
-            "rock.png --wrap xy --invert",
-            &["m.png", "other heights", "--invert"],
-        ),
-        ("fbm:16x12 --wrap xy", &["other heights"]),
-        ("fbm:8x8 --wrap xy", &["16 x 12", "8 x 8"]),
+        ("rock.png", wraps),
+        ("rock.png --wrap xy --invert", others),
+        ("fbm:16x12 --wrap xy", "other heights"),
+        ("fbm:8x8 --wrap xy", "16 x 12|8 x 8"),
     ] {
-        let line = format!("conemap inspect m.png --heights {heights}");
-        folder.fails(&words(&line), 1, telling);
+        folder.fails(&format!("{inspect} {heights}"), 1, telling);
     }
 }
 
@@ -316,7 +262,7 @@ fn a_map_serves_as_heights_wherever_heights_are_asked_for() {
     folder.write("grey.png", grey([16, 12], &numbers));
     let depth = |field: &str| {
         let line = render(&format!("scene.field={field}"));
-        let output = done(&folder, &format!("{line} --layer depth -o depth.png"));
+        let output = folder.done(&format!("{line} --layer depth -o depth.png"));
         (pixels(folder.bytes("depth.png")).1, notes(&output))
     };
     let (by_map, told) = depth("rel.png");
@@ -330,30 +276,24 @@ fn a_map_serves_as_heights_wherever_heights_are_asked_for() {
     assert_eq!(told, [red]);
     make(&folder, "rock.png --generator quad -o quad.png");
     let again = "conemap make quad.png --device cpu";
-    folder.fails(&words(again), 1, &["quad.png", "no heights"]);
+    folder.fails(again, 1, "quad.png|no heights");
     let again = render("scene.field=quad.png");
-    folder.fails(
-        &words(&again),
-        2,
-        &["scene.field=quad.png", "holds no heights"],
-    );
+    folder.fails(&again, 2, "scene.field=quad.png|holds no heights");
 }
 
 #[test]
 fn a_map_is_traced_over_the_heights_in_its_own_file() {
     let folder = with_rock();
     for (layout, picture) in [("dummer", "a.png"), ("pair", "b.png"), ("relief", "c.png")] {
-        make(
-            &folder,
-            &format!("rock.png --layout {layout} --bits 8 -o m.png"),
-        );
-        let output = done(&folder, "conemap inspect m.png --heights m.png");
+        let line = format!("rock.png --layout {layout} --bits 8 -o m.png");
+        make(&folder, &line);
+        let output = folder.done("conemap inspect m.png --heights m.png");
         assert!(said(&output).contains("m.png belongs to m.png"));
         let line = render("scene.field=m.png scene.map=m.png scene.tracer=csm-exact");
-        done(&folder, &format!("{line} -o {picture}"));
+        folder.done(&format!("{line} -o {picture}"));
         // Its numbers as heights turned over are others.
         let turned = format!("{line} --set scene.invert=true");
-        folder.fails(&words(&turned), 2, &["m.png", "other heights"]);
+        folder.fails(&turned, 2, "m.png|other heights");
     }
 }
 
@@ -363,31 +303,26 @@ fn a_note_tells_that_a_map_does_not_say_its_heights() {
     let four = png([4, 4], ColorType::Rgba, BitDepth::Eight, &[9; 4 * 16]);
     folder.write("theirs.png", &four);
     let told = |line: &str, name: &str| {
-        let output = done(&folder, line);
+        let output = folder.done(line);
         let notes = notes(&output);
         assert_eq!(notes.len(), 1, "{notes:?}");
         let start = format!("note: {name} does not tell what heights it was made for");
         assert!(notes[0].starts_with(&start), "{notes:?}");
         said(&output)
     };
-    told(
-        "conemap convert theirs.png --from quad -o q.exr",
-        "theirs.png",
-    );
-    told("conemap inspect theirs.png --from quad", "theirs.png");
+    for verb in ["convert -o q.exr", "inspect"] {
+        let line = format!("conemap {verb} theirs.png --from quad");
+        told(&line, "theirs.png");
+    }
     let said = told("conemap inspect q.exr --heights fbm:4x4", "q.exr");
     assert!(said.contains("q.exr may belong to fbm:4x4"), "{said}");
-    let sets = |size| {
-        render(&format!(
-            "scene.field=fbm:{size} scene.map=q.exr scene.tracer=quad"
-        ))
-    };
-    told(&sets("4x4"), "q.exr");
-    folder.fails(&words(&sets("5x4")), 2, &["4 x 4", "5 x 4"]);
+    let sets = |field| render(&format!("{field} scene.map=q.exr scene.tracer=quad"));
+    told(&sets("scene.field=fbm:4x4"), "q.exr");
+    folder.fails(&sets("scene.field=fbm:5x4"), 2, "4 x 4|5 x 4");
     // Heights in a file tell enough, and a label tells everything.
     make(&folder, "fbm:4x4 --generator quad -o ours.png");
     for line in ["theirs.png --from dummer", "ours.png"] {
-        let output = done(&folder, &format!("conemap inspect {line}"));
+        let output = folder.done(&format!("conemap inspect {line}"));
         assert_eq!(notes(&output), [""; 0]);
     }
 }
@@ -419,24 +354,21 @@ fn names_need_not_be_utf_8() {
         OsStr::from_bytes(&bytes).to_os_string()
     };
     fs::write(folder.0.join(name(".png")), slope()).expect("a file");
-    let run = |verb: &str, input: &str, more: &str, output: Option<&str>| {
-        let mut command = folder.command(&["conemap", verb]);
+    let run = |verb: &str, input: &str, more: &str, to: Option<&str>| {
+        let mut command = folder.command(&format!("conemap {verb} {more}"));
         command.arg(name(input));
-        command.args(more.split_whitespace());
-        if let Some(output) = output {
-            command.arg("-o").arg(name(output));
+        if let Some(to) = to {
+            command.arg("-o").arg(name(to));
         }
-        let output = command.output().expect("the program starts");
+        let output = output(&mut command);
         assert!(output.status.success(), "{verb}: {}", said(&output));
-        output
     };
     run("make", ".png", "--device cpu", None);
     assert_eq!(folder.files().len(), 2);
     run("make", ".png", "--device cpu", Some(".exr"));
     run("convert", ".exr", "", Some("-b.png"));
     run("inspect", "-b.png", "", Some("-c.png"));
-    let mut command = folder.command(&["conemap", "inspect"]);
+    let mut command = folder.command("conemap inspect");
     command.arg(name(".exr")).arg("--heights").arg(name(".png"));
-    let output = command.output().expect("the program starts");
-    assert!(said(&output).contains("belongs to"), "{}", said(&output));
+    holds(&said(&output(&mut command)), &["belongs to"]);
 }

@@ -13,7 +13,9 @@ use conemarch::heightfield::pattern::Pattern;
 use wgpu::naga::valid::Capabilities;
 
 use crate::adapter;
-use crate::fields::{WRAPS, assert_same, field, large, make, plain, small};
+use crate::fields::{
+    WRAPS, assert_same, field, large, least_of_nine, make, plain, searching, small,
+};
 use crate::programs::map_programs;
 
 /// A device of its own: makers borrow one.
@@ -53,13 +55,8 @@ fn every_generators_program_is_valid() {
     let all = map_programs();
     assert_eq!(all.len(), 2 + Generator::ALL.len());
     for program in all {
-        let result = program.validate(Capabilities::default());
-        assert!(
-            result.is_ok(),
-            "{}\n{}",
-            result.unwrap_err(),
-            program.describe()
-        );
+        let valid = program.validate(Capabilities::default());
+        valid.unwrap_or_else(|e| panic!("{e}\n{}", program.describe()));
     }
 }
 
@@ -135,10 +132,7 @@ fn near_ties_are_decided_in_f64() {
 fn the_devices_least_of_nine_is_the_cpus() {
     let device = device();
     let mut maker = Maker::new(&device);
-    let options = Options {
-        min3x3: true,
-        ..Options::default()
-    };
+    let options = least_of_nine();
     let patches = Patches::default();
     for (i, (name, heights)) in small().into_iter().step_by(3).enumerate() {
         // Whole maps, and a row at a time.
@@ -149,14 +143,8 @@ fn the_devices_least_of_nine_is_the_cpus() {
     }
     // Ratios that f32 cannot tell apart, none at all, the least of all and the widest.
     for wrap in WRAPS {
-        let odd = [
-            0.0,
-            f64::from_bits(1),
-            f64::MIN_POSITIVE,
-            1e-300,
-            1.0,
-            WIDEST,
-        ];
+        let (denormal, least) = (f64::from_bits(1), f64::MIN_POSITIVE);
+        let odd = [0.0, denormal, least, 1e-300, 1.0, WIDEST];
         let ratio = |i: u32| match i * 7919 % 100 {
             n @ 0..6 => odd[n as usize],
             n => 1.0 + f64::EPSILON * f64::from(n),
@@ -180,10 +168,7 @@ fn the_devices_least_of_nine_is_the_cpus() {
 fn how_the_work_is_divided_changes_no_map() {
     let device = device();
     let mut maker = Maker::new(&device);
-    let options = Options {
-        search_steps: 20,
-        ..Options::default()
-    };
+    let options = searching(20);
     for f in [Pattern::Sine, Pattern::Checker, Pattern::Spikes] {
         let heights = field(f, [50, 43], [true, false]);
         for generator in Generator::ALL {
@@ -193,11 +178,8 @@ fn how_the_work_is_divided_changes_no_map() {
             };
             let whole = with(Division::default());
             let parts = with(Division { band: 1, rounds: 3 });
-            assert_same(
-                &format!("{f:?} {generator:?}"),
-                &parts.ratios,
-                &whole.ratios,
-            );
+            let what = format!("{f:?} {generator:?}");
+            assert_same(&what, &parts.ratios, &whole.ratios);
         }
     }
 }
@@ -207,10 +189,7 @@ fn the_devices_search_along_rays_agrees_but_for_a_step_now_and_then() {
     let device = device();
     let mut maker = Maker::new(&device);
     let (search, patches) = (Generator::RelaxedSearch, Patches::Bilinear);
-    let options = Options {
-        search_steps: 64,
-        ..Options::default()
-    };
+    let options = searching(64);
     for f in Pattern::ALL {
         let heights = field(f, [32, 32], [true, false]);
         let here = make(search, &heights, patches, &options);

@@ -84,6 +84,22 @@ pub fn with_offset(offset: f64) -> Options {
     }
 }
 
+/// Options with steps of the search along rays.
+pub fn searching(search_steps: u32) -> Options {
+    Options {
+        search_steps,
+        ..Options::default()
+    }
+}
+
+/// Options for the least of nine.
+pub fn least_of_nine() -> Options {
+    Options {
+        min3x3: true,
+        ..Options::default()
+    }
+}
+
 /// A map from the CPU.
 pub fn make(
     generator: Generator,

@@ -2,7 +2,7 @@
 //! minimum, slopes, and the ratios that devices read.
 
 use conemarch::heightfield::conemap::WIDEST;
-use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
+use conemarch::heightfield::conemap::generate::generator::Generator;
 use conemarch::heightfield::conemap::generate::min3x3::min3x3;
 use conemarch::heightfield::conemap::generate::mips::{self, rounded_down};
 use conemarch::heightfield::conemap::generate::planes::Planes;
@@ -13,7 +13,7 @@ use conemarch::heightfield::max_mip::{MaxMip, Places};
 use conemarch::heightfield::pattern::Pattern;
 use conemarch::heightfield::tracer::Tracer;
 
-use crate::fields::{WRAPS, field, make, plain, small};
+use crate::fields::{WRAPS, field, least_of_nine, make, plain, small};
 use crate::reference_maps::Grid;
 
 #[test]
@@ -46,12 +46,8 @@ fn the_least_of_nine_is_the_least_around_a_place() {
     for wrap in WRAPS {
         let heights = field(Pattern::Spikes, [7, 5], wrap);
         for generator in [Generator::Exact, Generator::Quad, Generator::Walk] {
-            let options = Options {
-                min3x3: true,
-                ..Options::default()
-            };
             let raw = plain(generator, &heights);
-            let map = make(generator, &heights, Patches::default(), &options);
+            let map = make(generator, &heights, Patches::default(), &least_of_nine());
             assert_eq!(map, min3x3(&raw));
             let channels = generator.channels();
             let grid = Grid {
@@ -88,11 +84,8 @@ fn mips_have_the_highest_apex_and_the_narrowest_cone_of_all_below() {
                     let places = (0..size[0] * size[1]).filter(|i| under(*i));
                     let places: Vec<usize> = places.map(|i| i as usize).collect();
                     let at = (y * w + x) as usize;
-                    let high = places
-                        .iter()
-                        .map(|i| heights.data()[*i])
-                        .fold(0.0, f32::max);
-                    assert_eq!(level.heights[at], high);
+                    let under = places.iter().map(|i| heights.data()[*i]);
+                    assert_eq!(level.heights[at], under.fold(0.0, f32::max));
                     for c in 0..channels {
                         let ratios = places.iter().map(|i| map.ratios[i * channels + c]);
                         let least = ratios.fold(f64::INFINITY, f64::min);
@@ -112,10 +105,8 @@ fn ratios_are_stored_rounded_down() {
     let mut below = 0;
     for r in plain(Generator::Exact, &heights).ratios {
         let stored = rounded_down(r);
-        assert!(
-            f64::from(stored) <= r && f64::from(stored.next_up()) > r,
-            "{r}"
-        );
+        let nearest = f64::from(stored) <= r && f64::from(stored.next_up()) > r;
+        assert!(nearest, "{r}");
         below += usize::from(f64::from(stored) < r);
     }
     assert!(below > 2000, "too few ratios need rounding: {below}");
@@ -145,10 +136,8 @@ fn slopes_are_those_of_a_plane() {
     }
     // Where the axes wrap, the far sample is next.
     let heights = Heights::new([8, 6], [true, true], heights.data().to_vec()).unwrap();
-    assert_eq!(
-        slopes(&heights)[0],
-        [(2.0 - 14.0) / 128.0, (3.0 - 15.0) / 128.0]
-    );
+    let across = [(2.0 - 14.0) / 128.0, (3.0 - 15.0) / 128.0];
+    assert_eq!(slopes(&heights)[0], across);
     let flat = Heights::new([1, 1], [false, true], vec![0.5]).unwrap();
     assert_eq!(slopes(&flat)[0], [0.0; 2]);
 }

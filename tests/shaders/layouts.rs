@@ -10,7 +10,7 @@ use conemarch::formula::rotation::RotationUniform;
 use conemarch::heightfield::conemap::generate::uniform::{
     GenerateUniform, Min3x3Uniform, PyramidUniform, SearchState,
 };
-use conemarch::heightfield::height_surface::ReliefUniform;
+use conemarch::heightfield::height_surface::HeightmapUniform;
 use conemarch::pass::look::LookUniform;
 use conemarch::pass::turn::{ListsHead, Stage, Turn};
 use conemarch::scene::distance::DistanceUniform;
@@ -62,7 +62,7 @@ fn layouts() -> Vec<(&'static str, Layout)> {
         DistanceUniform: eye detail centre radius half far lipschitz shell relaxation stride
             iterations clip pad0 pad1;
         HeightfieldUniform: row_x texel row_y depth row_z far eye pad0 slack pad1;
-        ReliefUniform: samples cells domain wrap places offset scale levels steps lod rounds starts;
+        HeightmapUniform: samples cells domain wrap places offset scale levels steps lod rounds starts;
         SlabUniform: eye half normal radius side far other pad;
         GenerateUniform: size wrap first rows rounds levels begins keeps sector steps offset top pad0
             pad1 at;

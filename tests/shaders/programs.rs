@@ -6,7 +6,8 @@ use std::sync::LazyLock;
 
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
-use conemarch::pass::{LookFeature, turn};
+use conemarch::pass::LookFeature;
+use conemarch::pass::turn::{self, StageKind};
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
@@ -15,7 +16,7 @@ use rayon::prelude::*;
 use toml::Value;
 use wgpu::naga::{self, valid::Capabilities};
 
-use super::common::plans::{distance, outline, preset, program};
+use super::common::plans::{distance, outline, preset, program, solid};
 use super::common::programs::map_programs;
 
 /// Switches a feature of the look, by the key that does and nothing else.
@@ -145,6 +146,16 @@ pub fn programs_of(plan: &Plan, solid: &AnySolid) -> Vec<Program> {
     all
 }
 
+/// The programs between the passes.
+fn between_passes() -> Vec<Program> {
+    let plan = preset("mandelbox", &[]);
+    let solid = solid(&plan);
+    let kinds = StageKind::all(&plan.passes(Extras::default()), true).into_iter();
+    let between = kinds.filter(|kind| !matches!(kind, StageKind::Pass(_)));
+    let programs = between.map(|kind| kind.program(&plan, &solid, Extras::default()));
+    programs.chain([turn::arrange()]).collect()
+}
+
 /// A valid program.
 pub struct Made {
     /// The program.
@@ -162,8 +173,11 @@ pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     let assets = Assets::default();
     let plans = plans().into_iter();
     let of_plans = plans.flat_map(|plan| programs_of(&plan, &outline(&plan, &assets)));
-    let of_stages = [turn::arrange(), turn::reset(), turn::census()];
-    for program in map_programs().into_iter().chain(of_stages).chain(of_plans) {
+    for program in map_programs()
+        .into_iter()
+        .chain(of_plans)
+        .chain(between_passes())
+    {
         let listing = format!("{}\n{}", program.entry, program.describe());
         found.entry(listing).or_insert(program);
     }

@@ -8,7 +8,7 @@ use conemarch::pass::progress::Watch;
 use conemarch::plan::{Extras, Plan};
 use conemarch::scene::Assets;
 
-use super::common::folder::{Folder, said, text};
+use super::common::folder::{Folder, holds, said, text};
 use super::common::plans::sized;
 use crate::adapter;
 
@@ -34,9 +34,8 @@ fn assert_lost(result: Result<usize, RenderError>, renderer: &Renderer) {
     };
     let said = error.to_string();
     let name = &renderer.device.info.name;
-    for part in [name, "was lost", "nothing was written", "--device cpu"] {
-        assert!(said.contains(part), "`{part}` not in: {said}");
-    }
+    holds(&said, &[name, "was lost", "nothing was written"]);
+    holds(&said, &["--device cpu"]);
     assert!(!said.contains('\n'), "more than a line: {said}");
 }
 
@@ -116,10 +115,8 @@ fn a_choice_that_matches_nothing_lists_what_there_is() {
             panic!("{choice:?} matches something")
         };
         let said = error.to_string();
-        assert!(said.contains(asked), "{said}");
-        for name in names.iter().map(String::as_str).chain(["cpu"]) {
-            assert!(said.contains(name), "`{name}` not in: {said}");
-        }
+        holds(&said, &[asked, "cpu"]);
+        holds(&said, &names.iter().map(String::as_str).collect::<Vec<_>>());
     }
 }
 
@@ -169,41 +166,38 @@ fn choices_are_read_from_words() {
 fn some_adapter() -> &'static str {
     let adapters = Adapters::find();
     let kinds = [("software", Choice::Software), ("gpu", Choice::Hardware)];
-    let mut found = kinds
-        .iter()
-        .filter(|(_, choice)| adapters.choose(choice).is_ok());
-    found.next().expect(adapter::NO_ADAPTER).0
+    let mut kinds = kinds.iter();
+    let found = kinds.find(|(_, choice)| adapters.choose(choice).is_ok());
+    found.expect(adapter::NO_ADAPTER).0
 }
 
 #[test]
 fn the_program_renders_on_an_adapter_and_its_picture_renders_the_same_again() {
     let folder = Folder::new();
-    let render = |args: &[&str], file: &str| {
-        let device = ["--device", some_adapter(), "-o", file];
-        let output = folder.done(&[&["render"], args, &device].concat());
+    let render = |args: &str, file: &str| {
+        let device = some_adapter();
+        let output = folder.done(&format!("render {args} --device {device} -o {file}"));
         // Who renders, and what has become of it; nothing else, the driver's talk included.
         let said = said(&output);
         let lines: Vec<&str> = said.lines().collect();
         assert_eq!((lines.len(), output.stdout.len()), (2, 0), "{said}");
         assert!(lines[0].starts_with("rendering on ") && lines[0].ends_with(" (as asked)"));
-        assert!(
-            lines[1].starts_with(&format!("{file}  64 x 36  ")),
-            "{said}"
-        );
+        let start = format!("{file}  64 x 36  ");
+        assert!(lines[1].starts_with(&start), "{said}");
         folder.bytes(file)
     };
-    let small = ["mandelbox", "--size", "64x36"];
-    let bytes = render(&small, "f.png");
-    assert!(bytes == render(&["f.png"], "g.png"));
+    let small = "mandelbox --size 64x36";
+    let bytes = render(small, "f.png");
+    assert!(bytes == render("f.png", "g.png"));
     // Another picture has other bytes.
-    assert!(bytes != render(&[&small[..], &["--set", "look.key=1"]].concat(), "h.png"));
+    assert!(bytes != render(&format!("{small} --set look.key=1"), "h.png"));
 }
 
 #[test]
 fn the_program_says_what_there_is_instead_of_a_device_it_has_not() {
     for device in ["no-such", "99"] {
-        let args = ["render", "mandelbox", "--device", device, "-o", "f.png"];
-        Folder::new().fails(&args, 1, &[device, "there is: "]);
+        let line = format!("render mandelbox --device {device} -o f.png");
+        Folder::new().fails(&line, 1, &format!("{device}|there is: "));
     }
 }
 
@@ -217,7 +211,7 @@ fn measurements_under_the_floor_of_f32_are_marked() {
     for verb in ["error", "steps --mode safe", "calibrate --rays 100"] {
         for (device, marked) in [(some_adapter(), true), ("cpu", false)] {
             let args = format!("bench {verb} near.toml --size 16x9 --device {device}");
-            let table = text(&folder.done(&args.split(' ').collect::<Vec<_>>()));
+            let table = text(&folder.done(&args));
             let found = table.contains("Precision: the finest footprint");
             assert_eq!(found, marked, "{args}: {table}");
         }

@@ -3,6 +3,7 @@
 
 use conemarch::gpu::device::{Adapters, Choice, Device};
 use conemarch::gpu::render::{Cutting, Renderer};
+use conemarch::pass::tone::byte;
 use conemarch::picture::frame::{Frame, Traffic};
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
@@ -118,6 +119,111 @@ fn a_second_frame_writes_parameters_and_creates_nothing() {
             assert!((1..2048).contains(&again.uploads), "{again:?}");
         }
     }
+}
+
+/// A change of a plan, and whether it keeps the colours and the rays.
+type Change = (fn(&mut Plan), bool, bool);
+
+#[test]
+fn a_change_of_the_look_keeps_the_rays_and_one_of_the_exposure_the_colours() {
+    let (mut renderer, assets) = (adapter::open(), Assets::default());
+    let again = Extras {
+        reuse: true,
+        time: true,
+        ..EVERYTHING
+    };
+    let changes: [Change; 5] = [
+        (|_| (), true, true),
+        (|plan| plan.look.key *= 0.5, false, true),
+        (|plan| plan.look.exposure += 1.0, true, true),
+        (|plan| plan.camera.fov += 0.1, false, false),
+        (|plan| plan.camera.eye *= 1.01, false, false),
+    ];
+    for mut plan in plans() {
+        renderer
+            .render(&plan, &assets, again, &mut |_| true)
+            .unwrap();
+        for (change, keeps_colours, keeps_rays) in &changes {
+            change(&mut plan);
+            let frame = renderer
+                .render(&plan, &assets, again, &mut |_| true)
+                .unwrap();
+            assert!(bits(&frame) == bits(&adapter::render(&plan, EVERYTHING)));
+            let ran = |pass: &str| {
+                let all = frame.passes.iter().filter(|p| p.pass.name() == pass);
+                all.filter(|p| p.gpu_ms.is_some()).count() > 0
+            };
+            assert_eq!(ran("trace"), !keeps_rays, "{:?}", frame.passes);
+            // The last stage is counted as part of the last pass.
+            assert!(*keeps_colours || ran("color"));
+            if *keeps_colours {
+                assert_eq!(frame.traffic.unwrap().submissions, 1);
+            }
+        }
+    }
+}
+
+/// Radiance in a byte of each channel, as a PNG of 8 bits holds it.
+fn bytes(plan: &Plan, frame: &Frame) -> Vec<u8> {
+    let shown = |x: &f32| byte(plan.look.exposure.exp2(), f64::from(*x));
+    let pixel = |[r, g, b]: &[f32; 3]| [shown(r), shown(g), shown(b), 255];
+    frame.radiance.iter().flat_map(pixel).collect()
+}
+
+#[test]
+fn the_picture_on_the_device_grows_into_that_of_the_file() {
+    let (assets, shown) = (
+        Assets::default(),
+        Extras {
+            shown: true,
+            ..Extras::default()
+        },
+    );
+    for mut plan in plans() {
+        for (exposure, block) in [(0.0, 1024), (-3.0, 32), (2.5, 64)] {
+            let mut renderer = adapter::open();
+            renderer.cutting.block = block;
+            plan.look.exposure = exposure;
+            let mut work = renderer
+                .begin(&plan, &assets, shown, &mut |_| true)
+                .unwrap();
+            let mut seen = vec![work.pixels().unwrap()];
+            let frame = (0..10_000).find_map(|_| {
+                work.advance(1e-3).unwrap();
+                seen.push(work.pixels().unwrap());
+                work.poll().unwrap()
+            });
+            let wanted = bytes(&plan, &frame.unwrap());
+            let wrong = |picture: &Vec<u8>| {
+                let pairs = picture.iter().zip(&wanted);
+                pairs.map(|(a, b)| u64::from(a.abs_diff(*b))).sum::<u64>()
+            };
+            assert_eq!(wrong(&work.pixels().unwrap()), 0, "{plan:?}");
+            // At first it is black, and a sketch is nearer to the picture than that.
+            let (first, sketched) = (wrong(&seen[0]), seen.iter().map(wrong));
+            assert!(first > 0 && sketched.clone().any(|w| w > 0 && w < first / 2));
+        }
+    }
+}
+
+#[test]
+fn a_host_lends_its_device_and_a_render_moves_to_another_thread() {
+    let adapters = Adapters::find();
+    let (adapter, _) = adapters
+        .choose(&Choice::Auto)
+        .unwrap()
+        .expect(adapter::NO_ADAPTER);
+    // A window's device: what WebGPU promises, and no timestamps.
+    let opened = pollster::block_on(adapter.request_device(&Default::default()));
+    let (device, queue) = opened.unwrap();
+    let mut renderer = Renderer::new(Device::adopt(adapter, device, queue));
+    let plan = sized("mandelbox", [96, 54]);
+    let work = renderer.begin(&plan, &Assets::default(), EVERYTHING, &mut |_| true);
+    let work = work.unwrap();
+    let frame = std::thread::spawn(move || work.finish(&mut |_| true))
+        .join()
+        .unwrap();
+    assert!(bits(&frame.unwrap()) == bits(&adapter::render(&plan, EVERYTHING)));
 }
 
 #[test]

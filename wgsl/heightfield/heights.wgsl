@@ -2,7 +2,7 @@
 // a solid block, which fills 0 <= z <= surface over a domain of `cells * tiles` cells, in texels
 // and heights (docs/method.md, 4).
 
-struct ReliefUniform {
+struct HeightmapUniform {
     samples: vec2<i32>,
     /// Cells of one tile, and of all tiles.
     cells: vec2<i32>,
@@ -25,14 +25,14 @@ struct ReliefUniform {
 }
 
 /// Whether the patches are boxes as high as one sample, instead of bilinear between four samples.
-override RELIEF_BOXES: bool;
+override HEIGHTMAP_BOXES: bool;
 
-@group(0) @binding(4) var<storage, read> relief_parameters: ReliefUniform;
+@group(0) @binding(4) var<storage, read> heightmap_parameters: HeightmapUniform;
 @group(0) @binding(5) var heights: texture_2d<f32>;
 @group(0) @binding(6) var ratios: texture_2d<f32>;
 /// In a buffer: cones read little else, and software Vulkan reads textures more slowly.
 @group(0) @binding(7) var<storage, read> maxima: array<f32>;
-var<private> relief: ReliefUniform;
+var<private> heightmap: HeightmapUniform;
 
 /// The texel of a number. Most arrays are in textures, as there are more of those than storage
 /// buffers, and larger ones: row by row, 8192 numbers to a row.
@@ -48,52 +48,52 @@ fn ratios_at(i: u32) -> f32 {
     return textureLoad(ratios, array_texel(i), 0).x;
 }
 
-fn relief_load() {
-    relief = relief_parameters;
+fn heightmap_load() {
+    heightmap = heightmap_parameters;
 }
 
 /// The cell of the first tile that corresponds to a cell of the domain.
-fn relief_tile_cell(cell: vec2<i32>) -> vec2<i32> {
-    return max(cell, vec2<i32>(0)) % relief.cells;
+fn heightmap_tile_cell(cell: vec2<i32>) -> vec2<i32> {
+    return max(cell, vec2<i32>(0)) % heightmap.cells;
 }
 
 /// The number of a sample, for indices from 0 to the size. The one past the last is the first
 /// again, or on an axis that does not wrap the last.
-fn relief_place(at: vec2<i32>) -> i32 {
-    let round = select(relief.samples - 1, vec2<i32>(0), relief.wrap == vec2<u32>(1u));
-    let i = select(at, round, at >= relief.samples);
-    return i.y * relief.samples.x + i.x;
+fn heightmap_place(at: vec2<i32>) -> i32 {
+    let round = select(heightmap.samples - 1, vec2<i32>(0), heightmap.wrap == vec2<u32>(1u));
+    let i = select(at, round, at >= heightmap.samples);
+    return i.y * heightmap.samples.x + i.x;
 }
 
 /// Its height.
-fn relief_sample(at: vec2<i32>) -> f32 {
-    return heights_at(relief_place(at));
+fn heightmap_sample(at: vec2<i32>) -> f32 {
+    return heights_at(heightmap_place(at));
 }
 
 /// Corner heights of a cell of the domain: (0, 0), (1, 0), (0, 1), (1, 1).
-fn relief_corners(cell: vec2<i32>) -> vec4<f32> {
-    let c = relief_tile_cell(cell);
-    if RELIEF_BOXES {
-        return vec4<f32>(relief_sample(c));
+fn heightmap_corners(cell: vec2<i32>) -> vec4<f32> {
+    let c = heightmap_tile_cell(cell);
+    if HEIGHTMAP_BOXES {
+        return vec4<f32>(heightmap_sample(c));
     }
     return vec4<f32>(
-        relief_sample(c),
-        relief_sample(c + vec2<i32>(1, 0)),
-        relief_sample(c + vec2<i32>(0, 1)),
-        relief_sample(c + vec2<i32>(1, 1)),
+        heightmap_sample(c),
+        heightmap_sample(c + vec2<i32>(1, 0)),
+        heightmap_sample(c + vec2<i32>(0, 1)),
+        heightmap_sample(c + vec2<i32>(1, 1)),
     );
 }
 
 /// Height of the surface in a cell at a place in 0..1.
-fn relief_height(cell: vec2<i32>, at: vec2<f32>) -> f32 {
-    let c = relief_corners(cell);
+fn heightmap_height(cell: vec2<i32>, at: vec2<f32>) -> f32 {
+    let c = heightmap_corners(cell);
     let low = c.x + at.x * (c.y - c.x);
     let high = c.z + at.x * (c.w - c.z);
     return low + at.y * (high - low);
 }
 
 /// The number of a cell within its tile, row by row.
-fn relief_number(cell: vec2<i32>) -> u32 {
-    let c = relief_tile_cell(cell);
-    return u32(c.y * relief.cells.x + c.x);
+fn heightmap_number(cell: vec2<i32>) -> u32 {
+    let c = heightmap_tile_cell(cell);
+    return u32(c.y * heightmap.cells.x + c.x);
 }

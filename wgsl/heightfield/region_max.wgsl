@@ -20,7 +20,7 @@ fn region_run_max(x: vec2<u32>, y: vec2<u32>) -> f32 {
     // The finest level at which the run is at most two nodes wide and high. Each level is half
     // the one below, rounded up.
     var nodes = vec4<u32>(x, y);
-    var size = vec2<u32>(relief.cells);
+    var size = vec2<u32>(heightmap.cells);
     var at = 0u;
     for (var level = 0u; level < 16u; level++) {
         if nodes.y - nodes.x <= 1u && nodes.w - nodes.z <= 1u {
@@ -41,8 +41,8 @@ fn region_run_max(x: vec2<u32>, y: vec2<u32>) -> f32 {
 /// The largest apex of the cells that meet the rectangle low..=high, in texels; -1 where
 /// it lies outside the block.
 fn region_max(low: vec2<f32>, high: vec2<f32>) -> f32 {
-    let sides = vec2<f32>(relief.domain);
-    let cells = vec2<u32>(relief.cells);
+    let sides = vec2<f32>(heightmap.domain);
+    let cells = vec2<u32>(heightmap.cells);
     if any(low > sides) || any(high < vec2<f32>(0.0)) {
         return -1.0;
     }

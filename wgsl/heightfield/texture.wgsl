@@ -20,20 +20,20 @@ fn texture_index(i: i32, count: i32, wraps: bool) -> i32 {
 
 fn texture_texel(place: vec2<i32>) -> vec3<f32> {
     let size = vec2<i32>(i32(texels_at(0)), i32(texels_at(1)));
-    let x = texture_index(place.x, size.x, relief.wrap.x == 1u);
-    let y = texture_index(place.y, size.y, relief.wrap.y == 1u);
+    let x = texture_index(place.x, size.x, heightmap.wrap.x == 1u);
+    let y = texture_index(place.y, size.y, heightmap.wrap.y == 1u);
     return texture_linear(unpack4x8unorm(texels_at(2 + y * size.x + x)).rgb);
 }
 
 /// The colour at a place in 0..1 of a cell of the domain.
-fn relief_paint(cell: vec2<i32>, at: vec2<f32>, height: f32, up: f32) -> vec3<f32> {
+fn heightmap_paint(cell: vec2<i32>, at: vec2<f32>, height: f32, up: f32) -> vec3<f32> {
     // A sample is the middle of its texel. A box is a sample, and so is the only cell of an axis
     // with one sample.
-    let alone = (relief.samples == vec2<i32>(1)) & (relief.wrap == vec2<u32>(0u));
-    let middle = select(vec2<f32>(0.5), vec2<f32>(0.0), alone | vec2<bool>(RELIEF_BOXES));
-    let own = vec2<f32>(relief_tile_cell(cell)) + at + middle;
+    let alone = (heightmap.samples == vec2<i32>(1)) & (heightmap.wrap == vec2<u32>(0u));
+    let middle = select(vec2<f32>(0.5), vec2<f32>(0.0), alone | vec2<bool>(HEIGHTMAP_BOXES));
+    let own = vec2<f32>(heightmap_tile_cell(cell)) + at + middle;
     let size = vec2<f32>(f32(texels_at(0)), f32(texels_at(1)));
-    let place = own / vec2<f32>(relief.samples) * size - 0.5;
+    let place = own / vec2<f32>(heightmap.samples) * size - 0.5;
     let low = vec2<i32>(floor(place));
     let f = place - floor(place);
     let first = mix(texture_texel(low), texture_texel(low + vec2<i32>(1, 0)), f.x);

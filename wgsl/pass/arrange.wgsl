@@ -60,10 +60,9 @@ fn begin_stage() {
     turn.filled = turn.stage.queues.x;
     turn.dispatches = 0u;
     turn.visits = VISIT_ALL;
-    let parents = atomicExchange(&lists.parents, 0u);
     if turn.stage.parent_width > 0u {
         turn.visits = VISIT_PARENTS;
-        turn.count = parents;
+        turn.count = atomicExchange(&lists.parents, 0u);
         turn.read = turn.stage.listed;
     }
 }

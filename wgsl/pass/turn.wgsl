@@ -1,10 +1,10 @@
 // The stages of a frame and the dispatch that is under way.
 //
-// A stage is a pass over a block, or one of two short stages about it (`reset.wgsl`,
-// `census.wgsl`). It runs in rounds: the first visits all cells or the children of listed
-// parents, each later one the cells that still move. A round is cut into dispatches. Before each
-// dispatch, `arrange.wgsl` decides on the device what it visits, so the host never waits for a
-// count.
+// A stage is a pass over a block, or one of the short stages between passes (`reset.wgsl`,
+// `sketch.wgsl`, `develop.wgsl`, `census.wgsl`). It runs in rounds. The first visits all cells, or
+// the children of listed parents. Each later one visits the cells that still move. A round is cut
+// into dispatches. Before each dispatch, `arrange.wgsl` decides on the device what it visits, so
+// the host never waits for a count.
 
 /// The numbers of a stage. The host writes them.
 struct Stage {
@@ -78,7 +78,7 @@ struct Lists {
     wrong: atomic<u32>,
     pad: u32,
     /// Dispatches of each stage of the block.
-    dispatches: array<u32, 12>,
+    dispatches: array<u32, 20>,
     cells: array<u32>,
 }
 

@@ -40,7 +40,7 @@ struct Walk {
 
 fn scene_load() {
     heightfield = heightfield_parameters;
-    relief_load();
+    heightmap_load();
 }
 
 fn bounds_far() -> f32 {
@@ -60,7 +60,7 @@ fn local_units() -> vec3<f32> {
 
 /// The world distance from a local position to the block; negative inside.
 fn block_distance(p: vec3<f32>) -> f32 {
-    let half = 0.5 * vec3<f32>(vec2<f32>(relief.domain), 1.0);
+    let half = 0.5 * vec3<f32>(vec2<f32>(heightmap.domain), 1.0);
     let o = (abs(p - half) - half) * local_units();
     return length(max(o, vec3<f32>(0.0))) + min(max(o.x, max(o.y, o.z)), 0.0);
 }
@@ -130,10 +130,10 @@ fn walk_radius(ray: Beam, walk: Walk) -> f32 {
 /// The world distance from a local position to the surface straight below it. Beside the block
 /// it is the distance to the edge of the top, or to the wall below that edge.
 fn surface_gap(p: vec3<f32>) -> f32 {
-    let sides = vec2<f32>(relief.domain);
+    let sides = vec2<f32>(heightmap.domain);
     let inside = clamp(p.xy, vec2<f32>(0.0), sides);
     let cell = min(floor(inside), max(sides - 1.0, vec2<f32>(0.0)));
-    let height = relief_height(vec2<i32>(cell), inside - cell);
+    let height = heightmap_height(vec2<i32>(cell), inside - cell);
     let above = max(0.0, (p.z - height) * heightfield.depth);
     return length(vec3<f32>((p.xy - inside) * heightfield.texel, above));
 }
@@ -195,14 +195,15 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
         return Surface(to_world(n), select(vec3<f32>(0.0, 0.3, 0.3), plain, HEIGHTFIELD_COLORED));
     }
     let index = i32(hit.id & 0x0fffffffu);
-    let cell = vec2<i32>(index % relief.cells.x, index / relief.cells.x);
-    let c = relief_corners(cell);
-    if RELIEF_BOXES {
+    let cell = vec2<i32>(index % heightmap.cells.x, index / heightmap.cells.x);
+    let c = heightmap_corners(cell);
+    if HEIGHTMAP_BOXES {
         let d = to_local(ray.axis);
         let height = heightfield.eye.z + to_local(ray.origin).z + hit.t * d.z;
         // Below the top of its box by more than rounding: the hit is on a side.
         if height < c.x - heightfield.slack.z {
-            return Surface(to_world(box_side(d, hit.uv)), relief_paint(cell, hit.uv, height, 0.0));
+            let pigment = heightmap_paint(cell, hit.uv, height, 0.0);
+            return Surface(to_world(box_side(d, hit.uv)), pigment);
         }
     }
     let slope = vec2<f32>(
@@ -212,5 +213,5 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
     let n = normalize(vec3<f32>(-steep, 1.0));
     let z = mix(mix(c.x, c.y, hit.uv.x), mix(c.z, c.w, hit.uv.x), hit.uv.y);
     // Steep ground is darker.
-    return Surface(to_world(n), relief_paint(cell, hit.uv, z, n.z));
+    return Surface(to_world(n), heightmap_paint(cell, hit.uv, z, n.z));
 }

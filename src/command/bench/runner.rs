@@ -18,6 +18,8 @@ pub const COUNTED: Extras = Extras {
     depth_only: true,
     normals: false,
     time: false,
+    shown: false,
+    reuse: false,
 };
 /// Asks the device for its times; no colours.
 pub const TIMED: Extras = Extras {

@@ -89,6 +89,8 @@ pub fn run(args: &Make) -> Result<()> {
     if let Some(Ok(field)) = field {
         check_memory(generator, field.size)?;
     }
+    let mut progress = Progress::start("making cones");
+    progress.report(0.0, "heights");
     let loaded = args.reading.load(&args.heights)?;
     let heights = &loaded.heights;
     check_memory(generator, heights.size())?;
@@ -110,15 +112,15 @@ pub fn run(args: &Make) -> Result<()> {
     let (executor, who) = Executor::open_with(&args.device, false)?;
     say(&format!("making cones on {who}"));
     let start = Instant::now();
-    let mut progress = Progress::start("making cones");
     let watch = &mut |done| progress.report(done, generator.name());
     let mut maker = MapMaker::new(&executor);
     let map = maker.generate(generator, heights, patches, &options, watch)?;
-    drop(progress);
     let took = start.elapsed().as_secs_f64() * 1e3;
+    progress.report(1.0, "the file");
     let file = MapFile::new(map, heights, patches, &made_by(generator, &options));
     interrupt::check()?;
     let kept = write(&file, &format, sink)?;
+    drop(progress);
     let [w, h] = file.map.size;
     say(&format!(
         "{}  {w} x {h}  {} by {}, layout {}  {took:.0} ms  {kept}",

@@ -22,10 +22,10 @@ use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::{PAIR, Stamps};
-use crate::gpu::target::Target;
+use crate::gpu::target::{Parameters, Target, read_picture};
 use crate::heightfield::assets::Preparation;
 use crate::pass::progress::{Progress, Watch};
-use crate::pass::turn::{Layout, ListsHead, MOST_STAGES, Stage, Turn};
+use crate::pass::turn::{Layout, ListsHead, MOST_STAGES, Stage, StageKind, Turn};
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::{Extras, Pass};
 
@@ -45,6 +45,36 @@ pub(super) struct Shared {
     pub kept: Mutex<Kept>,
 }
 
+/// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
+/// the programs and the sizes of a target stay anyway.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Made {
+    pub passes: Vec<Pass>,
+    pub blocks: Vec<Layout>,
+    pub ray_steps: u32,
+    /// Parameters of cones and rays.
+    pub marched: Parameters,
+    /// Parameters of the colours.
+    pub look: Vec<u8>,
+}
+
+impl Made {
+    /// The stage of a block from which a frame goes on after a finished one, if it can.
+    fn resumes(&self, last: &Self, kinds: &[StageKind]) -> Option<u32> {
+        let same_rays = Self {
+            look: last.look.clone(),
+            ..self.clone()
+        } == *last;
+        // The buffers hold one block.
+        if !same_rays || self.blocks.len() > 1 {
+            return None;
+        }
+        let after = |pass: Pass| kinds.iter().position(|k| *k == StageKind::Pass(pass));
+        let color = after(Pass::Color)?;
+        Some(color as u32 + u32::from(self.look == last.look))
+    }
+}
+
 /// What one render leaves to the next.
 #[derive(Default)]
 pub(super) struct Kept {
@@ -53,13 +83,14 @@ pub(super) struct Kept {
     pub stamps: Option<Stamps>,
     pub reports: Vec<Staging>,
     pub readings: Vec<Staging>,
+    /// What the last frame was made of, if it was finished.
+    pub made: Option<Made>,
 }
 
 /// What a render knows from the start.
 pub(super) struct Job {
-    pub passes: Vec<Pass>,
-    pub blocks: Vec<Layout>,
-    pub ray_steps: u32,
+    pub kinds: Vec<StageKind>,
+    pub made: Made,
     /// The step limits of the first dispatch of a stage and of the largest.
     pub steps: [u32; 2],
     pub extras: Extras,
@@ -88,8 +119,10 @@ pub struct Work {
     /// The stage to encode next, and how many dispatches of it are to be encoded.
     cursor: u32,
     dispatches: u32,
-    /// The stage under way on the device, as of the last report.
+    /// The stage under way on the device, as of the last report, and the share of it that is
+    /// done, about.
     reached: u32,
+    share: f64,
     /// Dispatches of each stage of the block under way, as of the last report.
     told: [u32; MOST_STAGES],
     flights: VecDeque<Flight>,
@@ -109,24 +142,30 @@ impl Work {
             cursor: 0,
             dispatches: 0,
             reached: 0,
+            share: 0.0,
             told: [0; MOST_STAGES],
             flights: VecDeque::new(),
             corrections: 0,
             ended: Instant::now(),
             collected: 0,
         };
-        work.go_to(0);
+        let last = work.kept.made.take().filter(|_| work.job.extras.reuse);
+        let first = last.and_then(|last| work.job.made.resumes(&last, &work.job.kinds));
+        work.reached = first.unwrap_or(0);
+        if let Some(target) = &work.kept.target {
+            target.begin(&work.shared.device, work.reached);
+        }
+        work.go_to(work.reached);
         work
     }
 
     /// Stages of a block.
     fn per_block(&self) -> u32 {
-        // A stage before the passes and one after.
-        self.job.passes.len() as u32 + 2
+        self.job.kinds.len() as u32
     }
 
     fn end(&self) -> u32 {
-        self.per_block() * self.job.blocks.len() as u32
+        self.per_block() * self.job.made.blocks.len() as u32
     }
 
     /// The block of a stage, and the stage's position in it.
@@ -135,16 +174,18 @@ impl Work {
         ((stage / n) as usize, (stage % n) as usize)
     }
 
-    /// The pass of a stage of a block, or the one next to it.
+    /// The pass that a stage of a block is or follows; before the first one, the first.
     fn pass_at(&self, index: usize) -> usize {
-        index.clamp(1, self.job.passes.len()) - 1
+        let stages = &self.job.kinds[..=index];
+        let passes = stages.iter().filter(|k| matches!(k, StageKind::Pass(_)));
+        passes.count().max(1) - 1
     }
 
     /// The stages of a block, with what is known of their costs.
     fn stages(&self, block: usize) -> Vec<Stage> {
         let first = block as u32 * self.per_block();
-        let layout = &self.job.blocks[block];
-        let mut stages = layout.stages(&self.job.passes, first, self.job.ray_steps);
+        let layout = &self.job.made.blocks[block];
+        let mut stages = layout.stages(&self.job.kinds, first, self.job.made.ray_steps);
         for (stage, cost) in stages.iter_mut().zip(&self.kept.costs) {
             [stage.chunk, stage.most] = self.job.steps;
             stage.slice = cost.slice;
@@ -164,11 +205,41 @@ impl Work {
 
     /// How far the render has come.
     pub fn progress(&self) -> Progress {
-        let (_, index) = self.place(self.reached.min(self.end() - 1));
+        self.progress_at(self.reached, self.share)
+    }
+
+    /// The progress when a stage is under way of which a share is done.
+    fn progress_at(&self, stage: u32, share: f64) -> Progress {
+        let is_pass = |k: &&StageKind| matches!(k, StageKind::Pass(_));
+        let (block, index) = self.place(stage);
+        let before = self.job.kinds[..index].iter().filter(is_pass).count();
+        let passes = self.job.made.passes.len();
+        let share = match self.job.kinds[index] {
+            StageKind::Pass(_) => share,
+            _ => 0.0,
+        };
+        let done = (block * passes + before) as f64 + share;
         Progress {
-            pass: self.job.passes[self.pass_at(index)].name(),
-            done: f64::from(self.reached) / f64::from(self.end()),
+            pass: self.job.made.passes[self.pass_at(index)].name(),
+            done: (done / (passes * self.job.made.blocks.len()) as f64).min(1.0),
         }
+    }
+
+    /// The picture as far as it is made: first the fronts of the coarse levels, then colours.
+    /// `None` without [`Extras::shown`], or if the image is larger than a texture can be. Its
+    /// bytes are those of sRGB, as files hold them.
+    pub fn picture(&self) -> Option<&wgpu::Texture> {
+        self.kept.target.as_ref()?.picture.as_ref()
+    }
+
+    /// Waits for the device and reads the picture, row by row, four bytes to a pixel.
+    ///
+    /// # Errors
+    /// The device failed.
+    pub fn pixels(&self) -> Result<Vec<u8>, RenderError> {
+        let picture = self.picture();
+        let read = picture.map(|picture| read_picture(&self.shared.device, picture));
+        Ok(read.transpose()?.unwrap_or_default())
     }
 
     /// How the host and the device worked together so far.
@@ -196,15 +267,17 @@ impl Work {
     /// The device failed, or left cells unvisited.
     pub fn poll(&mut self) -> Result<Option<Frame>, RenderError> {
         self.receive()?;
-        if self.collected < self.job.blocks.len() {
+        if self.collected < self.job.made.blocks.len() {
             return Ok(None);
         }
+        self.kept.made = Some(self.job.made.clone());
         let mut frame = std::mem::take(&mut self.frame);
         frame.finish(std::mem::take(&mut self.job.prepared));
         Ok(Some(frame))
     }
 
-    /// Waits for the frame. `watch` is told of each pass that has ended.
+    /// Waits for the frame. `watch` is told of each pass that has ended, and of the progress in
+    /// a long pass.
     ///
     /// # Errors
     /// [`RenderError::Cancelled`] if `watch` returns `false`. The device failed, or left cells
@@ -213,25 +286,29 @@ impl Work {
         let mut told = 0;
         loop {
             self.advance(f64::INFINITY)?;
-            for stage in told..self.reached {
-                let (_, index) = self.place(stage);
-                // The stages about the passes are not told.
-                if (1..=self.job.passes.len()).contains(&index) {
-                    let passes = self.job.passes.len() * self.job.blocks.len();
-                    let (block, _) = self.place(stage);
-                    let done = block * self.job.passes.len() + index;
-                    let progress = Progress {
-                        pass: self.job.passes[index - 1].name(),
-                        done: done as f64 / passes as f64,
-                    };
-                    if !watch(&progress) {
-                        return Err(RenderError::Cancelled);
-                    }
-                    self.shared.device.check()?;
-                }
+            let frame = self.poll()?;
+            let is_pass = |stage: &u32| {
+                let (_, index) = self.place(*stage);
+                matches!(self.job.kinds[index], StageKind::Pass(_))
+            };
+            let ended = (told..self.reached).filter(is_pass);
+            let mut news: Vec<Progress> = ended
+                .map(|stage| Progress {
+                    done: self.progress_at(stage + 1, 0.0).done,
+                    ..self.progress_at(stage, 0.0)
+                })
+                .collect();
+            if news.is_empty() && self.reached < self.end() {
+                news.push(self.progress());
             }
             told = self.reached;
-            if let Some(frame) = self.poll()? {
+            for progress in news {
+                if !watch(&progress) {
+                    return Err(RenderError::Cancelled);
+                }
+                self.shared.device.check()?;
+            }
+            if let Some(frame) = frame {
                 return Ok(frame);
             }
             if let Some(flight) = self.flights.front() {

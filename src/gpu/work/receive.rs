@@ -7,7 +7,7 @@ use crate::gpu::collect::Parts;
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::PAIR;
-use crate::pass::turn::{ListsHead, Turn};
+use crate::pass::turn::{ListsHead, MOST_STAGES, Turn};
 use crate::picture::frame::Traffic;
 
 use super::{Flight, REPORT, Work};
@@ -49,8 +49,14 @@ impl Work {
         self.ended = now;
         self.count_time(&flight.stages, elapsed_ms, [pair[0], pair[1]]);
         self.learn(&flight.stages, elapsed_ms, &head);
+        self.share = match self.reached == turn.number {
+            true => self.share.max(turn.share()),
+            false => turn.share(),
+        };
         self.reached = turn.number;
         if let Some((block, staging)) = flight.reading {
+            // Each block counts anew.
+            self.told = [0; MOST_STAGES];
             if turn.number >= (block as u32 + 1) * self.per_block() && self.collected == block {
                 self.collect(block, &staging, &head)?;
             }
@@ -87,9 +93,10 @@ impl Work {
         let all: u32 = (first..=last).map(ran).sum();
         let each = elapsed_ms / f64::from(all.max(1));
         let known = self.stages(block);
-        for i in first..=last {
-            if ran(i) > 0 {
-                self.kept.costs[i].learn(each, head.dispatches[i], &known[i]);
+        let costs = self.kept.costs.iter_mut().zip(known).zip(head.dispatches);
+        for (i, ((cost, stage), dispatches)) in costs.enumerate() {
+            if (first..=last).contains(&i) && dispatches > self.told[i] {
+                cost.learn(each, dispatches, &stage);
             }
         }
         self.told = head.dispatches;
@@ -108,9 +115,15 @@ impl Work {
                 cells: head.wrong as usize,
             });
         }
-        let layout = &self.job.blocks[block];
+        let layout = &self.job.made.blocks[block];
         let parts = Parts::new(layout, self.job.extras);
-        parts.collect(device, staging, layout, &self.job.passes, &mut self.frame)?;
+        parts.collect(
+            device,
+            staging,
+            layout,
+            &self.job.made.passes,
+            &mut self.frame,
+        )?;
         self.collected += 1;
         Ok(())
     }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::gpu::collect::Parts;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::{PAIR, Stamps};
-use crate::pass::turn::{ListsHead, Turn};
+use crate::pass::turn::{ListsHead, StageKind, Turn};
 use crate::plan::Pass;
 
 use super::{Flight, REPORT, Work};
@@ -54,9 +54,9 @@ impl Work {
             }
             cursor += 1;
             ends_block = index + 1 == stages.len();
-            let of_pass = self.job.passes.get(index.wrapping_sub(1));
+            let is_trace = self.job.kinds[index] == StageKind::Pass(Pass::Trace);
             // Figures of a pass are those of its own submissions.
-            let cut = self.job.extras.time || of_pass == Some(&Pass::Trace);
+            let cut = self.job.extras.time || is_trace;
             if !ends_block {
                 let next = &stages[index + 1];
                 self.dispatches = self.kept.costs[index + 1].dispatches(next);
@@ -79,7 +79,7 @@ impl Work {
         }
         report.copy(&mut encoder, &ranges);
         let reading = ends_block.then(|| {
-            let parts = Parts::new(&self.job.blocks[block], self.job.extras);
+            let parts = Parts::new(&self.job.made.blocks[block], self.job.extras);
             let kept = self.kept.readings.pop();
             let staging = kept.filter(|s| s.holds(parts.bytes()));
             let staging = staging.unwrap_or_else(|| Staging::new(device, parts.bytes()));

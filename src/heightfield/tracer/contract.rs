@@ -207,7 +207,7 @@ impl Tracer {
     /// Its parameters, by the name of the WGSL variable.
     pub fn parameters(&self) -> (&'static str, Vec<u8>) {
         let uniform = self.surface.uniform(&self.map, self.numbers);
-        ("relief_parameters", bytes_of(&uniform).to_vec())
+        ("heightmap_parameters", bytes_of(&uniform).to_vec())
     }
 
     /// The arrays that the shaders read.

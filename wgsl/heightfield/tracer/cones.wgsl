@@ -16,8 +16,8 @@ override CONES_SECANT: bool;
 
 /// A sample's place in its tile, for indices from -1 to the size.
 fn cones_place(at: vec2<i32>) -> i32 {
-    let n = relief.samples;
-    let wraps = relief.wrap == vec2<u32>(1u);
+    let n = heightmap.samples;
+    let wraps = heightmap.wrap == vec2<u32>(1u);
     let i = select(clamp(at, vec2<i32>(0), n - 1), (at + n) % n, wraps);
     return i.y * n.x + i.x;
 }
@@ -25,15 +25,15 @@ fn cones_place(at: vec2<i32>) -> i32 {
 /// Height and ratio of the cone over the ray at s, in a cell.
 fn cones_at(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {
     let at = grid_uv(o, d, cell, s);
-    let own = relief_tile_cell(cell);
+    let own = heightmap_tile_cell(cell);
     // The sample of a box lies in its middle, those of a patch in its corners.
     if CONES_NEAREST {
-        let place = own + select(vec2<i32>(at + 0.5), vec2<i32>(0), RELIEF_BOXES);
+        let place = own + select(vec2<i32>(at + 0.5), vec2<i32>(0), HEIGHTMAP_BOXES);
         return vec2<f32>(heights_at(cones_place(place)), cones_ratio(d, place));
     }
     let middle = at - 0.5;
-    let shift = select(vec2<f32>(0.0), floor(middle), RELIEF_BOXES);
-    let f = select(at, middle - shift, RELIEF_BOXES);
+    let shift = select(vec2<f32>(0.0), floor(middle), HEIGHTMAP_BOXES);
+    let f = select(at, middle - shift, HEIGHTMAP_BOXES);
     let i = own + vec2<i32>(shift);
     let a = cones_ratio(d, i);
     let b = cones_ratio(d, i + vec2<i32>(1, 0));
@@ -41,7 +41,7 @@ fn cones_at(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {
     let e = cones_ratio(d, i + vec2<i32>(1, 1));
     let low = a + f.x * (b - a);
     let high = c + f.x * (e - c);
-    return vec2<f32>(relief_height(cell, at), low + f.y * (high - low));
+    return vec2<f32>(heightmap_height(cell, at), low + f.y * (high - low));
 }
 
 /// Steps of a ray that begins at s; 0 for no limit. If they follow the view, they are
@@ -49,15 +49,15 @@ fn cones_at(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {
 /// the distance.
 fn cones_steps(d: vec3<f32>, s: f32) -> u32 {
     if !CONES_VIEW {
-        return relief.steps;
+        return heightmap.steps;
     }
-    let flat = d.xy / vec2<f32>(relief.cells);
+    let flat = d.xy / vec2<f32>(heightmap.cells);
     let whole = max(length(vec3<f32>(flat, d.z)), 1e-30);
     var far = 1.0;
-    if relief.lod > 0.0 {
-        far = 1.0 + max(s, 0.0) / relief.lod;
+    if heightmap.lod > 0.0 {
+        far = 1.0 + max(s, 0.0) / heightmap.lod;
     }
-    return u32(max(ceil(f32(relief.steps) * (0.5 + length(flat) / whole) / far), 1.0));
+    return u32(max(ceil(f32(heightmap.steps) * (0.5 + length(flat) / whole) / far), 1.0));
 }
 
 /// Starts a ray with the steps that its direction gives it.
@@ -84,13 +84,13 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
         grid_hit(o, d, trace, s);
         return STATE_HIT;
     }
-    if CONES_SOLVE && min(z, o.z + to * d.z) - relief_apex(cell) <= 0.0 {
+    if CONES_SOLVE && min(z, o.z + to * d.z) - heightmap_apex(cell) <= 0.0 {
         if grid_solve(o, d, trace, to) {
             return STATE_HIT;
         }
     }
     let cone = cones_at(o, d, cell, s);
-    let way = cone_way(d, cone.y, z - cone.x, 0.0) * relief.scale;
+    let way = cone_way(d, cone.y, z - cone.x, 0.0) * heightmap.scale;
     let next = min(max(s + way, exit.x), end);
     // At the bottom the ray is under the surface by definition.
     if (next >= end && (*trace).falls == 1u) || refine_over(o, d, next) <= 0.0 {

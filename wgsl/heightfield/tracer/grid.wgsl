@@ -48,7 +48,7 @@ fn grid_crossing(o: vec3<f32>, d: vec3<f32>, line: vec2<i32>) -> vec2<f32> {
 
 /// The part of the ray inside the block along each axis: nears, then fars.
 fn grid_within(o: vec3<f32>, d: vec3<f32>) -> array<vec3<f32>, 2> {
-    let high = vec3<f32>(vec2<f32>(relief.domain), 1.0);
+    let high = vec3<f32>(vec2<f32>(heightmap.domain), 1.0);
     let flat = abs(d) < vec3<f32>(GRID_FLAT);
     let slope = select(d, vec3<f32>(1.0), flat);
     let a = -o / slope;
@@ -84,7 +84,7 @@ fn grid_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     if front > face + GRID_ON_FACE * abs(face) {
         return trace;
     }
-    let under = z <= relief_height(trace.cell, at);
+    let under = z <= heightmap_height(trace.cell, at);
     if face == near.z && d.z > 0.0 {
         grid_mark(&trace, FACE_BASE, at);
     } else if face == near.x && under {
@@ -97,7 +97,7 @@ fn grid_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
 
 fn grid_mark(trace: ptr<function, Trace>, face: u32, at: vec2<f32>) {
     (*trace).state = STATE_HIT;
-    (*trace).id = relief_number((*trace).cell) | (face << FACE_BITS);
+    (*trace).id = heightmap_number((*trace).cell) | (face << FACE_BITS);
     (*trace).u = at.x;
     (*trace).v = at.y;
 }
@@ -111,7 +111,7 @@ fn grid_lines(d: vec3<f32>, first: vec2<i32>, second: vec2<i32>) -> vec2<i32> {
 /// The cell of the domain that the ray is in at s: it enters the cell at s or before and leaves
 /// it after s. The crossings decide, not the rounded position.
 fn grid_cell(o: vec3<f32>, d: vec3<f32>, s: f32) -> vec2<i32> {
-    let last = relief.domain - 1;
+    let last = heightmap.domain - 1;
     let p = o.xy + s * d.xy;
     let i = clamp(vec2<i32>(floor(p)), vec2<i32>(0), last);
     let step = grid_lines(d, vec2<i32>(-1), vec2<i32>(1));
@@ -185,7 +185,7 @@ fn grid_uv(o: vec3<f32>, d: vec3<f32>, cell: vec2<i32>, s: f32) -> vec2<f32> {
 fn grid_solve(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, to: f32) -> bool {
     let cell = (*trace).cell;
     let p = vec3<f32>(o.xy - vec2<f32>(cell), o.z);
-    let s = patch_hit(relief_corners(cell), p, d, (*trace).enter, to);
+    let s = patch_hit(heightmap_corners(cell), p, d, (*trace).enter, to);
     if s < PATCH_NONE {
         grid_hit(o, d, trace, s);
     }

@@ -4,7 +4,7 @@
 /// Starts a ray with all of its steps.
 fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     var trace = grid_begin(o, d, front, to);
-    trace.left = relief.steps;
+    trace.left = heightmap.steps;
     return trace;
 }
 
@@ -17,7 +17,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     let s = (*trace).s;
     let left = (*trace).left;
     // Only the first step can begin under the surface.
-    if left == relief.steps {
+    if left == heightmap.steps {
         if refine_over(o, d, s) <= 0.0 {
             grid_hit(o, d, trace, s);
             return STATE_HIT;

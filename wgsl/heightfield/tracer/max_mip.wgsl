@@ -10,7 +10,7 @@ const MAX_MIP_TRUST = 1.0 - 1e-5;
 /// Starts a ray at the node over everything.
 fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     var trace = grid_begin(o, d, front, to);
-    trace.level = relief.levels - 1u;
+    trace.level = heightmap.levels - 1u;
     return trace;
 }
 
@@ -52,9 +52,9 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     grid_pass(o, d, trace, exit, lines);
     // Up if the line also ends a node of the next level, or the tile.
     let line = select(lines.y, lines.x, exit.y == 0.0);
-    let width = select(relief.cells.y, relief.cells.x, exit.y == 0.0);
+    let width = select(heightmap.cells.y, heightmap.cells.x, exit.y == 0.0);
     let parts = ((line % width) & ((2i << level) - 1)) == 0;
-    if parts && level + 1u < relief.levels {
+    if parts && level + 1u < heightmap.levels {
         (*trace).level = level + 1u;
     }
     return STATE_MOVING;

@@ -12,7 +12,7 @@ const SETTLE_CELLS = 4u;
 /// The ray's height above the surface at s.
 fn refine_over(o: vec3<f32>, d: vec3<f32>, s: f32) -> f32 {
     let cell = grid_cell(o, d, s);
-    return o.z + s * d.z - relief_height(cell, grid_uv(o, d, cell, s));
+    return o.z + s * d.z - heightmap_height(cell, grid_uv(o, d, cell, s));
 }
 
 /// Marks a hit at s, in the cell there.
@@ -25,7 +25,7 @@ fn refine_mark(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, s: f32) 
 fn refine_binary(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracket: vec2<f32>) {
     var low = bracket.x;
     var high = bracket.y;
-    for (var i = 0u; i < relief.rounds; i++) {
+    for (var i = 0u; i < heightmap.rounds; i++) {
         count_iterations(1u);
         let middle = 0.5 * (low + high);
         if refine_over(o, d, middle) <= 0.0 {
@@ -34,7 +34,7 @@ fn refine_binary(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
             low = middle;
         }
     }
-    if RELIEF_BOXES {
+    if HEIGHTMAP_BOXES {
         refine_settle(o, d, trace, vec2<f32>(low, high));
         return;
     }
@@ -48,7 +48,7 @@ fn refine_secant(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
     var above = max(refine_over(o, d, low), 0.0);
     var under = min(refine_over(o, d, high), 0.0);
     var at = high;
-    for (var i = 0u; i < relief.rounds; i++) {
+    for (var i = 0u; i < heightmap.rounds; i++) {
         count_iterations(1u);
         let drop = above - under;
         // With both ends on the surface the first is the hit.
@@ -65,7 +65,7 @@ fn refine_secant(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
             above = over;
         }
     }
-    if RELIEF_BOXES {
+    if HEIGHTMAP_BOXES {
         refine_settle(o, d, trace, vec2<f32>(low, high));
         return;
     }

@@ -12,13 +12,13 @@ fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
 /// node that lies under it, or to its end if the whole surface lies under it.
 fn relaxed_rise(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, z: f32) -> u32 {
     // The only node of the last level.
-    let top = maxima[maxima_place(relief.levels - 1u, vec2<u32>(0u))];
+    let top = maxima[maxima_place(heightmap.levels - 1u, vec2<u32>(0u))];
     if z > top {
         return grid_end(o, d, trace);
     }
     var node = maxima_node((*trace).cell, 0u);
     var level = 0u;
-    while level + 1u < relief.levels {
+    while level + 1u < heightmap.levels {
         let wider = maxima_node((*trace).cell, level + 1u);
         if maxima[wider.at] >= z {
             break;
@@ -37,7 +37,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     }
     count_evaluation();
     let cell = (*trace).cell;
-    let apex = relief_apex(cell);
+    let apex = heightmap_apex(cell);
     let end = (*trace).end;
     let exit = grid_exit(o, d, cell, cell + 1);
     let to = min(exit.x, end);
@@ -51,8 +51,8 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if d.z > 0.0 {
         return relaxed_rise(o, d, trace, z);
     }
-    let ratio = ratios_at(relief_number(cell)) * WALK_TRUST_RATIO;
-    let next = (*trace).s + cone_way(d, ratio, z - apex, relief.offset) * WALK_TRUST_WAY;
+    let ratio = ratios_at(heightmap_number(cell)) * WALK_TRUST_RATIO;
+    let next = (*trace).s + cone_way(d, ratio, z - apex, heightmap.offset) * WALK_TRUST_WAY;
     if next > exit.x && exit.x < end {
         let last = min(next, end);
         // At the bottom the ray is under the surface by definition.

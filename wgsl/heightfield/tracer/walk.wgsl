@@ -16,7 +16,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     }
     count_evaluation();
     let cell = (*trace).cell;
-    let apex = relief_apex(cell);
+    let apex = heightmap_apex(cell);
     let exit = grid_exit(o, d, cell, cell + 1);
     let to = min(exit.x, (*trace).end);
     let z = o.z + (*trace).s * d.z;
@@ -26,7 +26,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
         }
     }
     // The way counts from where the ray stands.
-    let ratio = ratios_at(relief_number(cell)) * WALK_TRUST_RATIO;
-    let next = (*trace).s + cone_way(d, ratio, z - apex, relief.offset) * WALK_TRUST_WAY;
+    let ratio = ratios_at(heightmap_number(cell)) * WALK_TRUST_RATIO;
+    let next = (*trace).s + cone_way(d, ratio, z - apex, heightmap.offset) * WALK_TRUST_WAY;
     return grid_leave(o, d, trace, cell, cell + 1, 0u, exit, next);
 }

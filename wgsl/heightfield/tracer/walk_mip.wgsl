@@ -18,11 +18,11 @@ fn trace_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
 
 /// The level whose nodes are as wide as a pixel at s, or narrower by less than half.
 fn walk_mip_level(s: f32) -> u32 {
-    if relief.lod <= 0.0 {
+    if heightmap.lod <= 0.0 {
         return 0u;
     }
-    let texels = clamp(s / relief.lod, 1.0, WALK_MIP_WIDEST);
-    return min(firstLeadingBit(u32(texels)), relief.levels - 1u);
+    let texels = clamp(s / heightmap.lod, 1.0, WALK_MIP_WIDEST);
+    return min(firstLeadingBit(u32(texels)), heightmap.levels - 1u);
 }
 
 /// Marks the hit of a node by a ray that is `over` above its maximum: where the ray comes down to
@@ -64,9 +64,9 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     // Ratios are stored as the maxima are, and the maxima of cells are their apexes.
     var at = node.at;
     if !WALK_MIP_NODES {
-        at = relief_number((*trace).cell);
+        at = heightmap_number((*trace).cell);
     }
     let ratio = ratios_at(at) * WALK_TRUST_RATIO;
-    let next = (*trace).s + cone_way(d, ratio, z - maxima[at], relief.offset) * WALK_TRUST_WAY;
+    let next = (*trace).s + cone_way(d, ratio, z - maxima[at], heightmap.offset) * WALK_TRUST_WAY;
     return grid_leave(o, d, trace, node.low, node.high, level, exit, next);
 }

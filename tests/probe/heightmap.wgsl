@@ -2,7 +2,7 @@
 // take in; where it ended, its state and what it met out.
 
 fn answer(q: Numbers) -> Numbers {
-    relief_load();
+    heightmap_load();
     var trace = trace_begin(q.a.xyz, q.b.xyz, q.a.w, q.b.w);
     var s = STATE_MOVING;
     for (var i = 0u; i < u32(q.c.x) && s == STATE_MOVING; i++) {

@@ -1,0 +1,166 @@
+//! What a render costs beside its kernels, in two builds of this program; `scripts/overhead`
+//! makes the builds and calls it: `cargo bench --bench overhead -- OLD NEW [--write]`.
+//!
+//! Times are medians of warm runs. The overhead is march and trace on the clock less the
+//! device's own time for them.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use anyhow::{Context, Result, ensure};
+use conemarch::gpu::device::{Adapters, Choice, Device};
+use conemarch::gpu::render::Renderer;
+use conemarch::picture::frame::Frame;
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset;
+use conemarch::scene::Assets;
+use serde_json::Value;
+
+#[path = "common/markdown.rs"]
+mod markdown;
+
+/// The marks around the tables in the page.
+const MARKS: [&str; 2] = [
+    "<!-- scripts/overhead COMMIT --write: begin -->",
+    "<!-- scripts/overhead COMMIT --write: end -->",
+];
+/// Processes of each build per row; each has warm runs of its own.
+const RUNS: usize = 5;
+/// Presets whose second frame is looked at.
+const LIVE: [&str; 3] = ["mandelbox", "mandelbox-gate", "terrain"];
+
+fn main() -> Result<()> {
+    // Cargo adds `--bench` to what it is given.
+    let args = std::env::args().skip(1).filter(|a| a != "--bench");
+    let args: Vec<String> = args.collect();
+    ensure!(args.len() >= 2, "give the old and the new program");
+    let text = [small(&args)?, large(&args)?, frames()?].join("\n");
+    println!("{text}");
+    if args.iter().any(|a| a == "--write") {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md");
+        let mut page = std::fs::read_to_string(&path)?;
+        markdown::replace(&mut page, MARKS, &format!("\n{text}\n"))?;
+        std::fs::write(path, page)?;
+    }
+    Ok(())
+}
+
+/// March and trace of a preset by both builds in turns: milliseconds on the clock, and those of
+/// the device.
+fn measured(args: &[String], preset: &str, size: &str) -> Result<[[f64; 2]; 2]> {
+    let mut all = [vec![], vec![]];
+    for _ in 0..RUNS {
+        for (runs, program) in all.iter_mut().zip(args) {
+            runs.push(run(program, preset, size)?);
+        }
+    }
+    // The middle run by the overhead, which both figures belong to.
+    Ok(all.map(|mut runs| {
+        runs.sort_by(|a, b| (a[0] - a[1]).total_cmp(&(b[0] - b[1])));
+        runs[RUNS / 2]
+    }))
+}
+
+fn run(program: &str, preset: &str, size: &str) -> Result<[f64; 2]> {
+    let file = std::env::temp_dir().join(format!("overhead-{}.json", std::process::id()));
+    let picture = file.with_extension("png");
+    let mut command = Command::new(program);
+    command.args(["render", preset, "--size", size, "--stats"]);
+    command.arg(&file).arg("-o").arg(&picture);
+    let status = command.stderr(Stdio::null()).status()?;
+    ensure!(status.success(), "{program} cannot render {preset}");
+    let stats: Value = serde_json::from_str(&std::fs::read_to_string(&file)?)?;
+    std::fs::remove_file(file)?;
+    std::fs::remove_file(picture)?;
+    let wall = stats["wall_ms"].as_f64().context("no wall_ms")?;
+    let passes = stats["passes"].as_array().context("no passes")?;
+    let marched = passes.iter().filter(|p| {
+        let name = p["name"].as_str().unwrap_or_default();
+        name.starts_with("march") || name == "trace"
+    });
+    let device: Option<f64> = marched.map(|p| p["gpu_ms"].as_f64()).sum();
+    Ok([wall, device.context("the device has no timestamps")?])
+}
+
+/// The overhead at a size at which kernels take little.
+fn small(args: &[String]) -> Result<String> {
+    let mut rows = Vec::new();
+    for preset in LIVE {
+        let [old, new] = measured(args, preset, "64x36")?.map(|[wall, device]| wall - device);
+        rows.push(format!(
+            "| {preset} | {old:.2} | {new:.2} | {:.2} |",
+            new / old
+        ));
+    }
+    Ok(markdown::table(
+        "march and trace, 64 x 36 | overhead before, ms | now, ms | ratio",
+        "lr",
+        rows,
+    ))
+}
+
+/// March and trace at 1280 x 720.
+fn large(args: &[String]) -> Result<String> {
+    let mut rows = Vec::new();
+    for (preset, _) in preset::BUILTIN {
+        let [old, new] = measured(args, preset, "1280x720")?.map(|[wall, _]| wall);
+        rows.push(format!(
+            "| {preset} | {old:.1} | {new:.1} | {:.2} |",
+            new / old
+        ));
+    }
+    Ok(markdown::table(
+        "march and trace, 1280 x 720 | before, ms | now, ms | ratio",
+        "lr",
+        rows,
+    ))
+}
+
+/// What the host does for the first frame of a scene, and for a frame from another eye.
+fn frames() -> Result<String> {
+    let adapters = Adapters::find();
+    let chosen = adapters.choose(&Choice::Auto)?;
+    let (adapter, _) = chosen.context("there is no adapter")?;
+    let mut rows = Vec::new();
+    for name in LIVE {
+        let mut renderer = Renderer::new(Device::open(adapter)?);
+        let assets = Assets::default();
+        let mut plan = preset::load(name, &[])?.plan;
+        plan.size = [64, 36];
+        let mut render = |plan: &Plan| -> Result<(Frame, f64)> {
+            let extras = Extras {
+                time: true,
+                ..Extras::default()
+            };
+            let start = Instant::now();
+            let frame = renderer.render(plan, &assets, extras, &mut |_| true)?;
+            Ok((frame, start.elapsed().as_secs_f64() * 1e3))
+        };
+        let (first, _) = render(&plan)?;
+        let mut later = Vec::new();
+        for _ in 0..21 {
+            plan.camera.eye *= 1.0001;
+            let (frame, ms) = render(&plan)?;
+            let kernels: f64 = frame.passes.iter().filter_map(|p| p.gpu_ms).sum();
+            later.push((ms - kernels, frame));
+        }
+        later.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (ms, again) = &later[later.len() / 2];
+        for (what, frame, ms) in [
+            ("first", &first, "-".to_string()),
+            ("from another eye", again, format!("{ms:.2}")),
+        ] {
+            let t = frame.traffic.context("no device")?;
+            rows.push(format!(
+                "{name} | {what} | {} | {} | {} | {} | {} | {ms}",
+                t.drains, t.submissions, t.uploads, t.compilations, t.allocations
+            ));
+        }
+    }
+    Ok(markdown::table(
+        "preset | frame | drains | submissions | bytes uploaded | programs compiled | buffers created | overhead, ms",
+        "llr",
+        rows,
+    ))
+}

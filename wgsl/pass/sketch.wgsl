@@ -1,0 +1,50 @@
+// The stage after a cone level: it shows the fronts, each cell as a square of pixels. The normal
+// follows from the differences between the fronts on either side, so this asks nothing of the
+// scene. The two have the same place under their parents, whose fronts would show otherwise.
+
+/// Light on a sketch that comes from everywhere, and what the sun adds.
+const SKETCH_FILL = 0.25;
+const SKETCH_KEY = 0.5;
+
+/// Where the front of a cell is, relative to the eye; at the block's edge that of the last cell.
+fn sketch_point(cell: vec2<i32>) -> vec3<f32> {
+    let at = vec2<u32>(clamp(cell, vec2<i32>(0), vec2<i32>(turn.stage.cells) - 1));
+    let front = cell_front(at.y * turn.stage.cells.x + at.x);
+    let pixel = f32(turn.stage.divisor) * (vec2<f32>(turn.stage.origin + at) + 0.5);
+    return front * normalize(view_direction(pixel.x, pixel.y));
+}
+
+@compute @workgroup_size(64)
+fn sketch(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    view_load();
+    look_load();
+    queue_load();
+    let index = queue_tile(group.x, lane);
+    if index == QUEUE_NONE {
+        return;
+    }
+    let cell = queue_cell(index);
+    let at = vec2<i32>(cell);
+    let middle = f32(turn.stage.divisor) * (vec2<f32>(turn.stage.origin + cell) + 0.5);
+    var c = sky(normalize(view_direction(middle.x, middle.y)));
+    let state = cells[turn.stage.state + index];
+    if state == STATE_HIT || state == STATE_UNCONVERGED {
+        let across = sketch_point(at + vec2<i32>(1, 0)) - sketch_point(at - vec2<i32>(1, 0));
+        let down = sketch_point(at + vec2<i32>(0, 1)) - sketch_point(at - vec2<i32>(0, 1));
+        let n = cross(down, across);
+        // The front of a neighbour in the sky was never written: any normal will do there.
+        let facing = dot(n, look.light) / max(length(n), 1e-20);
+        let lit = SKETCH_FILL * look.fill + SKETCH_KEY * look.key * clamp(facing, 0.0, 1.0);
+        c = palette_at(0.5) * lit;
+    }
+    let first = turn.stage.divisor * (turn.stage.origin + cell);
+    let end = min(first + turn.stage.divisor, view.size);
+    for (var y = first.y; y < end.y; y++) {
+        for (var x = first.x; x < end.x; x++) {
+            tone_store(vec2<u32>(x, y), c);
+        }
+    }
+}
