@@ -1,6 +1,6 @@
 //! The ground that all other rooms stand on.
 //!
-//! - [`array`]: arrays of numbers that a device keeps from frame to frame
+//! - [`mod@array`]: arrays of numbers that a device keeps from frame to frame
 //! - [`key`]: the keys of presets
 //! - [`shader`]: WGSL programs joined from files
 //! - [`view`]: the camera's rays and cones
