@@ -144,7 +144,10 @@ fn no_struct_that_both_sides_read_is_left_out() {
         for part in text.split("#[repr(C)]").skip(1) {
             let after = part.split("pub struct ").nth(1).unwrap();
             let name = after.split([' ', '(', '<']).next().unwrap();
-            assert!(listed.contains(&name), "{name} in {path}");
+            assert!(
+                listed.contains(&name),
+                "{name} in {path}; add it to `layouts!` here"
+            );
             found += 1;
         }
     }
