@@ -125,7 +125,11 @@ impl Renderer {
                 (false, normals) => 1 + u32::from(normals),
             },
         };
-        let parameters = parameters(plan, &scene, assets);
+        let mut parameters = parameters(plan, &scene, assets);
+        if shown {
+            let steps = tone_steps(plan.look.exposure.exp2());
+            parameters.push(("tone_steps", bytes_of(&steps).to_vec()));
+        }
         let of_look = |p: &&(&str, Vec<u8>)| p.0 == "look_parameters";
         let look = parameters.iter().find(of_look).map(|p| p.1.clone());
         let look = look.unwrap_or_default();
@@ -224,11 +228,9 @@ impl Renderer {
 fn parameters(plan: &Plan, scene: &AnySolid, assets: &Assets) -> Parameters {
     let view = plan.view().uniform();
     let look = Light::of(plan, assets).uniform();
-    let steps = tone_steps(plan.look.exposure.exp2());
     let frame = [
         ("view_parameters", bytes_of(&view).to_vec()),
         ("look_parameters", bytes_of(&look).to_vec()),
-        ("tone_steps", bytes_of(&steps).to_vec()),
     ];
     scene.twin().uniforms().into_iter().chain(frame).collect()
 }
