@@ -49,7 +49,7 @@ impl Parts {
             depth: Range::between(front, front + area),
             state: Range::between(0, area),
             tally: Range::between(tally, front).only_if(extras.count),
-            level_states: Range::between(area, tally).only_if(extras.levels),
+            level_states: Range::between(area, tally).only_if(extras.levels || extras.count),
             level_fronts: Range::between(front + area, layout.mark()).only_if(extras.levels),
             pixels: Range::between(0, 4 * layers * area).only_if(!extras.depth_only),
         }
@@ -87,7 +87,7 @@ impl Parts {
         &self,
         device: &Device,
         from: &Staging,
-        layout: &Layout,
+        (layout, generation): (&Layout, u32),
         passes: &[Pass],
         frame: &mut Frame,
     ) -> Result<(), DeviceError> {
@@ -103,10 +103,13 @@ impl Parts {
             from.read(device, starts[i], self.of_cells()[i].words as usize)
         };
         let whole = Place::new(layout, 1, frame.size[0]);
-        let states = words(1)?;
+        let states_of = |words: Vec<u32>| -> Vec<Option<State>> {
+            words.iter().map(|w| state(*w, generation)).collect()
+        };
+        let states = states_of(words(1)?);
         let mut depth: Vec<f32> = from.read(device, starts[0], self.depth.words as usize)?;
         for (t, s) in depth.iter_mut().zip(&states) {
-            if is_sky(*s) {
+            if code(*s) == State::Sky as u8 {
                 *t = f32::INFINITY;
             }
         }
@@ -114,7 +117,7 @@ impl Parts {
         whole.copy(&depth, &mut frame.depth);
         whole.copy(&codes, &mut frame.state);
         let tally: Vec<[u32; 2]> = from.read(device, starts[2], self.tally.words as usize / 2)?;
-        let level_states = words(3)?;
+        let level_states = states_of(words(3)?);
         let fronts: Vec<f32> = from.read(device, starts[4], self.level_fronts.words as usize)?;
         for (i, pass) in passes.iter().enumerate().filter(|(_, p)| p.marches()) {
             let divisor = match pass {
@@ -124,8 +127,16 @@ impl Parts {
             let place = Place::new(layout, divisor, frame.size[0]);
             let first = layout.state(divisor) as usize;
             let cells = first..first + layout.count(divisor) as usize;
+            let area = layout.count(1) as usize;
+            let states = match divisor {
+                1 => &states[..],
+                _ => level_states
+                    .get(cells.start - area..cells.end - area)
+                    .unwrap_or_default(),
+            };
             let work = tally.get(cells.clone()).unwrap_or_default();
-            let work: Vec<Work> = work.iter().map(|w| work_of(*w)).collect();
+            let work = work.iter().zip(states).map(|(w, s)| work_of(*w, *s));
+            let work: Vec<Work> = work.collect();
             if !work.is_empty() {
                 let figures = &mut frame.passes[i];
                 let sum = |f: fn(&Work) -> u32| work.iter().map(|w| u64::from(f(w))).sum::<u64>();
@@ -138,18 +149,10 @@ impl Parts {
             }
             let layer = &mut frame.levels[i];
             place.copy(&work, &mut layer.work);
-            let area = layout.count(1) as usize;
-            let cells = cells.start - area..cells.end - area;
-            let Some(states) = level_states.get(cells.clone()) else {
-                continue;
-            };
-            let mut fronts = fronts[cells].to_vec();
-            for (front, state) in fronts.iter_mut().zip(states) {
-                if State::from_code(*state).is_none() {
-                    *front = f32::MAX;
-                }
-            }
-            place.copy(&fronts, &mut layer.front);
+            let fronts = fronts.get(cells.start - area..cells.end - area);
+            let fronts = fronts.unwrap_or_default().iter().zip(states);
+            let fronts = fronts.map(|(front, state)| state.map_or(f32::MAX, |_| *front));
+            place.copy(&fronts.collect::<Vec<_>>(), &mut layer.front);
             let codes: Vec<u8> = states.iter().map(|s| code(*s)).collect();
             place.copy(&codes, &mut layer.state);
         }
@@ -167,20 +170,24 @@ impl Parts {
     }
 }
 
-fn work_of([evaluations, iterations]: [u32; 2]) -> Work {
-    Work {
+/// The state in a word of a block; `None` if the block did not visit the cell.
+fn state(word: u32, generation: u32) -> Option<State> {
+    let visited = word >> 2 == generation;
+    visited.then(|| State::from_code(word & 3)).flatten()
+}
+
+/// What the device counted in a cell, which is out of date if the cell was not visited.
+fn work_of([evaluations, iterations]: [u32; 2], state: Option<State>) -> Work {
+    let counted = Work {
         evaluations,
         iterations,
-    }
+    };
+    state.map(|_| counted).unwrap_or_default()
 }
 
 /// A state in a frame. Cells that were not visited are sky, as their parents are.
-fn code(state: u32) -> u8 {
-    State::from_code(state).unwrap_or(State::Sky) as u8
-}
-
-fn is_sky(state: u32) -> bool {
-    code(state) == State::Sky as u8
+fn code(state: Option<State>) -> u8 {
+    state.unwrap_or(State::Sky) as u8
 }
 
 /// The place of a block in a layer of the whole image.

@@ -3,11 +3,13 @@
 
 use crate::pass::turn::Stage;
 
-/// The time in milliseconds that a dispatch is made for: long against its overhead, short
-/// against a submission.
-const AIM_MS: f64 = 5.0;
+/// The longest time in milliseconds that a dispatch is made for. At the end of each, some threads
+/// wait for others: dispatches of 5 ms cost a software device up to a tenth.
+pub const LONGEST_MS: f64 = 30.0;
+/// The time that a dispatch of unknown cost is taken for.
+const FIRST_MS: f64 = 5.0;
 /// The product of workgroups and steps of a first dispatch. At 64 steps of a fractal with few
-/// iterations it takes about the aimed time on a slow device.
+/// iterations it takes about `FIRST_MS` on a slow device.
 const FIRST_SLICE: u32 = 64 * 512;
 /// Rounds beyond the first that are expected of a stage with a step limit.
 const ROUNDS: u32 = 2;
@@ -31,7 +33,7 @@ impl Default for Cost {
     fn default() -> Self {
         Self {
             slice: FIRST_SLICE,
-            dispatch_ms: AIM_MS,
+            dispatch_ms: FIRST_MS,
             last: None,
         }
     }
@@ -55,17 +57,22 @@ impl Cost {
             .map_or(first + ROUNDS, |last| last.min(first + MOST_AHEAD) + 1)
     }
 
-    /// Learns from a stage that so far took so many dispatches of so many milliseconds.
-    pub fn learn(&mut self, each_ms: f64, dispatches: u32, stage: &Stage) {
+    /// Learns from a stage that so far took so many dispatches of so many milliseconds, which
+    /// should be about `aim_ms`.
+    pub fn learn(&mut self, each_ms: f64, dispatches: u32, stage: &Stage, aim_ms: f64) {
         self.dispatch_ms = each_ms.max(1e-3);
         self.last = Some(dispatches);
-        if each_ms > 2.0 * AIM_MS && self.slice > stage.chunk {
-            self.slice /= 2;
-        } else if each_ms < 0.4 * AIM_MS && dispatches > 1 && self.of_first_round(stage) > 1 {
-            self.slice = self.slice.saturating_mul(2);
-        } else {
-            return;
+        let shorter = each_ms > 1.33 * aim_ms && self.slice > stage.chunk;
+        let longer = each_ms < 0.45 * aim_ms && dispatches > 1 && self.of_first_round(stage) > 1;
+        if shorter || longer {
+            self.scale(if shorter { 0.5 } else { 2.0 });
         }
+    }
+
+    /// Makes dispatches longer by a factor.
+    pub fn scale(&mut self, factor: f64) {
+        self.slice = (f64::from(self.slice) * factor).max(1.0) as u32;
+        self.dispatch_ms *= factor;
         self.last = None;
     }
 }

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use bytemuck::bytes_of;
 
 use crate::gpu::conemap::generate::Maker;
-use crate::gpu::cost::Cost;
+use crate::gpu::cost::{Cost, LONGEST_MS};
 use crate::gpu::device::Device;
 pub use crate::gpu::error::RenderError;
 use crate::gpu::stamps::Stamps;
@@ -162,6 +162,7 @@ impl Renderer {
                 traffic.allocations = 1;
                 kept = Kept {
                     costs: vec![Cost::default(); kinds.len()],
+                    aim_ms: LONGEST_MS,
                     stamps: Stamps::new(device),
                     ..Kept::default()
                 };

@@ -1,16 +1,20 @@
-//! The device's own time of a submission.
+//! The device's own time of the stages of a submission.
 
 use crate::gpu::buffer::create;
 use crate::gpu::device::Device;
+use crate::pass::turn::MOST_STAGES;
 
-/// Bytes of a pair of timestamps.
-pub const PAIR: u64 = 16;
+/// A timestamp at the begin of a stage, and one at its end.
+pub type Pair = [u64; 2];
 
-/// A pair of timestamps, written by one compute pass.
+/// Bytes of the pairs of all stages of a submission.
+pub const PAIRS: u64 = (MOST_STAGES * size_of::<Pair>()) as u64;
+
+/// Pairs of timestamps, one for each stage of a submission.
 pub struct Stamps {
     set: wgpu::QuerySet,
-    /// Where the pair is resolved to.
-    pub pair: wgpu::Buffer,
+    /// Where the pairs are resolved to.
+    pub pairs: wgpu::Buffer,
     tick_ns: f32,
 }
 
@@ -21,33 +25,33 @@ impl Stamps {
         let set = device.device.create_query_set(&wgpu::QuerySetDescriptor {
             label: Some("stamps"),
             ty: wgpu::QueryType::Timestamp,
-            count: 2,
+            count: 2 * MOST_STAGES as u32,
         });
         let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
         Some(Self {
             set,
-            pair: create(device, "stamps", PAIR, usage),
+            pairs: create(device, "stamps", PAIRS, usage),
             tick_ns,
         })
     }
 
-    /// What a compute pass writes at its begin and its end.
-    pub fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
+    /// What the compute pass of a stage writes, the first of a submission being 0.
+    pub fn writes(&self, nth: u32) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.set,
-            beginning_of_pass_write_index: Some(0),
-            end_of_pass_write_index: Some(1),
+            beginning_of_pass_write_index: Some(2 * nth),
+            end_of_pass_write_index: Some(2 * nth + 1),
         }
     }
 
-    /// Encodes the resolution of the pair.
-    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.resolve_query_set(&self.set, 0..2, &self.pair, 0);
+    /// Encodes the resolution of so many pairs.
+    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder, count: u32) {
+        encoder.resolve_query_set(&self.set, 0..2 * count, &self.pairs, 0);
     }
 
-    /// Milliseconds between the two.
+    /// Milliseconds between the two timestamps of a pair.
     #[allow(clippy::cast_precision_loss, reason = "a time for reading")]
-    pub fn milliseconds(&self, pair: [u64; 2]) -> f64 {
+    pub fn milliseconds(&self, pair: Pair) -> f64 {
         pair[1].saturating_sub(pair[0]) as f64 * f64::from(self.tick_ns) * 1e-6
     }
 }

@@ -56,6 +56,8 @@ pub struct Target {
     needs: Needs,
     parameters: Vec<Parameter>,
     arrays: Vec<Arc<Array>>,
+    /// The number of the last block of the last frame. States contain it in 30 bits.
+    generation: u32,
     /// The turn.
     pub turn: wgpu::Buffer,
     /// The lists of cells.
@@ -175,6 +177,7 @@ impl Target {
             needs,
             parameters,
             arrays: scene.iter().map(|a| a.array.clone()).collect(),
+            generation: 0,
             turn,
             lists,
             cells,
@@ -192,7 +195,8 @@ impl Target {
             found.is_some_and(|(_, bytes)| own.bytes.len() == bytes.len())
         };
         let mut arrays = self.arrays.iter().zip(scene);
-        self.needs == *needs
+        self.generation < u32::MAX >> 3
+            && self.needs == *needs
             && self.parameters.iter().all(same)
             && self.arrays.len() == scene.len()
             && arrays.all(|(own, kept)| Arc::ptr_eq(own, &kept.array))
@@ -212,8 +216,19 @@ impl Target {
         written
     }
 
-    /// Starts a frame with one of its stages.
-    pub fn begin(&self, device: &Device, number: u32) {
+    /// Starts a frame of new blocks.
+    pub fn begin(&mut self, device: &Device, blocks: usize) {
+        self.generation += blocks as u32;
+        self.resume(device, 0);
+    }
+
+    /// The number of the block that so many blocks follow.
+    pub fn generation(&self, later: usize) -> u32 {
+        self.generation - later as u32
+    }
+
+    /// Starts a frame of the last blocks with one of its stages.
+    pub fn resume(&self, device: &Device, number: u32) {
         let turn = Turn {
             number,
             ..Turn::zeroed()

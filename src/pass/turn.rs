@@ -56,8 +56,8 @@ pub struct Stage {
     pub tally: u32,
     /// Where the marks of hits start, three words to a pixel.
     pub mark: u32,
-    /// Unused.
-    pub pad: u32,
+    /// The number of the block, which is part of every state.
+    pub generation: u32,
 }
 
 /// What the next dispatch does. Only the device writes it.
@@ -122,7 +122,7 @@ pub struct ListsHead {
     pub moving: u32,
     /// Cells whose children the next stage visits.
     pub parents: u32,
-    /// Cells that should have been visited and were not, or the reverse.
+    /// Cells that were left out.
     pub wrong: u32,
     /// Unused.
     pub pad: u32,
@@ -130,14 +130,12 @@ pub struct ListsHead {
     pub dispatches: [u32; MOST_STAGES],
 }
 
-/// Words that a workgroup of the stage `reset` writes.
-const RESET_WORDS: u32 = 1024;
+/// Squares of four pixels that a workgroup of the stage `census` looks at.
+const CENSUS_SQUARES: u32 = 1024;
 
 /// What a stage does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StageKind {
-    /// Marks all cells as not visited, and sets the counts of work to 0.
-    Reset,
     /// A pass over the block.
     Pass(Pass),
     /// Shows the fronts of a cone level in the picture.
@@ -160,8 +158,7 @@ impl StageKind {
             [Some(Self::Pass(*pass)), after.filter(|_| shown)]
         };
         let passes = passes.iter().flat_map(of_pass).flatten();
-        let all = [Self::Reset].into_iter().chain(passes);
-        all.chain([Self::Census]).collect()
+        passes.chain([Self::Census]).collect()
     }
 
     /// The program of the stage.
@@ -174,7 +171,6 @@ impl StageKind {
         };
         match self {
             Self::Pass(pass) => program(plan, solid, pass, extras),
-            Self::Reset => over_cells("reset", &[wgsl!("pass/reset.wgsl")]),
             Self::Census => over_cells("census", &[wgsl!("pass/census.wgsl")]),
             Self::Develop => {
                 let own = [wgsl!("pass/tone.wgsl"), wgsl!("pass/develop.wgsl")];
@@ -322,13 +318,8 @@ impl Layout {
             ..Stage::zeroed()
         };
         match kind {
-            StageKind::Reset => Stage {
-                tiles: self.tally(2 * self.coarsest).div_ceil(RESET_WORDS),
-                tally: self.all(),
-                mark: self.tally(2 * self.coarsest),
-                ..at(1)
-            },
             StageKind::Census => Stage {
+                tiles: self.count(2).div_ceil(CENSUS_SQUARES),
                 divisor: self.coarsest,
                 ..at(1)
             },

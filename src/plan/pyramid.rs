@@ -34,6 +34,9 @@ pub fn levels(coarsest: u32, fudge: &[f64], steps: u32) -> Vec<Level> {
     (0..coarsest.ilog2()).map(level).collect()
 }
 
+/// The longest edge of a block in pixels. Two places fit into one word of 32 bits.
+pub const MOST_EDGE: u32 = 65_535;
+
 /// A rectangle of pixels of the full image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
@@ -46,12 +49,13 @@ pub struct Block {
 impl Block {
     /// Cuts an image into blocks, row by row. Their edge is the largest multiple of `coarsest`
     /// that is at most `edge`, but at least `coarsest`. An image with no more pixels than such a
-    /// block is one block.
+    /// block is one block, if no edge exceeds [`MOST_EDGE`].
     pub fn cut(size: [u32; 2], edge: u32, coarsest: u32) -> Vec<Block> {
         let edge = (edge / coarsest).max(1) * coarsest;
         let [area, most] = [size, [edge; 2]].map(|s| u64::from(s[0]) * u64::from(s[1]));
-        let edge = match area <= most {
-            true => size[0].max(size[1]),
+        let longest = size[0].max(size[1]);
+        let edge = match area <= most && longest <= MOST_EDGE {
+            true => longest,
             false => edge,
         };
         let starts = |axis: usize| (0..size[axis]).step_by(edge as usize);

@@ -9,8 +9,8 @@
 /// The workgroups of the dispatch, as an indirect dispatch reads them.
 @group(2) @binding(3) var<storage, read_write> workgroups: array<u32, 3>;
 
-/// The largest number of workgroups along an axis.
-const MOST_GROUPS = 65535u;
+/// The largest number of workgroups.
+const MOST_GROUPS = 65535u * PARTS;
 
 /// Workgroups that visit what is listed.
 fn groups_of_round() -> u32 {
@@ -77,9 +77,9 @@ fn arrange() {
         // A stage may have nothing to visit.
         let left = groups_of_round() - turn.first;
         let most = clamp(stage_parameters.slice / turn.chunk, 1u, MOST_GROUPS);
-        turn.groups = min(left, most);
+        turn.groups = (min(left, most) + PARTS - 1u) / PARTS * PARTS;
         turn.dispatches += min(turn.groups, 1u);
         lists.dispatches[stage_parameters.index] = turn.dispatches;
     }
-    workgroups = array<u32, 3>(turn.groups, 1u, 1u);
+    workgroups = array<u32, 3>(turn.groups / PARTS, PARTS, 1u);
 }

@@ -51,12 +51,14 @@ fn color(
     look_load();
     queue_load();
     // Every pixel gets a colour, also the sky.
-    let index = queue_tile(group.x, lane);
-    if index == QUEUE_NONE {
+    let packed = queue_tile(group.xy, lane);
+    if packed == QUEUE_NONE {
         return;
     }
-    let ray = view_ray(turn.stage.origin + queue_cell(index));
-    let s = cells[turn.stage.state + index];
+    let cell = queue_cell(packed);
+    let index = queue_index(cell);
+    let ray = view_ray(turn.stage.origin + cell);
+    let s = cell_state(turn.stage.state + index);
     var c = sky(ray.axis);
     var decided = 1.0;
     var n = vec3<f32>(0.0);

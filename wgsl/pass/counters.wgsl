@@ -12,9 +12,13 @@ fn count_iterations(n: u32) {
     iterations += n;
 }
 
-/// Adds this dispatch's work to that of the cell so far.
+/// Stores the work of the cell: that of this dispatch and of those before.
 fn counters_store(cell: u32) {
     let at = turn.stage.tally + 2u * cell;
-    cells[at] += evaluations;
-    cells[at + 1u] += iterations;
+    if turn.done > 0u {
+        evaluations += cells[at];
+        iterations += cells[at + 1u];
+    }
+    cells[at] = evaluations;
+    cells[at + 1u] = iterations;
 }

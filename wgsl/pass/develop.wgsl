@@ -8,9 +8,11 @@ fn develop(
     @builtin(local_invocation_index) lane: u32,
 ) {
     queue_load();
-    let index = queue_tile(group.x, lane);
-    if index == QUEUE_NONE {
+    let packed = queue_tile(group.xy, lane);
+    if packed == QUEUE_NONE {
         return;
     }
-    tone_store(turn.stage.origin + queue_cell(index), pixels[index].rgb);
+    let cell = queue_cell(packed);
+    let index = queue_index(cell);
+    tone_store(turn.stage.origin + cell, pixels[index].rgb);
 }

@@ -9,11 +9,12 @@ fn march(
     scene_load();
     view_load();
     queue_load();
-    let index = queue_take(group.x, lane);
-    if index == QUEUE_NONE {
+    let packed = queue_take(group.xy, lane);
+    if packed == QUEUE_NONE {
         return;
     }
-    let local = queue_cell(index);
+    let local = queue_cell(packed);
+    let index = queue_index(local);
     var f = 0.0;
     if turn.done > 0u {
         f = cell_front(index);
@@ -37,13 +38,13 @@ fn march(
             break;
         }
     }
-    if s == STATE_MOVING && queue_push(index) {
+    if s == STATE_MOVING && queue_push(packed) {
         s = STATE_UNCONVERGED;
     }
     cell_store(index, f, s);
     // The next stage starts with the children of the cells that are not sky.
     if s == STATE_HIT || s == STATE_UNCONVERGED {
-        queue_parent(index);
+        queue_parent(packed);
     }
     counters_store(index);
 }

@@ -7,7 +7,8 @@
 /// The turn is in storage, as lavapipe inlines uniforms that steer branches and compiles again
 /// whenever one changes.
 @group(2) @binding(0) var<storage, read> turn_parameters: Turn;
-/// The values of all cells of the block, one plane after the other. Fronts are floats.
+/// The values of all cells of the block, one plane after the other. Fronts are floats. A state has
+/// two bits. The others are the number of the block, so values of an earlier block need no reset.
 @group(2) @binding(2) var<storage, read_write> cells: array<u32>;
 var<private> turn: Turn;
 
@@ -20,25 +21,48 @@ fn queue_load() {
     turn = turn_parameters;
 }
 
-/// The index of a cell in the block, or QUEUE_NONE beyond its edges.
+/// A place in the block as one word, or QUEUE_NONE beyond its edges. Lists hold such words, as a
+/// division by the width would take a software device longer than all else here.
+fn queue_pack(cell: vec2<u32>) -> u32 {
+    return select(cell.x | (cell.y << 16u), QUEUE_NONE, any(cell >= turn.stage.cells));
+}
+
+/// The place of a packed cell in the block.
+fn queue_cell(packed: u32) -> vec2<u32> {
+    return vec2<u32>(packed & 0xffffu, packed >> 16u);
+}
+
+/// The index of a cell in the block.
 fn queue_index(cell: vec2<u32>) -> u32 {
-    let size = turn.stage.cells;
-    return select(cell.y * size.x + cell.x, QUEUE_NONE, any(cell >= size));
+    return cell.y * turn.stage.cells.x + cell.x;
 }
 
-/// The index of this invocation's cell in a stage that visits all cells, or QUEUE_NONE.
-fn queue_tile(group: u32, lane: u32) -> u32 {
-    let tile = turn.first + group;
-    let row = (turn.stage.cells.x + 7u) / 8u;
-    return queue_index(tile_cell(vec2<u32>(tile % row, tile / row), lane));
+/// The remainder and the quotient. Exact for `a` up to 2^20, which a block's pixels do not exceed:
+/// WGSL divides floats to within 2.5 units in the last place.
+fn queue_divide(a: u32, by: u32) -> vec2<u32> {
+    let quotient = u32((f32(a) + 0.5) / f32(by));
+    return vec2<u32>(a - quotient * by, quotient);
 }
 
-/// The index of this invocation's cell, or QUEUE_NONE.
-fn queue_take(group: u32, lane: u32) -> u32 {
+/// The place of a workgroup in its round. Software devices give each thread a run of consecutive
+/// workgroups. So consecutive ones are spread over the dispatch: each half, and each quarter, has
+/// its share of every part of the image. Without this, one thread waited for another.
+fn queue_group(group: vec2<u32>) -> u32 {
+    return turn.first + PARTS * group.x + (reverseBits(group.y) >> 28u);
+}
+
+/// This invocation's cell in a stage that visits all cells, packed, or QUEUE_NONE.
+fn queue_tile(group: vec2<u32>, lane: u32) -> u32 {
+    let tile = queue_divide(queue_group(group), (turn.stage.cells.x + 7u) / 8u);
+    return queue_pack(tile_cell(tile, lane));
+}
+
+/// This invocation's cell, packed, or QUEUE_NONE.
+fn queue_take(group: vec2<u32>, lane: u32) -> u32 {
     if turn.visits == VISIT_ALL {
         return queue_tile(group, lane);
     }
-    let at = (turn.first + group) * 64u + lane;
+    let at = queue_group(group) * 64u + lane;
     if turn.visits == VISIT_CELLS {
         if at >= turn.count {
             return QUEUE_NONE;
@@ -48,16 +72,8 @@ fn queue_take(group: u32, lane: u32) -> u32 {
     if at >= 4u * turn.count {
         return QUEUE_NONE;
     }
-    let parent = lists.cells[turn.read + at / 4u];
-    let width = turn.stage.parent_width;
-    let child = vec2<u32>(at & 1u, (at >> 1u) & 1u);
-    return queue_index(2u * vec2<u32>(parent % width, parent / width) + child);
-}
-
-/// The place of a cell in the block.
-fn queue_cell(index: u32) -> vec2<u32> {
-    let width = turn.stage.cells.x;
-    return vec2<u32>(index % width, index / width);
+    let parent = queue_cell(lists.cells[turn.read + at / 4u]);
+    return queue_pack(2u * parent + vec2<u32>(at & 1u, (at >> 1u) & 1u));
 }
 
 /// The front of a cell's parent.
@@ -74,7 +90,7 @@ fn queue_steps() -> u32 {
     return min(turn.chunk, turn.stage.limit - turn.done);
 }
 
-/// Whether a cell that still moves has reached its limit. If not, it is queued.
+/// Whether a packed cell that still moves has reached its limit. If not, it is queued.
 fn queue_push(cell: u32) -> bool {
     if turn.done + turn.chunk >= turn.stage.limit {
         return true;
@@ -84,7 +100,7 @@ fn queue_push(cell: u32) -> bool {
     return false;
 }
 
-/// Lists a cell whose children the next stage visits.
+/// Lists a packed cell whose children the next stage visits.
 fn queue_parent(cell: u32) {
     let at = atomicAdd(&lists.parents, 1u);
     lists.cells[turn.stage.parents + at] = cell;
@@ -94,9 +110,15 @@ fn cell_front(cell: u32) -> f32 {
     return bitcast<f32>(cells[turn.stage.front + cell]);
 }
 
+/// The state whose place among all values is `at`.
+fn cell_state(at: u32) -> u32 {
+    let kept = cells[at];
+    return select(STATE_UNVISITED, kept & 3u, kept >> 2u == turn.stage.generation);
+}
+
 fn cell_store(cell: u32, front: f32, state: u32) {
     cells[turn.stage.front + cell] = bitcast<u32>(front);
-    cells[turn.stage.state + cell] = state;
+    cells[turn.stage.state + cell] = (turn.stage.generation << 2u) | state;
 }
 
 fn cell_mark(cell: u32) -> Mark {

@@ -22,15 +22,16 @@ fn sketch(
     view_load();
     look_load();
     queue_load();
-    let index = queue_tile(group.x, lane);
-    if index == QUEUE_NONE {
+    let packed = queue_tile(group.xy, lane);
+    if packed == QUEUE_NONE {
         return;
     }
-    let cell = queue_cell(index);
+    let cell = queue_cell(packed);
+    let index = queue_index(cell);
     let at = vec2<i32>(cell);
     let middle = f32(turn.stage.divisor) * (vec2<f32>(turn.stage.origin + cell) + 0.5);
     var c = sky(normalize(view_direction(middle.x, middle.y)));
-    let state = cells[turn.stage.state + index];
+    let state = cell_state(turn.stage.state + index);
     if state == STATE_HIT || state == STATE_UNCONVERGED {
         let across = sketch_point(at + vec2<i32>(1, 0)) - sketch_point(at - vec2<i32>(1, 0));
         let down = sketch_point(at + vec2<i32>(0, 1)) - sketch_point(at - vec2<i32>(0, 1));

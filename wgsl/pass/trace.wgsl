@@ -14,12 +14,13 @@ fn trace(
     scene_load();
     view_load();
     queue_load();
-    let index = queue_take(group.x, lane);
-    if index == QUEUE_NONE {
+    let packed = queue_take(group.xy, lane);
+    if packed == QUEUE_NONE {
         return;
     }
     // Buffers belong to a block, rays to the whole image: so blocks do not change a picture.
-    let local = queue_cell(index);
+    let local = queue_cell(packed);
+    let index = queue_index(local);
     let ray = view_ray(turn.stage.origin + local);
     var walk: Walk;
     if turn.done > 0u {
@@ -36,7 +37,7 @@ fn trace(
         }
     }
     if s == STATE_MOVING {
-        if queue_push(index) {
+        if queue_push(packed) {
             s = STATE_UNCONVERGED;
         } else {
             walks[index] = walk;

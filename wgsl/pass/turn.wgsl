@@ -1,7 +1,7 @@
 // The stages of a frame and the dispatch that is under way.
 //
-// A stage is a pass over a block, or one of the short stages between passes (`reset.wgsl`,
-// `sketch.wgsl`, `develop.wgsl`, `census.wgsl`). It runs in rounds. The first visits all cells, or
+// A stage is a pass over a block, or one of the short stages between passes (`sketch.wgsl`,
+// `develop.wgsl`, `census.wgsl`). It runs in rounds. The first visits all cells, or
 // the children of listed parents. Each later one visits the cells that still move. A round is cut
 // into dispatches. Before each dispatch, `arrange.wgsl` decides on the device what it visits, so
 // the host never waits for a count.
@@ -41,7 +41,8 @@ struct Stage {
     state: u32,
     tally: u32,
     mark: u32,
-    pad: u32,
+    /// The number of the block, which is part of every state.
+    generation: u32,
 }
 
 /// What the next dispatch does. Only `arrange` writes it.
@@ -74,13 +75,16 @@ struct Lists {
     moving: atomic<u32>,
     /// Cells whose children the next stage visits.
     parents: atomic<u32>,
-    /// Cells that should have been visited and were not, or the reverse.
+    /// Cells that were left out.
     wrong: atomic<u32>,
     pad: u32,
     /// Dispatches of each stage of the block.
     dispatches: array<u32, 20>,
     cells: array<u32>,
 }
+
+/// Workgroups of a dispatch along the second axis; see `queue_group`.
+const PARTS = 16u;
 
 /// Every cell of the block.
 const VISIT_ALL = 0u;

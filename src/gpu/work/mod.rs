@@ -16,12 +16,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use crate::gpu::array::Arrays;
-use crate::gpu::cost::Cost;
+use crate::gpu::cost::{Cost, LONGEST_MS};
 use crate::gpu::device::Device;
 use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
 use crate::gpu::staging::Staging;
-use crate::gpu::stamps::{PAIR, Stamps};
+use crate::gpu::stamps::{PAIRS, Stamps};
 use crate::gpu::target::{Parameters, Target, read_picture};
 use crate::heightfield::assets::Preparation;
 use crate::pass::progress::{Progress, Watch};
@@ -34,8 +34,8 @@ use crate::plan::{Extras, Pass};
 pub const SUBMISSION_MS: f64 = 40.0;
 /// Submissions that the device may have at once: one runs, and one is next.
 const IN_FLIGHT: usize = 2;
-/// Bytes of a report: the turn, the head of the lists, and a pair of timestamps.
-const REPORT: u64 = (size_of::<Turn>() + size_of::<ListsHead>()) as u64 + PAIR;
+/// Bytes of a report: the turn, the head of the lists, and timestamps.
+const REPORT: u64 = (size_of::<Turn>() + size_of::<ListsHead>()) as u64 + PAIRS;
 
 /// What the renders of a device share.
 pub(super) struct Shared {
@@ -80,6 +80,8 @@ impl Made {
 pub(super) struct Kept {
     pub target: Option<Target>,
     pub costs: Vec<Cost>,
+    /// Milliseconds that dispatches are made for.
+    pub aim_ms: f64,
     pub stamps: Option<Stamps>,
     pub reports: Vec<Staging>,
     pub readings: Vec<Staging>,
@@ -105,6 +107,8 @@ struct Flight {
     reading: Option<(usize, Staging)>,
     /// The first stage in it, and the stage that should be under way after it.
     stages: Range<u32>,
+    /// How many stages have dispatches in it.
+    encoded: u32,
     /// Corrections that the host had made before.
     corrections: u32,
     submitted: Instant,
@@ -152,8 +156,12 @@ impl Work {
         let last = work.kept.made.take().filter(|_| work.job.extras.reuse);
         let first = last.and_then(|last| work.job.made.resumes(&last, &work.job.kinds));
         work.reached = first.unwrap_or(0);
-        if let Some(target) = &work.kept.target {
-            target.begin(&work.shared.device, work.reached);
+        let blocks = work.job.made.blocks.len();
+        let device = &work.shared.device;
+        match (&mut work.kept.target, first) {
+            (Some(target), Some(first)) => target.resume(device, first),
+            (Some(target), None) => target.begin(device, blocks),
+            (None, _) => {}
         }
         work.go_to(work.reached);
         work
@@ -181,6 +189,13 @@ impl Work {
         passes.count().max(1) - 1
     }
 
+    /// The number of a block, which tells its states from older ones.
+    fn generation(&self, block: usize) -> u32 {
+        let later = self.job.made.blocks.len() - 1 - block;
+        let target = self.kept.target.as_ref();
+        target.map_or(0, |target| target.generation(later))
+    }
+
     /// The stages of a block, with what is known of their costs.
     fn stages(&self, block: usize) -> Vec<Stage> {
         let first = block as u32 * self.per_block();
@@ -189,6 +204,7 @@ impl Work {
         for (stage, cost) in stages.iter_mut().zip(&self.kept.costs) {
             [stage.chunk, stage.most] = self.job.steps;
             stage.slice = cost.slice;
+            stage.generation = self.generation(block);
         }
         stages
     }
@@ -254,6 +270,14 @@ impl Work {
     /// The device failed.
     pub fn advance(&mut self, budget_ms: f64) -> Result<(), RenderError> {
         self.receive()?;
+        let aim = budget_ms.clamp(1.0, LONGEST_MS);
+        let factor = aim / self.kept.aim_ms;
+        if !(0.5..=2.0).contains(&factor) {
+            self.kept.aim_ms = aim;
+            for cost in &mut self.kept.costs {
+                cost.scale(factor);
+            }
+        }
         let mut left = budget_ms;
         while left > 0.0 && self.flights.len() < IN_FLIGHT && self.cursor < self.end() {
             left -= self.submit(left.min(SUBMISSION_MS));

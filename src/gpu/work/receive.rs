@@ -1,12 +1,12 @@
 //! What comes back of a submission.
 
-use std::ops::Range;
+use std::ops::RangeInclusive;
 use std::time::Instant;
 
 use crate::gpu::collect::Parts;
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
-use crate::gpu::stamps::PAIR;
+use crate::gpu::stamps::{PAIRS, Pair};
 use crate::pass::turn::{ListsHead, MOST_STAGES, Turn};
 use crate::picture::frame::Traffic;
 
@@ -40,15 +40,19 @@ impl Work {
         let turn: Vec<Turn> = flight.report.read(device, 0, 1)?;
         let head: Vec<ListsHead> = flight.report.read(device, size_of::<Turn>(), 1)?;
         let (turn, head) = (turn[0], head[0]);
-        let pair: Vec<u64> = flight.report.read(device, (REPORT - PAIR) as usize, 2)?;
+        let encoded = flight.encoded as usize;
+        let pairs: Vec<Pair> = flight
+            .report
+            .read(device, (REPORT - PAIRS) as usize, encoded)?;
         flight.report.unmap();
         self.kept.reports.push(flight.report);
         let now = Instant::now();
         let started = flight.submitted.max(self.ended);
         let elapsed_ms = now.duration_since(started).as_secs_f64() * 1e3;
         self.ended = now;
-        self.count_time(&flight.stages, elapsed_ms, [pair[0], pair[1]]);
-        self.learn(&flight.stages, elapsed_ms, &head);
+        let last = flight.stages.start + flight.encoded - 1;
+        self.count_time(flight.stages.start..=last, elapsed_ms, &pairs);
+        self.learn(flight.stages.start..=last, elapsed_ms, &head);
         self.share = match self.reached == turn.number {
             true => self.share.max(turn.share()),
             false => turn.share(),
@@ -73,22 +77,32 @@ impl Work {
         Ok(())
     }
 
-    /// Adds the time of a submission to the figures of its last pass.
-    fn count_time(&mut self, stages: &Range<u32>, elapsed_ms: f64, pair: [u64; 2]) {
-        let last = stages.end.max(stages.start + 1) - 1;
-        let (_, index) = self.place(last);
-        let at = self.pass_at(index);
-        let figures = &mut self.frame.passes[at];
-        figures.wall_ms += elapsed_ms;
-        if let Some(stamps) = self.kept.stamps.as_ref().filter(|_| self.job.extras.time) {
-            *figures.gpu_ms.get_or_insert(0.0) += stamps.milliseconds(pair);
+    /// Adds the time of a submission to the figures of its passes: to each in proportion to its
+    /// time on the device, or all to the last one if that is not measured.
+    fn count_time(&mut self, stages: RangeInclusive<u32>, elapsed_ms: f64, pairs: &[Pair]) {
+        let stamps = self.kept.stamps.as_ref().filter(|_| self.job.extras.time);
+        let own = stamps.map(|s| pairs.iter().map(|pair| s.milliseconds(*pair)).collect());
+        let own: Vec<f64> = own.unwrap_or_default();
+        let all: f64 = own.iter().sum();
+        let last = *stages.end();
+        for (nth, stage) in stages.enumerate() {
+            let at = self.pass_at(self.place(stage).1);
+            let figures = &mut self.frame.passes[at];
+            if let Some(ms) = own.get(nth) {
+                *figures.gpu_ms.get_or_insert(0.0) += ms;
+            }
+            if all > 0.0 {
+                figures.wall_ms += elapsed_ms * own[nth] / all;
+            } else if stage == last {
+                figures.wall_ms += elapsed_ms;
+            }
         }
     }
 
     /// Learns from a submission how long dispatches take.
-    fn learn(&mut self, stages: &Range<u32>, elapsed_ms: f64, head: &ListsHead) {
-        let (block, first) = self.place(stages.start);
-        let (_, last) = self.place(stages.end.max(stages.start + 1) - 1);
+    fn learn(&mut self, stages: RangeInclusive<u32>, elapsed_ms: f64, head: &ListsHead) {
+        let (block, first) = self.place(*stages.start());
+        let (_, last) = self.place(*stages.end());
         let ran = |i: usize| head.dispatches[i].saturating_sub(self.told[i]);
         let all: u32 = (first..=last).map(ran).sum();
         let each = elapsed_ms / f64::from(all.max(1));
@@ -96,7 +110,7 @@ impl Work {
         let costs = self.kept.costs.iter_mut().zip(known).zip(head.dispatches);
         for (i, ((cost, stage), dispatches)) in costs.enumerate() {
             if (first..=last).contains(&i) && dispatches > self.told[i] {
-                cost.learn(each, dispatches, &stage);
+                cost.learn(each, dispatches, &stage, self.kept.aim_ms);
             }
         }
         self.told = head.dispatches;
@@ -115,12 +129,13 @@ impl Work {
                 cells: head.wrong as usize,
             });
         }
+        let generation = self.generation(block);
         let layout = &self.job.made.blocks[block];
         let parts = Parts::new(layout, self.job.extras);
         parts.collect(
             device,
             staging,
-            layout,
+            (layout, generation),
             &self.job.made.passes,
             &mut self.frame,
         )?;

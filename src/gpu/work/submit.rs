@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::gpu::collect::Parts;
 use crate::gpu::staging::Staging;
-use crate::gpu::stamps::{PAIR, Stamps};
+use crate::gpu::stamps::PAIRS;
 use crate::pass::turn::{ListsHead, StageKind, Turn};
 use crate::plan::Pass;
 
@@ -25,10 +25,7 @@ impl Work {
         };
         target.write_stages(device, &stages);
         let stamps = self.kept.stamps.as_ref().filter(|_| self.job.extras.time);
-        let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: None,
-            timestamp_writes: stamps.map(Stamps::writes),
-        });
+        let mut encoded = 0;
         let mut cursor = self.cursor;
         let mut estimate = 0.0;
         let mut ends_block = false;
@@ -38,6 +35,11 @@ impl Work {
             let each = self.kept.costs[index].dispatch_ms;
             let room = ((budget_ms - estimate) / each).max(1.0) as u32;
             let count = self.dispatches.min(room);
+            let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: None,
+                timestamp_writes: stamps.map(|s| s.writes(encoded)),
+            });
+            encoded += 1;
             for _ in 0..count {
                 target
                     .arrange
@@ -47,6 +49,7 @@ impl Work {
                     .kernel
                     .dispatch_indirect(&mut compute, &bound.groups, workgroups);
             }
+            drop(compute);
             estimate += f64::from(count) * each;
             self.dispatches -= count;
             if self.dispatches > 0 {
@@ -55,16 +58,16 @@ impl Work {
             cursor += 1;
             ends_block = index + 1 == stages.len();
             let is_trace = self.job.kinds[index] == StageKind::Pass(Pass::Trace);
-            // Figures of a pass are those of its own submissions.
-            let cut = self.job.extras.time || is_trace;
             if !ends_block {
                 let next = &stages[index + 1];
                 self.dispatches = self.kept.costs[index + 1].dispatches(next);
             }
-            if ends_block || cut {
+            // The time of march and trace is that of their own submissions.
+            if ends_block || is_trace {
                 break;
             }
         }
+        let mut compute = encoder.begin_compute_pass(&Default::default());
         target
             .arrange
             .dispatch(&mut compute, &target.settle, [1, 1]);
@@ -74,8 +77,8 @@ impl Work {
         let (turn, head) = (size_of::<Turn>() as u64, size_of::<ListsHead>() as u64);
         let mut ranges = vec![(&target.turn, 0, turn), (&target.lists, 0, head)];
         if let Some(stamps) = stamps {
-            stamps.resolve(&mut encoder);
-            ranges.push((&stamps.pair, 0, PAIR));
+            stamps.resolve(&mut encoder, encoded);
+            ranges.push((&stamps.pairs, 0, PAIRS));
         }
         report.copy(&mut encoder, &ranges);
         let reading = ends_block.then(|| {
@@ -97,6 +100,7 @@ impl Work {
             report,
             reading,
             stages: first..cursor,
+            encoded,
             corrections: self.corrections,
             submitted: Instant::now(),
         });
