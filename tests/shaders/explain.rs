@@ -4,9 +4,9 @@
 use conemarch::pass::LookFeature;
 use conemarch::plan::{Extras, Pass, Plan};
 
-use super::common::plans::{explain, mandelbox_of, preset, program, solid};
+use super::common::plans::{explain, mandelbox_of, preset, program, solid, switch};
 use super::has;
-use super::programs::{programs_of, switch};
+use super::programs::programs_of;
 
 /// The explanation of a built-in preset with settings as `--set` takes them.
 fn explained(name: &str, settings: &[&str]) -> String {
