@@ -83,7 +83,7 @@ impl<'a> Key<'a> {
 /// Makes a list of [`Key`]s from lines of the form `"name" = slot, "help";`.
 #[macro_export]
 macro_rules! keys {
-    ($($name:literal = $slot:expr, $help:literal;)*) => {
+    ($($name:literal = $slot:expr, $help:expr;)*) => {
         vec![$($crate::base::key::Key::new($name, $slot, $help)),*]
     };
 }

@@ -154,10 +154,12 @@ impl Program {
         })
     }
 
-    /// A listing of modules and constants, for `--explain`.
+    /// A listing of modules and constants, for `--explain`. It leaves out the stand-ins,
+    /// `NAME_off.wgsl`, which do nothing.
     pub fn describe(&self) -> String {
         let mut text = String::new();
-        for module in &self.modules {
+        let stands_in = |m: &&Module| m.path.ends_with("_off.wgsl");
+        for module in self.modules.iter().filter(|m| !stands_in(m)) {
             let _ = write!(text, "    {}", module.path);
             for (name, value) in &module.constants {
                 let _ = write!(text, "  {name}={value}");

@@ -1,5 +1,5 @@
 //! A rotation between the folds of a formula.
-//! Twins: `wgsl/formula/rotation.wgsl`, and `rotation_none.wgsl` for the identity.
+//! Twins: `wgsl/formula/rotation.wgsl`, and `rotation_off.wgsl` for the identity.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3, Vec3};
@@ -50,7 +50,7 @@ impl Rotation {
     pub fn module(rotation: Option<&Self>) -> Module {
         match rotation {
             Some(_) => wgsl!("formula/rotation.wgsl"),
-            None => wgsl!("formula/rotation_none.wgsl"),
+            None => wgsl!("formula/rotation_off.wgsl"),
         }
     }
 

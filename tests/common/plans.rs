@@ -5,8 +5,8 @@ use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::measure::compare::{Report, compare};
-use conemarch::pass;
 use conemarch::pass::look::Light;
+use conemarch::pass::{self, LookFeature};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::{Extras, Pass, Plan};
@@ -15,6 +15,7 @@ use conemarch::scene::distance::Distance;
 use conemarch::scene::distance_settings::DistanceSettings;
 use conemarch::scene::{AnySolid, Assets, Scene};
 use glam::DVec3;
+use toml::Value;
 
 /// The plan of a built-in preset, with settings as `--set` takes them.
 pub fn preset(name: &str, settings: &[&str]) -> Plan {
@@ -96,6 +97,27 @@ pub fn mandelbox_of(plan: &mut Plan) -> &mut Mandelbox {
 /// Gives a plan of a formula its own iteration limit.
 pub fn limit_iterations(plan: &mut Plan, most: u32) {
     settings(plan).iterations = Some(most);
+}
+
+/// Switches a feature of the look, by the key that does and nothing else.
+pub fn switch(plan: &mut Plan, feature: LookFeature, on: bool) {
+    let old = plan.look.clone();
+    let wanted = |f: &LookFeature| if *f == feature { on } else { f.is_on(&old) };
+    let values = [Value::Boolean(on), Value::Float(f64::from(u8::from(on)))];
+    for index in 0..old.clone().keys().len() {
+        for value in &values {
+            plan.look = old.clone();
+            let fits = plan.look.keys()[index].slot.set(value).is_ok();
+            if fits
+                && LookFeature::ALL
+                    .iter()
+                    .all(|f| f.is_on(&plan.look) == wanted(f))
+            {
+                return;
+            }
+        }
+    }
+    panic!("no key switches {feature:?}");
 }
 
 /// The scene of a plan in numbers, ready to be asked.

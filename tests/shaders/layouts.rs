@@ -2,20 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::mem::{offset_of, size_of};
+use std::sync::LazyLock;
 
-use conemarch::base::view::ViewUniform;
-use conemarch::formula::balls::BallsUniform;
-use conemarch::formula::mandelbox::MandelboxUniform;
-use conemarch::formula::rotation::RotationUniform;
-use conemarch::heightfield::conemap::generate::uniform::{
-    GenerateUniform, Min3x3Uniform, PyramidUniform, SearchState,
-};
-use conemarch::heightfield::height_surface::HeightmapUniform;
 use conemarch::pass::look::LookUniform;
-use conemarch::pass::turn::{ListsHead, Stage, Turn};
-use conemarch::scene::distance::DistanceUniform;
-use conemarch::scene::heightfield::HeightfieldUniform;
-use conemarch::scene::slab::SlabUniform;
+use conemarch::pass::turn::Turn;
+use conemarch::plan::look::MOST_STOPS;
+use glam::{IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 use wgpu::naga::{StructMember, TypeInner};
 
 use super::common::files::files_below;
@@ -29,50 +21,63 @@ fn end(size: usize) -> (String, usize, usize) {
     ("its end".into(), size, 0)
 }
 
-/// Size of the field that a function picks.
-fn field_size<T, F>(_pick: fn(&T) -> &F) -> usize {
-    size_of::<F>()
+/// Names and sizes of types.
+macro_rules! sizes {
+    ($($type:ident)*) => { [$((stringify!($type), size_of::<$type>())),*] };
 }
 
-/// Makes the list of layouts out of the structs' names and fields.
-macro_rules! layouts {
-    ($($type:ident: $($field:ident)*;)*) => {
-        vec![$((stringify!($type), vec![
-            $((
-                stringify!($field).into(),
-                offset_of!($type, $field),
-                field_size(|t: &$type| &t.$field),
-            ),)*
-            end(size_of::<$type>()),
-        ])),*]
-    };
+/// The types that fields can have, beside arrays and other structs.
+const SIZES: &[(&str, usize)] =
+    &sizes![f32 i32 u32 Vec2 Vec3 Vec4 IVec2 IVec3 IVec4 UVec2 UVec3 UVec4];
+
+/// The size of a type, or the value of a constant.
+fn size(of: &str, text: &str) -> usize {
+    let array = of.strip_prefix('[').and_then(|of| of.strip_suffix(']'));
+    if let Some((one, n)) = array.and_then(|of| of.rsplit_once("; ")) {
+        return size(one, text) * size(n, text);
+    }
+    let constant = || text.split_once(&format!("const {of}: usize = "));
+    let known = SIZES.iter().find(|(name, _)| *name == of).map(|s| s.1);
+    let known = known.or_else(|| of.parse().ok());
+    let known = known.or_else(|| constant()?.1.split(';').next()?.parse().ok());
+    known.unwrap_or_else(|| layout(of, text).last().unwrap().1)
+}
+
+/// The layout of a struct, read from its text. There are no gaps between its fields, as `Pod`
+/// refuses them when it is compiled.
+fn layout(name: &str, text: &str) -> Layout {
+    let start = format!("pub struct {name} {{\n");
+    let found = text.split_once(&start).and_then(|t| t.1.split_once("\n}"));
+    let (body, _) = found.unwrap_or_else(|| panic!("no struct {name}, and no such type"));
+    let mut at = 0;
+    let mut all = Layout::new();
+    for line in body
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+    {
+        let field = line.trim().trim_start_matches("pub ").strip_suffix(',');
+        let field = field.and_then(|field| field.split_once(": "));
+        let (field, kind) = field.unwrap_or_else(|| panic!("{name}: `{line}` is no field"));
+        all.push((field.into(), at, size(kind, text)));
+        at += all[all.len() - 1].2;
+    }
+    all.push(end(at));
+    all
 }
 
 /// Every `#[repr(C)]` struct of the sources.
-fn layouts() -> Vec<(&'static str, Layout)> {
-    layouts! {
-        Stage: number limit chunk most slice tiles parent_width divisor origin cells fudge index
-            queues listed parents parent_front front state tally mark pad;
-        Turn: stage number begun chunk done first groups visits count read filled dispatches pad;
-        ListsHead: moving parents wrong pad dispatches;
-        ViewUniform: right pixel up slack forward pad size pad2;
-        MandelboxUniform: julia scale fold_limit min2 fixed2 bail2 reach tail classic_reach classic_skin;
-        BallsUniform: ball0 ball1 ball2 box0 box1 rod;
-        RotationUniform: row0 pad0 row1 pad1 row2 pad2;
-        DistanceUniform: eye detail centre radius half far lipschitz shell relaxation stride
-            iterations clip pad0 pad1;
-        HeightfieldUniform: row_x texel row_y depth row_z far eye pad0 slack pad1;
-        HeightmapUniform: samples cells domain wrap places offset scale levels steps lod rounds starts;
-        SlabUniform: eye half normal radius side far other pad;
-        GenerateUniform: size wrap first rows rounds levels begins keeps sector steps offset top pad0
-            pad1 at;
-        SearchState: squared top note stage node_x node_y pending_low pending_high;
-        PyramidUniform: below size below_at at first pad;
-        Min3x3Uniform: width rows wrap channels;
-        LookUniform: light key light_color fill sky_high fog sky_low gloss world_up softness
-            occlusion_reach occlusion_strength shadow_steps stops palette_cycles flag pad palette;
+static IN_RUST: LazyLock<BTreeMap<String, Layout>> = LazyLock::new(|| {
+    let text: String = files_below("src").into_iter().map(|file| file.1).collect();
+    let mut all = BTreeMap::new();
+    for part in text.split("#[repr(C)]\n").skip(1) {
+        let (derived, rest) = part.split_once("pub struct ").unwrap();
+        let name = rest.split(' ').next().unwrap();
+        assert!(derived.contains("Pod"), "{name} may have gaps");
+        let twice = all.insert(name.to_string(), layout(name, &text));
+        assert!(twice.is_none(), "there are two structs {name}");
     }
-}
+    all
+});
 
 /// The layouts of all structs of all programs. A name may stand for different structs in
 /// different scenes (`Walk`, say).
@@ -100,26 +105,35 @@ fn in_wgsl() -> BTreeMap<String, Vec<Layout>> {
 }
 
 #[test]
+fn the_text_of_a_struct_has_the_layout_that_is_compiled() {
+    let palette = offset_of!(LookUniform, palette);
+    let palette = ("palette".into(), palette, 16 * MOST_STOPS);
+    assert!(IN_RUST["LookUniform"].contains(&palette));
+    let number = ("number".into(), offset_of!(Turn, number), 4);
+    assert_eq!(IN_RUST["Turn"][1], number);
+    for (name, size) in sizes![LookUniform Turn] {
+        assert_eq!(*IN_RUST[name].last().unwrap(), end(size));
+    }
+}
+
+#[test]
 fn structs_have_the_layout_that_the_shaders_read() {
     let all = in_wgsl();
-    for (name, own) in layouts() {
-        let full = own.windows(2).all(|f| f[0].1 + f[0].2 == f[1].1);
-        assert!(full, "{name}: a field is not listed, or there is a gap");
+    for (name, own) in &*IN_RUST {
         // The head of the lists is the part of `Lists` before the cells.
         let lists = name == "ListsHead";
-        let [wgsl] = &all[if lists { "Lists" } else { name }][..] else {
-            panic!("{name} has several layouts: {:?}", all[name]);
+        let of = if lists { "Lists" } else { name };
+        let Some([wgsl]) = all.get(of).map(|found| &found[..]) else {
+            panic!("{name} has not one layout: {:?}", all.get(of));
         };
         let mut wgsl = wgsl.clone();
         if lists {
-            assert_eq!(
-                wgsl[own.len() - 1],
-                ("cells".into(), size_of::<ListsHead>(), 4)
-            );
+            let cells = ("cells".into(), own[own.len() - 1].1, 4);
+            assert_eq!(wgsl[own.len() - 1], cells);
             wgsl.truncate(own.len() - 1);
-            wgsl.push(end(size_of::<ListsHead>()));
+            wgsl.push(end(cells.1));
         }
-        assert_eq!(own, wgsl, "{name}");
+        assert_eq!(*own, wgsl, "{name}");
         // The comparison sees a field that is moved, renamed, resized or lost.
         let spoil: [fn(&mut Layout); 4] = [
             |l| l[1].1 += 4,
@@ -136,30 +150,15 @@ fn structs_have_the_layout_that_the_shaders_read() {
 }
 
 #[test]
-fn no_struct_that_both_sides_read_is_left_out() {
-    let listed: Vec<&str> = layouts().into_iter().map(|l| l.0).collect();
-    // In Rust: what is laid out for the device.
-    let mut found = 0;
-    for (path, text) in files_below("src") {
-        for part in text.split("#[repr(C)]").skip(1) {
-            let after = part.split("pub struct ").nth(1).unwrap();
-            let name = after.split([' ', '(', '<']).next().unwrap();
-            assert!(
-                listed.contains(&name),
-                "{name} in {path}; add it to `layouts!` here"
-            );
-            found += 1;
-        }
-    }
-    assert_eq!(found, listed.len());
-    // In WGSL: what is bound. Numbers of the host are only the head of the lists.
+fn no_struct_that_a_shader_binds_is_left_out() {
+    // Numbers of the host are only the head of the lists.
     let mut bound = 0;
     for (listing, made) in ALL.iter() {
         for (_, global) in made.module.global_variables.iter() {
             let kind = &made.module.types[global.ty];
             if global.binding.is_some() && matches!(kind.inner, TypeInner::Struct { .. }) {
                 let name = kind.name.as_deref().unwrap();
-                let known = listed.contains(&name) || name == "Lists";
+                let known = IN_RUST.contains_key(name) || name == "Lists";
                 assert!(known, "no Rust struct for {name} in {listing}");
                 bound += 1;
             }

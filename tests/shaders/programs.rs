@@ -16,29 +16,8 @@ use rayon::prelude::*;
 use toml::Value;
 use wgpu::naga::{self, valid::Capabilities};
 
-use super::common::plans::{distance, outline, preset, program, solid};
+use super::common::plans::{distance, outline, preset, program, solid, switch};
 use super::common::programs::map_programs;
-
-/// Switches a feature of the look, by the key that does and nothing else.
-pub fn switch(plan: &mut Plan, feature: LookFeature, on: bool) {
-    let old = plan.look.clone();
-    let wanted = |f: &LookFeature| if *f == feature { on } else { f.is_on(&old) };
-    let values = [Value::Boolean(on), Value::Float(f64::from(u8::from(on)))];
-    for index in 0..old.clone().keys().len() {
-        for value in &values {
-            plan.look = old.clone();
-            let fits = plan.look.keys()[index].slot.set(value).is_ok();
-            if fits
-                && LookFeature::ALL
-                    .iter()
-                    .all(|f| f.is_on(&plan.look) == wanted(f))
-            {
-                return;
-            }
-        }
-    }
-    panic!("no key switches {feature:?}");
-}
 
 /// All values worth trying for a key: the other state of a switch, every word of a list of
 /// words, and a triple away from zero.

@@ -21,11 +21,12 @@ mod device;
 mod work;
 
 use adapter::{COUNTED, LEVELS, on_cpu, render};
-use common::plans::{compared, preset, sized};
+use common::plans::{compared, preset, sized, switch};
 use conemarch::base::srgb::srgb;
 use conemarch::base::work::State;
 use conemarch::measure::compare::{DepthError, Report, quantile};
 use conemarch::measure::truth::truth;
+use conemarch::pass::LookFeature;
 use conemarch::pass::look::tone;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::march::Mode;
@@ -51,17 +52,25 @@ struct Apart {
     shade: [f64; 2],
 }
 
-fn apart(plan: &Plan, frame: &Frame, reference: &Frame) -> Apart {
+/// How far apart the shown pixels of two frames are, in steps of 1/255.
+fn shades(plan: &Plan, frame: &Frame, reference: &Frame) -> Vec<f64> {
     let exposure = plan.look.exposure.exp2();
     let shown = |c: [f32; 3]| srgb(tone(exposure, DVec3::from_array(c.map(f64::from))));
     let pairs = frame.radiance.iter().zip(&reference.radiance);
-    let mut shades: Vec<f64> = pairs
-        .map(|(a, b)| 255.0 * (shown(*a) - shown(*b)).abs().max_element())
-        .collect();
+    let apart = pairs.map(|(a, b)| 255.0 * (shown(*a) - shown(*b)).abs().max_element());
+    apart.collect()
+}
+
+/// The median of shades, and what 95 % of them do not exceed.
+fn median_and_most(mut shades: Vec<f64>) -> [f64; 2] {
     shades.sort_by(f64::total_cmp);
+    [0.5, 0.95].map(|q| quantile(&shades, q))
+}
+
+fn apart(plan: &Plan, frame: &Frame, reference: &Frame) -> Apart {
     Apart {
         report: compared(frame, reference, plan),
-        shade: [0.5, 0.95].map(|q| quantile(&shades, q)),
+        shade: median_and_most(shades(plan, frame, reference)),
     }
 }
 
@@ -132,12 +141,46 @@ fn the_comparison_notices_small_changes() {
     assert_eq!(found[0], "shade", "{found:?}");
 }
 
+/// Each feature alone, as another one could hide a fault, and only the pixels that it changes.
+#[test]
+fn the_two_executors_agree_on_every_feature_of_the_look() {
+    // Here every feature changes many pixels, and many lie in a half shadow.
+    let mut bare = preset(
+        "mandelbox-gate",
+        &["image.size=[320, 180]", "look.light_size=20"],
+    );
+    for feature in LookFeature::ALL {
+        switch(&mut bare, *feature, false);
+    }
+    let without = on_cpu(&bare, Extras::default());
+    for feature in LookFeature::ALL {
+        let mut plan = bare.clone();
+        switch(&mut plan, *feature, true);
+        let reference = on_cpu(&plan, Extras::default());
+        let changes = shades(&plan, &reference, &without);
+        let frame = render(&plan, Extras::default());
+        let pairs = shades(&plan, &frame, &reference).into_iter().zip(changes);
+        // Changes are larger than what is allowed. So a feature that one executor lacks breaks
+        // the bounds.
+        let changed = pairs.filter(|(_, change)| *change > SHADE_MOST);
+        let changed: Vec<f64> = changed.map(|(shade, _)| shade).collect();
+        let count = changed.len();
+        let [median, most] = median_and_most(changed);
+        let what = format!("{feature:?}: {count} pixels, {median} {most}");
+        // Of fewer pixels, 5 % would be too few to judge by.
+        assert!(count > 500, "{what}");
+        assert!(median < SHADE && most < SHADE_MOST, "{what}");
+    }
+}
+
 /// Cones and relaxed rays with a shell err no more than classical sphere tracing with
 /// the same hit rule does, and the slides' rule errs more: on every bench view.
 #[test]
 fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
     // Room for one pixel of 14 400 that f32 decides otherwise.
     let allowed = 1e-4;
+    // A share that nobody overlooks, and no rounding makes.
+    let plain = 0.01;
     for name in BENCHMARKS {
         let mut plan = sized(name, [160, 90]);
         let truth = truth(&plan, &Assets::default(), &mut |_| true).unwrap();
@@ -146,17 +189,17 @@ fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
             let frame = render(&plan, LEVELS);
             let report = compared(&frame, &truth.frame, &plan);
             let starts: u64 = report.start_violations.iter().sum();
+            let starts = starts as f64 / frame.state.len() as f64;
             (report.behind + report.holes, starts)
         };
         let (safe, safe_starts) = wrong(Mode::Safe);
         let (ray, _) = wrong(Mode::Ray);
         let (slides, slides_starts) = wrong(Mode::SlidesDeep);
         assert!(safe <= ray + allowed, "{name}: safe {safe}, ray {ray}");
-        assert!(slides > ray + 0.01, "{name}: slides {slides}, ray {ray}");
-        // No cell starts behind the skin of the truth; with the slides' rule, hundreds of
-        // pixels do.
-        assert_eq!(safe_starts, 0, "{name}");
-        assert!(slides_starts > 200, "{name}: {slides_starts}");
+        assert!(slides > ray + plain, "{name}: slides {slides}, ray {ray}");
+        // No pixel starts behind the skin of the truth; with the slides' rule, many do.
+        assert_eq!(safe_starts, 0.0, "{name}");
+        assert!(slides_starts > plain, "{name}: {slides_starts}");
     }
 }
 

@@ -1,5 +1,5 @@
 // A rotation between the folds of a formula. The CPU computes the rows of its matrix, as sine
-// and cosine are too coarse in WGSL. The stand-in `rotation_none.wgsl` is the identity.
+// and cosine are too coarse in WGSL. The stand-in `rotation_off.wgsl` is the identity.
 
 struct RotationUniform {
     row0: vec3<f32>,

@@ -1,7 +1,7 @@
 //! Settings of a heightfield's tracer: which one it is, its cones, and its numbers.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use thiserror::Error;
 
@@ -10,7 +10,7 @@ use crate::heightfield::conemap::file::{MapUse, read_map};
 use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
 use crate::heightfield::conemap::generate::{GenerateError, Generator, Options, cpu::generate};
 use crate::heightfield::tracer::walk_mip::{NodeCones, node_cones};
-use crate::heightfield::tracer::{Steps, Tracer, TracerKind, cones::Lookup};
+use crate::heightfield::tracer::{Accuracy, Steps, Tracer, TracerKind, cones::Lookup};
 use crate::heightfield::{
     ConeMap, HeightSurface, Heights, MapKind, Patches, height_surface::MOST_LEVELS,
 };
@@ -96,6 +96,19 @@ impl<M: Into<Arc<ConeMap>>> From<M> for Supply {
     }
 }
 
+/// The help of the key `tracer`: how well the tracers find the first hit.
+static TRACER_HELP: LazyLock<String> = LazyLock::new(|| {
+    let names = |accuracy| {
+        let all = TracerKind::ALL.into_iter();
+        let some = all.filter(|kind| kind.facts().accuracy == accuracy);
+        some.map(TracerKind::name).collect::<Vec<_>>().join(", ")
+    };
+    let [exact, pixel] = [Accuracy::Exact, Accuracy::Pixel].map(names);
+    format!(
+        "how rays find the surface; these find every first hit: {exact}; these are off by at most a pixel: {pixel}"
+    )
+});
+
 /// How rays are traced.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TracerSettings {
@@ -148,8 +161,7 @@ impl TracerSettings {
     /// The keys of the tracer in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
-            "tracer" = word(&mut self.tracer, &TracerKind::WORDS),
-                "how rays find the surface; walk, walk-relaxed and max-mip find every first hit, walk-mip and cone-mip are off by at most a pixel";
+            "tracer" = word(&mut self.tracer, &TracerKind::WORDS), &TRACER_HELP;
             "map" = text(&mut self.map),
                 "auto, a generator's name, or the file of a cone map";
             "lookup" = word(&mut self.lookup, &Lookup::WORDS),
