@@ -25,7 +25,7 @@ pub struct Cost {
     pub slice: u32,
     /// Estimated milliseconds of a dispatch.
     pub dispatch_ms: f64,
-    /// Dispatches of the stage in the last block, if it was cut as it is now.
+    /// Dispatches of the stage in the last block, cut as it is now.
     last: Option<u32>,
 }
 
@@ -60,10 +60,13 @@ impl Cost {
     /// Learns from a stage that so far took so many dispatches of so many milliseconds, which
     /// should be about `aim_ms`.
     pub fn learn(&mut self, each_ms: f64, dispatches: u32, stage: &Stage, aim_ms: f64) {
-        self.dispatch_ms = each_ms.max(1e-3);
+        // The last dispatch of a round is shorter than the others.
+        let slower = 0.3 * each_ms + 0.7 * self.dispatch_ms;
+        self.dispatch_ms = each_ms.max(slower).max(1e-3);
         self.last = Some(dispatches);
         let shorter = each_ms > 1.33 * aim_ms && self.slice > stage.chunk;
-        let longer = each_ms < 0.45 * aim_ms && dispatches > 1 && self.of_first_round(stage) > 1;
+        let more = dispatches > 1 && self.of_first_round(stage) > 1;
+        let longer = self.dispatch_ms < 0.45 * aim_ms && more;
         if shorter || longer {
             self.scale(if shorter { 0.5 } else { 2.0 });
         }
@@ -73,6 +76,7 @@ impl Cost {
     pub fn scale(&mut self, factor: f64) {
         self.slice = (f64::from(self.slice) * factor).max(1.0) as u32;
         self.dispatch_ms *= factor;
-        self.last = None;
+        let last = self.last.map(|n| (f64::from(n) / factor).ceil() as u32);
+        self.last = last;
     }
 }

@@ -15,6 +15,7 @@ use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::base::work::Work;
 use crate::heightfield::assets::{Assets, Ready};
+use crate::heightfield::height_surface::HeightmapUniform;
 use crate::heightfield::heights::Patches;
 use crate::heightfield::paint::Colors;
 use crate::heightfield::region_max::{self, region_max};
@@ -62,6 +63,8 @@ pub struct HeightfieldUniform {
     pub slack: Vec3,
     /// Unused.
     pub pad1: f32,
+    /// The height map.
+    pub map: HeightmapUniform,
 }
 
 impl SceneSettings for HeightfieldSettings {
@@ -218,10 +221,10 @@ impl Twin for Heightfield {
             far: (self.far * (1.0 + 1e-6)) as f32,
             eye: self.made.placement.position(self.eye).as_vec3(),
             slack: self.slack().as_vec3(),
+            map: self.made.tracer.uniform(),
             ..Zeroable::zeroed()
         };
-        let own = ("heightfield_parameters", bytes_of(&scene).to_vec());
-        vec![own, self.made.tracer.parameters()]
+        vec![("heightfield_parameters", bytes_of(&scene).to_vec())]
     }
 
     fn arrays(&self) -> Vec<SceneArray> {

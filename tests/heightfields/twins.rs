@@ -7,6 +7,7 @@
 
 use std::sync::Arc;
 
+use bytemuck::bytes_of;
 use conemarch::base::shader::Program;
 use conemarch::heightfield::conemap::MapKind;
 use conemarch::heightfield::height_surface::HeightSurface;
@@ -51,9 +52,10 @@ fn probe_of(tracer: &Tracer) -> Probe {
     modules.push(probe!("heightmap"));
     let arrays = tracer.arrays();
     let arrays = arrays.iter().map(|array| (array.name, array.bytes()));
+    let own = bytes_of(&tracer.uniform()).to_vec();
     Probe {
         modules,
-        parameters: arrays.chain([tracer.parameters()]).collect(),
+        parameters: arrays.chain([("heightmap_parameters", own)]).collect(),
     }
 }
 

@@ -1,8 +1,10 @@
 // A ray over a height surface: origin and start, direction and end, and the steps that it may
 // take in; where it ended, its state and what it met out.
 
+@group(0) @binding(0) var<storage, read> heightmap_parameters: HeightmapUniform;
+
 fn answer(q: Numbers) -> Numbers {
-    heightmap_load();
+    heightmap = heightmap_parameters;
     var trace = trace_begin(q.a.xyz, q.b.xyz, q.a.w, q.b.w);
     var s = STATE_MOVING;
     for (var i = 0u; i < u32(q.c.x) && s == STATE_MOVING; i++) {

@@ -27,29 +27,22 @@ struct HeightmapUniform {
 /// Whether the patches are boxes as high as one sample, instead of bilinear between four samples.
 override HEIGHTMAP_BOXES: bool;
 
-@group(0) @binding(4) var<storage, read> heightmap_parameters: HeightmapUniform;
 @group(0) @binding(5) var heights: texture_2d<f32>;
-@group(0) @binding(6) var ratios: texture_2d<f32>;
-/// In a buffer: cones read little else, and software Vulkan reads textures more slowly.
+/// One cone for each place. Cones and maxima, which most steps read, are buffers: software Vulkan
+/// reads textures more slowly, and rays took half as long again.
+@group(0) @binding(6) var<storage, read> ratios: array<f32>;
 @group(0) @binding(7) var<storage, read> maxima: array<f32>;
+/// The scene loads it.
 var<private> heightmap: HeightmapUniform;
 
-/// The texel of a number. Most arrays are in textures, as there are more of those than storage
-/// buffers, and larger ones: row by row, 8192 numbers to a row.
+/// The texel of a number, in an array that is a texture, as there are more of those than storage
+/// buffers: row by row, 8192 numbers to a row.
 fn array_texel(i: u32) -> vec2<u32> {
     return vec2<u32>(i & 8191u, i >> 13u);
 }
 
 fn heights_at(i: i32) -> f32 {
     return textureLoad(heights, array_texel(u32(i)), 0).x;
-}
-
-fn ratios_at(i: u32) -> f32 {
-    return textureLoad(ratios, array_texel(i), 0).x;
-}
-
-fn heightmap_load() {
-    heightmap = heightmap_parameters;
 }
 
 /// The cell of the first tile that corresponds to a cell of the domain.

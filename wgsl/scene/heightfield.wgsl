@@ -19,6 +19,7 @@ struct HeightfieldUniform {
     /// More than the rounding error of local coordinates.
     slack: vec3<f32>,
     pad1: f32,
+    map: HeightmapUniform,
 }
 
 /// How often the sweep of a cone is halved, and an empty ball doubled.
@@ -40,7 +41,7 @@ struct Walk {
 
 fn scene_load() {
     heightfield = heightfield_parameters;
-    heightmap_load();
+    heightmap = heightfield_parameters.map;
 }
 
 fn bounds_far() -> f32 {

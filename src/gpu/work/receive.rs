@@ -67,6 +67,10 @@ impl Work {
             staging.unmap();
             self.kept.readings.push(staging);
         }
+        // What is left of a stage that is over need not be encoded.
+        if turn.number > self.cursor {
+            self.go_to(turn.number);
+        }
         // A submission from before a correction says nothing new.
         if turn.number < flight.stages.end && flight.corrections == self.corrections {
             self.corrections += 1;

@@ -8,7 +8,6 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use bytemuck::bytes_of;
 use glam::DVec3;
 use thiserror::Error;
 
@@ -16,11 +15,12 @@ use crate::base::array::SceneArray;
 pub use crate::base::work::Step;
 use crate::base::{shader::Module, work::Work};
 use crate::heightfield::conemap::generate::mips::stored;
+use crate::heightfield::height_surface::{HeightmapUniform, TracerParameters};
 use crate::heightfield::tracer::{
     GridRay, cones::Lookup, grid::grid_begin, reference::Reference, settings::TracerSettings,
     walk_mip::NodeCones,
 };
-use crate::heightfield::{ConeMap, HeightSurface, MapKind, height_surface::TracerParameters};
+use crate::heightfield::{ConeMap, HeightSurface, MapKind};
 
 /// A ray in the surface's own units: x and y in texels, z in heights. `axis` is not of unit
 /// length; s is the parameter of the caller's ray.
@@ -157,7 +157,11 @@ pub trait Method: Debug + Sync {
 
     /// The ratios, as the shaders read them.
     fn ratios(&self, tracer: &Tracer) -> SceneArray {
-        SceneArray::new("ratios", &tracer.map, |map| stored(&map.ratios))
+        let name = match tracer.map.kind.channels() {
+            1 => "ratios",
+            _ => "ratios_of_sides",
+        };
+        SceneArray::new(name, &tracer.map, |map| stored(&map.ratios))
     }
 }
 
@@ -204,10 +208,9 @@ impl Tracer {
         all
     }
 
-    /// Its parameters, by the name of the WGSL variable.
-    pub fn parameters(&self) -> (&'static str, Vec<u8>) {
-        let uniform = self.surface.uniform(&self.map, self.numbers);
-        ("heightmap_parameters", bytes_of(&uniform).to_vec())
+    /// Its parameters and those of the surface.
+    pub fn uniform(&self) -> HeightmapUniform {
+        self.surface.uniform(&self.map, self.numbers)
     }
 
     /// The arrays that the shaders read.

@@ -2,5 +2,5 @@
 
 /// The ratio at a sample.
 fn cones_ratio(d: vec3<f32>, at: vec2<i32>) -> f32 {
-    return ratios_at(u32(cones_place(at)));
+    return ratios[cones_place(at)];
 }

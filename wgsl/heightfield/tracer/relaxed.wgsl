@@ -51,7 +51,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if d.z > 0.0 {
         return relaxed_rise(o, d, trace, z);
     }
-    let ratio = ratios_at(heightmap_number(cell)) * WALK_TRUST_RATIO;
+    let ratio = ratios[heightmap_number(cell)] * WALK_TRUST_RATIO;
     let next = (*trace).s + cone_way(d, ratio, z - apex, heightmap.offset) * WALK_TRUST_WAY;
     if next > exit.x && exit.x < end {
         let last = min(next, end);

@@ -26,7 +26,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
         }
     }
     // The way counts from where the ray stands.
-    let ratio = ratios_at(heightmap_number(cell)) * WALK_TRUST_RATIO;
+    let ratio = ratios[heightmap_number(cell)] * WALK_TRUST_RATIO;
     let next = (*trace).s + cone_way(d, ratio, z - apex, heightmap.offset) * WALK_TRUST_WAY;
     return grid_leave(o, d, trace, cell, cell + 1, 0u, exit, next);
 }

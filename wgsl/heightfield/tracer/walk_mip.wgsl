@@ -66,7 +66,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     if !WALK_MIP_NODES {
         at = heightmap_number((*trace).cell);
     }
-    let ratio = ratios_at(at) * WALK_TRUST_RATIO;
+    let ratio = ratios[at] * WALK_TRUST_RATIO;
     let next = (*trace).s + cone_way(d, ratio, z - maxima[at], heightmap.offset) * WALK_TRUST_WAY;
     return grid_leave(o, d, trace, node.low, node.high, level, exit, next);
 }
