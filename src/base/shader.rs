@@ -5,8 +5,10 @@
 //! its declaration, so the files are simply concatenated, in any order. Where a scene lacks
 //! a feature, a stand-in with the same functions is joined instead.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 use thiserror::Error;
 use wgpu::naga;
@@ -17,7 +19,7 @@ pub struct Module {
     /// Path of the file from the root of the repository.
     pub path: &'static str,
     /// Text of the file.
-    pub source: &'static str,
+    pub source: Cow<'static, str>,
     /// Name and value of every override constant of the file; booleans as 0 or 1.
     pub constants: Vec<(&'static str, f64)>,
 }
@@ -28,11 +30,15 @@ macro_rules! wgsl {
     ($path:literal $(, $name:literal = $value:expr)* $(,)?) => {
         $crate::base::shader::Module {
             path: concat!("wgsl/", $path),
-            source: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/", $path)),
+            source: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/", $path)).into(),
             constants: vec![$(($name, $value)),*],
         }
     };
 }
+
+/// Texts that take precedence over those of the program: the text of a file by its path from the
+/// root of the repository, `wgsl/pass/color.wgsl` for example, or `None`.
+pub type Sources = Arc<dyn Fn(&str) -> Option<String> + Send + Sync>;
 
 /// Joined modules with an entry point.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +80,16 @@ impl Program {
     /// A program of the given modules.
     pub fn new(entry: &'static str, modules: Vec<Module>) -> Self {
         Self { entry, modules }
+    }
+
+    /// The program with the texts of other sources, as far as they have them.
+    pub fn with_sources(mut self, sources: &Sources) -> Self {
+        for module in &mut self.modules {
+            if let Some(text) = sources(module.path) {
+                module.source = text.into();
+            }
+        }
+        self
     }
 
     /// The joined text. Each module ends with a line break.

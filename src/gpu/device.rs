@@ -208,6 +208,8 @@ pub struct Device {
     pub info: AdapterInfo,
     /// Nanoseconds per timestamp tick, if the adapter has timestamps.
     pub tick_ns: Option<f32>,
+    /// The adapter, if this program has opened the device.
+    opened: Option<Adapter>,
     trouble: Arc<Mutex<Option<DeviceError>>>,
 }
 
@@ -246,7 +248,25 @@ impl Device {
             name: info.name,
             why: e.to_string(),
         })?;
-        Ok(Self::adopt(adapter, device, queue))
+        Ok(Self {
+            opened: Some(adapter.clone()),
+            ..Self::adopt(adapter, device, queue)
+        })
+    }
+
+    /// Opens the adapter of a lost device again, with the same limits.
+    ///
+    /// # Errors
+    /// The adapter does not open, or a host has lent the device. Then this is the error of the
+    /// device.
+    pub fn reopen(&self) -> Result<Self, DeviceError> {
+        match &self.opened {
+            Some(adapter) => Self::open_with(adapter, self.device.limits()),
+            None => Err(self
+                .trouble()
+                .err()
+                .unwrap_or_else(|| self.lost("lent by a host"))),
+        }
     }
 
     /// Takes over a device that a host has opened, a window for example. Its callbacks for a
@@ -273,6 +293,7 @@ impl Device {
             device,
             queue,
             info,
+            opened: None,
             trouble,
         }
     }

@@ -4,6 +4,7 @@
 //! - [`device`]: adapters and devices; [`buffer`]: typed buffers; [`kernel`]: compiled programs
 //! - [`work`]: a render under way; `target`: its buffers and bound kernels; `cost`: how long
 //!   its dispatches take; `stamps`: the device's own time
+//! - [`pick`]: what there is at a pixel or at a point
 //! - `array`: arrays of the host on the device
 //! - `staging`: read-back without waiting; `collect`: results into the Frame
 //! - [`conemap`]: generators of cone maps on the device
@@ -17,6 +18,7 @@ mod cost;
 pub mod device;
 mod error;
 pub mod kernel;
+pub mod pick;
 pub mod render;
 mod staging;
 mod stamps;

@@ -8,15 +8,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bytemuck::bytes_of;
 
+use crate::base::shader::{Program, Sources};
 use crate::gpu::conemap::generate::Maker;
 use crate::gpu::cost::{Cost, LONGEST_MS};
 use crate::gpu::device::Device;
 pub use crate::gpu::error::RenderError;
+use crate::gpu::pick::Pick;
 use crate::gpu::stamps::Stamps;
 use crate::gpu::target::{Needs, Parameters, Target};
 use crate::gpu::work::{Job, Kept, Made, Shared, Work};
 use crate::heightfield::assets::Preparation;
 use crate::pass::look::Light;
+use crate::pass::pick::{self, At, PickQuestion};
 use crate::pass::prepare::prepare;
 use crate::pass::progress::Watch;
 use crate::pass::tone::tone_steps;
@@ -69,6 +72,9 @@ pub struct Renderer {
     pub device: Arc<Device>,
     /// How work is cut.
     pub cutting: Cutting,
+    /// Texts of shader files that take precedence, for live editing. The makers of maps do not ask
+    /// for them.
+    pub sources: Option<Sources>,
     shared: Arc<Shared>,
 }
 
@@ -78,6 +84,7 @@ impl Renderer {
         let device = Arc::new(device);
         Self {
             cutting: Cutting::default(),
+            sources: None,
             device: device.clone(),
             shared: Arc::new(Shared {
                 device,
@@ -89,11 +96,13 @@ impl Renderer {
     }
 
     /// Loads and makes what a plan names, compiles what is new, and begins a render. The plan
-    /// must pass [`Plan::check`]. The assets keep what is loaded and made for it.
+    /// must pass [`Plan::check`]. The assets keep what is loaded and made for it. A device that was
+    /// lost is opened again first, unless a host has lent it.
     ///
     /// # Errors
     /// [`RenderError::Cancelled`] if `watch` returns `false`. The device fails, a named file
-    /// cannot be read or does not fit, or a cone map cannot be made.
+    /// cannot be read or does not fit, a cone map cannot be made, or a shader text is wrong. What
+    /// was compiled and uploaded before stays.
     pub fn begin(
         &mut self,
         plan: &Plan,
@@ -101,6 +110,7 @@ impl Renderer {
         extras: Extras,
         watch: Watch<'_>,
     ) -> Result<Work, RenderError> {
+        self.reopen_if_lost()?;
         let plan = &*plan.lean(extras);
         let device = &*self.device;
         let prepared = self.prepare(plan, assets, watch)?;
@@ -114,7 +124,9 @@ impl Renderer {
         let largest = device.device.limits().max_texture_dimension_2d;
         let shown = extras.shown && plan.size.iter().all(|n| *n <= largest);
         let kinds = StageKind::all(&passes, shown);
-        let programs = kinds.iter().map(|k| k.program(plan, &scene, extras));
+        let programs = kinds
+            .iter()
+            .map(|k| self.text(k.program(plan, &scene, extras)));
         let needs = Needs {
             programs: programs.collect(),
             picture: shown.then_some(plan.size),
@@ -141,7 +153,7 @@ impl Renderer {
         let mut compile = |program| kernels.get(device, program);
         let compiled = needs.programs.iter().map(&mut compile);
         let compiled: Vec<_> = compiled.collect::<Result<_, _>>()?;
-        let arrange = kernels.get(device, &turn::arrange())?;
+        let arrange = kernels.get(device, &self.text(turn::arrange()))?;
         traffic.compilations = kernels.count() - known;
         let arrays = &mut *lock(&self.shared.arrays);
         let arrays = arrays.keep(
@@ -150,26 +162,25 @@ impl Renderer {
             scene.twin().arrays(),
             &mut traffic.uploads,
         )?;
-        let mut kept = std::mem::take(&mut *lock(&self.shared.kept));
-        let served = kept.target.take();
-        let target = match served.filter(|t| t.serves(&needs, &parameters, arrays)) {
-            Some(mut target) => {
+        let mut kept = lock(&self.shared.kept);
+        match &mut kept.target {
+            Some(target) if target.serves(&needs, &parameters, arrays) => {
                 traffic.uploads += target.rewrite(device, parameters);
-                target
             }
-            None => {
+            _ => {
                 traffic.uploads += parameters.iter().map(|(_, b)| b.len()).sum::<usize>();
                 traffic.allocations = 1;
-                kept = Kept {
+                let target = Target::new(device, compiled, arrange, needs, parameters, arrays)?;
+                *kept = Kept {
+                    target: Some(target),
                     costs: vec![Cost::default(); kinds.len()],
                     aim_ms: LONGEST_MS,
                     stamps: Stamps::new(device),
                     ..Kept::default()
                 };
-                Target::new(device, compiled, arrange, needs, parameters, arrays)?
             }
-        };
-        kept.target = Some(target);
+        }
+        let kept = std::mem::take(&mut *kept);
         let most = most_steps(&scene);
         let job = Job {
             kinds,
@@ -187,6 +198,74 @@ impl Renderer {
         let mut frame = Frame::blank(plan, extras);
         frame.traffic = Some(traffic);
         Ok(Work::new(self.shared.clone(), kept, job, frame))
+    }
+
+    /// Puts another plan into a work, which goes on with it from the start. What was submitted of
+    /// the old plan is discarded. With [`Extras::reuse`], see [`Renderer::begin`].
+    ///
+    /// # Errors
+    /// Those of [`Renderer::begin`]; the work goes on with the old plan then.
+    pub fn set(
+        &mut self,
+        work: &mut Work,
+        plan: &Plan,
+        assets: &Assets,
+        watch: Watch<'_>,
+    ) -> Result<(), RenderError> {
+        work.lend();
+        let begun = self.begin(plan, assets, work.extras(), watch);
+        match begun {
+            Ok(new) => *work = new,
+            Err(error) => {
+                work.take_back();
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    /// Asks what there is at a place of a plan, for a cursor or for the speed of a flight. The work
+    /// under way goes on. A pixel costs about as much as a few tiles of the picture.
+    ///
+    /// # Errors
+    /// Those of [`Renderer::begin`].
+    pub fn pick(&mut self, plan: &Plan, assets: &Assets, at: At) -> Result<Pick, RenderError> {
+        self.reopen_if_lost()?;
+        let scene = plan.solid(assets)?;
+        let device = &*self.device;
+        let program = self.text(pick::program(&scene));
+        let kernel = lock(&self.shared.kernels).get(device, &program)?;
+        let mut arrays = lock(&self.shared.arrays);
+        let kernels = std::slice::from_ref(&kernel);
+        let arrays = arrays.keep(device, kernels, scene.twin().arrays(), &mut 0)?;
+        let steps = most_steps(&scene);
+        let rounds = plan.ray_steps(assets).div_ceil(steps);
+        let question = PickQuestion::new(at, plan.camera.eye, steps);
+        Pick::new(
+            self.device.clone(),
+            &kernel,
+            &parameters(plan, &scene, assets),
+            arrays,
+            (question, rounds),
+            plan.camera.eye,
+        )
+    }
+
+    fn reopen_if_lost(&mut self) -> Result<(), RenderError> {
+        if self.device.check().is_err() {
+            let fresh = Self::new(self.device.reopen()?);
+            self.device = fresh.device;
+            self.shared = fresh.shared;
+        }
+        Ok(())
+    }
+
+    /// A program with the texts of `sources`.
+    fn text(&self, program: Program) -> Program {
+        match &self.sources {
+            Some(sources) => program.with_sources(sources),
+            None => program,
+        }
     }
 
     /// Makes the cone maps of a plan on the device. Their programs are kept.

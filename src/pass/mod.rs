@@ -4,6 +4,7 @@
 //! - [`march`]: the cones of one level; [`trace`]: one ray per pixel
 //! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits
 //! - [`color`]: light and colour, with [`look`], [`shadow`], [`occlusion`] and [`fog`]
+//! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone`]: from light to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
 //! - [`progress`]: how far a render has come; `explain`: its programs, without a GPU
@@ -17,6 +18,7 @@ pub mod fog;
 pub mod look;
 pub mod march;
 pub mod occlusion;
+pub mod pick;
 pub mod prepare;
 pub mod progress;
 pub mod shadow;

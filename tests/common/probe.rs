@@ -22,7 +22,8 @@ macro_rules! probe {
                 "/tests/probe/",
                 $name,
                 ".wgsl"
-            )),
+            ))
+            .into(),
             constants: Vec::new(),
         }
     };

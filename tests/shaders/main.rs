@@ -135,7 +135,7 @@ fn a_fault_points_to_its_file_and_line_wherever_the_module_is_joined() {
             let mut program = good();
             let module = Module {
                 path: PATH,
-                source,
+                source: (*source).into(),
                 constants: Vec::new(),
             };
             program.modules.insert(at, module);

@@ -7,6 +7,7 @@ use std::sync::LazyLock;
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
 use conemarch::pass::LookFeature;
+use conemarch::pass::pick;
 use conemarch::pass::turn::{self, StageKind};
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
@@ -151,7 +152,11 @@ pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     let mut found = BTreeMap::new();
     let assets = Assets::default();
     let plans = plans().into_iter();
-    let of_plans = plans.flat_map(|plan| programs_of(&plan, &outline(&plan, &assets)));
+    let of_plans = plans.flat_map(|plan| {
+        let solid = outline(&plan, &assets);
+        let passes = programs_of(&plan, &solid).into_iter();
+        passes.chain([pick::program(&solid)])
+    });
     for program in map_programs()
         .into_iter()
         .chain(of_plans)

@@ -40,21 +40,18 @@ fn assert_lost(result: Result<usize, RenderError>, renderer: &Renderer) {
 }
 
 #[test]
-fn a_device_lost_before_a_render_is_an_error_and_a_fresh_one_works() {
+fn a_device_lost_before_a_render_is_opened_again() {
     let all = |renderer: &mut Renderer| hits(renderer, &mut |_| true);
     let mut renderer = adapter::open();
     // The same renderer renders until it loses its device.
     let before = all(&mut renderer).unwrap();
     assert!(before > 500);
     renderer.device.device.destroy();
-    for _ in 0..2 {
-        assert_lost(all(&mut renderer), &renderer);
-    }
-    // A renderer that has never rendered has kernels to compile, too.
+    assert_eq!(all(&mut renderer).unwrap(), before);
+    // So is that of a renderer that has never rendered.
     let mut fresh = adapter::open();
     fresh.device.device.destroy();
-    assert_lost(all(&mut fresh), &fresh);
-    assert_eq!(all(&mut adapter::open()).unwrap(), before);
+    assert_eq!(all(&mut fresh).unwrap(), before);
 }
 
 #[test]

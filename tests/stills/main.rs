@@ -18,6 +18,7 @@ mod common {
     pub mod random;
 }
 mod device;
+mod live;
 mod work;
 
 use adapter::{COUNTED, LEVELS, on_cpu, render};

@@ -15,7 +15,7 @@ use super::common::random::Random;
 use crate::adapter::{self, EVERYTHING};
 
 /// All bits of a frame.
-fn bits(frame: &Frame) -> Vec<u32> {
+pub fn bits(frame: &Frame) -> Vec<u32> {
     let mut all: Vec<u32> = frame
         .radiance
         .iter()
@@ -38,7 +38,8 @@ fn bits(frame: &Frame) -> Vec<u32> {
     all
 }
 
-fn plans() -> Vec<Plan> {
+/// A plan with limits, one without, and a heightfield.
+pub fn plans() -> Vec<Plan> {
     let mut limited = sized("bench-outside", [70, 45]);
     limited.march.steps = Some(7);
     vec![

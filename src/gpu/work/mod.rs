@@ -12,7 +12,7 @@ mod submit;
 
 use std::collections::VecDeque;
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use crate::gpu::array::Arrays;
@@ -343,15 +343,35 @@ impl Work {
     }
 }
 
-impl Drop for Work {
+impl Work {
+    fn shelf(&self) -> MutexGuard<'_, Kept> {
+        let kept = self.shared.kept.lock();
+        kept.unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Leaves everything to the next render. The device may still run what was submitted; the
     /// next render is behind it.
+    pub(super) fn lend(&mut self) {
+        let kept = std::mem::take(&mut self.kept);
+        *self.shelf() = kept;
+    }
+
+    /// Takes back what no other render took.
+    pub(super) fn take_back(&mut self) {
+        let kept = std::mem::take(&mut *self.shelf());
+        self.kept = kept;
+    }
+
+    pub(super) fn extras(&self) -> Extras {
+        self.job.extras
+    }
+}
+
+impl Drop for Work {
     fn drop(&mut self) {
-        let mut kept = self
-            .shared
-            .kept
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        *kept = std::mem::take(&mut self.kept);
+        // Another render may have taken it already.
+        if self.kept.target.is_some() {
+            self.lend();
+        }
     }
 }

@@ -1,0 +1,168 @@
+//! What a window needs of a render: another plan in the middle, shader texts that change, a device
+//! that is lost, and what there is under the cursor.
+
+use std::sync::{Arc, Mutex};
+
+use conemarch::base::work::State;
+use conemarch::gpu::RenderError;
+use conemarch::gpu::device::{Adapters, Choice, Device, DeviceError};
+use conemarch::gpu::render::Renderer;
+use conemarch::pass::pick::{At, Picked};
+use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Assets;
+use glam::DVec3;
+
+use super::common::plans::{preset, sized};
+use super::work::{bits, plans};
+use crate::adapter::{self, EVERYTHING};
+
+fn whole(renderer: &mut Renderer, plan: &Plan) -> Result<Vec<u32>, RenderError> {
+    let frame = renderer.render(plan, &Assets::default(), EVERYTHING, &mut |_| true);
+    frame.map(|frame| bits(&frame))
+}
+
+#[test]
+fn another_plan_in_the_middle_discards_what_was_submitted() {
+    let (mut renderer, assets, go) = (adapter::open(), Assets::default(), &mut |_: &_| true);
+    let wanted: Vec<_> = plans()
+        .iter()
+        .map(|plan| whole(&mut adapter::open(), plan).unwrap())
+        .collect();
+    for (from, to) in [(0, 1), (1, 2), (2, 0), (1, 1)] {
+        for slices in 0..6 {
+            let mut work = renderer
+                .begin(&plans()[from], &assets, EVERYTHING, go)
+                .unwrap();
+            for _ in 0..slices {
+                work.advance(0.1).unwrap();
+            }
+            renderer.set(&mut work, &plans()[to], &assets, go).unwrap();
+            let frame = work.finish(go).unwrap();
+            assert!(bits(&frame) == wanted[to], "{from} to {to} after {slices}");
+        }
+    }
+    // A plan that cannot be rendered leaves the work as it was.
+    let mut work = renderer
+        .begin(&plans()[1], &assets, EVERYTHING, go)
+        .unwrap();
+    work.advance(0.1).unwrap();
+    let missing = preset("terrain", &["scene.field=no-such-file.png"]);
+    assert!(renderer.set(&mut work, &missing, &assets, go).is_err());
+    assert!(bits(&work.finish(go).unwrap()) == wanted[1]);
+}
+
+#[test]
+fn a_shader_text_changes_and_a_wrong_one_keeps_the_old() {
+    const COLOR: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/pass/color.wgsl"));
+    let mut renderer = adapter::open();
+    let plan = sized("mandelbox", [64, 36]);
+    let old = whole(&mut renderer, &plan).unwrap();
+    let text = Arc::new(Mutex::new(COLOR.to_string()));
+    let now = text.clone();
+    renderer.sources = Some(Arc::new(move |path| {
+        (path == "wgsl/pass/color.wgsl").then(|| now.lock().unwrap().clone())
+    }));
+    assert!(whole(&mut renderer, &plan).unwrap() == old);
+    let line = "    var c = sky(ray.axis);";
+    let at = COLOR.lines().position(|l| l == line).unwrap() + 1;
+    let edit = |new: &str| *text.lock().unwrap() = COLOR.replace(line, new);
+    edit("    var c = vec3<f32>(7.0);");
+    assert!(whole(&mut renderer, &plan).unwrap() != old);
+    edit("    var c = skye(ray.axis);");
+    let error = whole(&mut renderer, &plan).unwrap_err().to_string();
+    assert!(
+        error.contains(&format!("wgsl/pass/color.wgsl:{at}: ")),
+        "{error}"
+    );
+    edit(line);
+    let frame = renderer.render(&plan, &Assets::default(), EVERYTHING, &mut |_| true);
+    let frame = frame.unwrap();
+    assert!(bits(&frame) == old);
+    let traffic = frame.traffic.unwrap();
+    assert_eq!((traffic.compilations, traffic.drains), (0, 0));
+}
+
+#[test]
+fn a_lost_device_is_opened_again() {
+    let (mut renderer, assets, go) = (adapter::open(), Assets::default(), &mut |_: &_| true);
+    let plan = &plans()[1];
+    let wanted = whole(&mut renderer, plan).unwrap();
+    for slices in 0..4 {
+        let mut work = renderer.begin(plan, &assets, EVERYTHING, go).unwrap();
+        for _ in 0..slices {
+            work.advance(0.1).unwrap();
+        }
+        renderer.device.device.destroy();
+        let error = work.finish(go).unwrap_err();
+        assert!(matches!(
+            error,
+            RenderError::Device(DeviceError::Lost { .. })
+        ));
+        assert!(whole(&mut renderer, plan).unwrap() == wanted);
+    }
+    // A host opens its device itself.
+    let adapters = Adapters::find();
+    let chosen = adapters.choose(&Choice::Auto).unwrap();
+    let (adapter, _) = chosen.expect(adapter::NO_ADAPTER);
+    let opened = pollster::block_on(adapter.request_device(&Default::default()));
+    let (device, queue) = opened.unwrap();
+    let mut lent = Renderer::new(Device::adopt(adapter, device, queue));
+    lent.device.device.destroy();
+    let error = whole(&mut lent, plan).unwrap_err();
+    assert!(matches!(
+        error,
+        RenderError::Device(DeviceError::Lost { .. })
+    ));
+}
+
+fn picked(renderer: &mut Renderer, plan: &Plan, at: At) -> Picked {
+    let pick = renderer.pick(plan, &Assets::default(), at).unwrap();
+    renderer.device.wait().unwrap();
+    pick.poll().unwrap().expect("the device has run")
+}
+
+#[test]
+fn what_is_picked_is_what_the_picture_shows() {
+    let mut renderer = adapter::open();
+    let mut seen = [0; 2];
+    for plan in plans().into_iter().skip(1) {
+        let frame = adapter::on_cpu(&plan, Extras::default());
+        for (i, state) in frame.state.iter().enumerate().step_by(97) {
+            let width = plan.size[0];
+            let pixel = [i as u32 % width, i as u32 / width];
+            let found = picked(&mut renderer, &plan, At::Pixel(pixel));
+            let Some(found_state) = found.state else {
+                panic!("a pixel has a state")
+            };
+            // The edges of shapes may differ between the executors.
+            if *state != State::Hit as u8 || found_state != State::Hit {
+                seen[0] += usize::from(found_state as u8 == *state);
+                continue;
+            }
+            let depth = f64::from(frame.depth[i]);
+            let ray = plan.view().view_ray(pixel);
+            let place = plan.camera.eye + depth * ray.axis;
+            let near = 2.0 * ray.grain * depth + 1e-5 * depth;
+            assert!(
+                (found.distance - depth).abs() < near,
+                "{pixel:?}: {found:?}"
+            );
+            assert!((found.position - place).length() < near, "{found:?}");
+            // Next to the surface there is no room, and at the eye there is.
+            assert!(found.clearance < near, "{found:?}");
+            seen[1] += 1;
+        }
+        let eye = plan.camera.eye;
+        let at_eye = picked(&mut renderer, &plan, At::Point(eye));
+        assert_eq!((at_eye.state, at_eye.distance), (None, 0.0));
+        assert!(at_eye.clearance > 0.1, "{at_eye:?}");
+        let nearest = frame.depth.iter().copied().fold(f32::INFINITY, f32::min);
+        // A hit lies up to its threshold, half a pixel here, before the surface.
+        let threshold = 1e-4 * f64::from(nearest);
+        assert!(at_eye.clearance < f64::from(nearest) + threshold);
+        let aside = eye + DVec3::new(0.25, -0.5, 1.0);
+        let found = picked(&mut renderer, &plan, At::Point(aside));
+        assert!((found.position - aside).length() < 1e-5);
+    }
+    assert!(seen.iter().all(|n| *n > 10), "{seen:?}");
+}
