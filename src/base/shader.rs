@@ -22,6 +22,26 @@ pub struct Module {
     pub source: Cow<'static, str>,
     /// Name and value of every override constant of the file; booleans as 0 or 1.
     pub constants: Vec<(&'static str, f64)>,
+    /// Whether it computes what its stand-in does, bit for bit, while its parameters are zero. Then
+    /// a program may keep it when a slider passes through zero.
+    pub neutral: bool,
+}
+
+impl Module {
+    /// The module, marked as neutral.
+    pub fn neutral(self) -> Self {
+        Self {
+            neutral: true,
+            ..self
+        }
+    }
+
+    /// Whether the module can replace another: it is the same, or neutral and the other one is its
+    /// stand-in.
+    fn serves(&self, other: &Self) -> bool {
+        let stand_in = || self.path.replace(".wgsl", "_off.wgsl");
+        self == other || (self.neutral && other.path == stand_in())
+    }
 }
 
 /// Makes a [`Module`] from a file in `wgsl/`. The text is compiled in.
@@ -32,6 +52,7 @@ macro_rules! wgsl {
             path: concat!("wgsl/", $path),
             source: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/", $path)).into(),
             constants: vec![$(($name, $value)),*],
+            neutral: false,
         }
     };
 }
@@ -90,6 +111,14 @@ impl Program {
             }
         }
         self
+    }
+
+    /// Whether the program can replace another, whose parameters it gets.
+    pub fn serves(&self, other: &Self) -> bool {
+        let mut pairs = self.modules.iter().zip(&other.modules);
+        self.entry == other.entry
+            && self.modules.len() == other.modules.len()
+            && pairs.all(|(own, other)| own.serves(other))
     }
 
     /// The joined text. Each module ends with a line break.

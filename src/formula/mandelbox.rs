@@ -175,12 +175,11 @@ impl DistanceEstimate for Mandelbox {
             classic_reach: (self.scale - 1.0).abs() as f32,
             classic_skin: self.classic_skin(iterations) as f32,
         };
-        let mut all = vec![("mandelbox_parameters", bytes_of(&folds).to_vec())];
-        if let Some(rotation) = self.rotated() {
-            let rows = rotation.uniform();
-            all.push(("rotation_parameters", bytes_of(&rows).to_vec()));
-        }
-        all
+        let rows = Rotation::uniform(self.rotated().as_ref());
+        vec![
+            ("mandelbox_parameters", bytes_of(&folds).to_vec()),
+            ("rotation_parameters", bytes_of(&rows).to_vec()),
+        ]
     }
 
     fn estimate(&self, p: DVec3, most: u32) -> (f64, u32) {

@@ -49,14 +49,15 @@ impl Rotation {
     /// The WGSL module of a rotation, or of none.
     pub fn module(rotation: Option<&Self>) -> Module {
         match rotation {
-            Some(_) => wgsl!("formula/rotation.wgsl"),
+            Some(_) => wgsl!("formula/rotation.wgsl").neutral(),
             None => wgsl!("formula/rotation_off.wgsl"),
         }
     }
 
-    /// The values of the WGSL struct.
-    pub fn uniform(&self) -> RotationUniform {
-        let [row0, row1, row2] = [0, 1, 2].map(|i| self.0.row(i).as_vec3());
+    /// The values of the WGSL struct; the identity for none.
+    pub fn uniform(rotation: Option<&Self>) -> RotationUniform {
+        let matrix = rotation.map_or(DMat3::IDENTITY, |r| r.0);
+        let [row0, row1, row2] = [0, 1, 2].map(|i| matrix.row(i).as_vec3());
         RotationUniform {
             row0,
             row1,

@@ -49,7 +49,8 @@ impl Parts {
             depth: Range::between(front, front + area),
             state: Range::between(0, area),
             tally: Range::between(tally, front).only_if(extras.count),
-            level_states: Range::between(area, tally).only_if(extras.levels || extras.count),
+            level_states: Range::between(area, layout.states_end())
+                .only_if(extras.levels || extras.count),
             level_fronts: Range::between(front + area, layout.mark()).only_if(extras.levels),
             pixels: Range::between(0, 4 * layers * area).only_if(!extras.depth_only),
         }

@@ -117,18 +117,24 @@ impl Renderer {
         let scene = plan.solid(assets)?;
         let passes = plan.passes(extras);
         let coarsest = plan.coarsest();
-        let layout =
-            |block| turn::Layout::new(block, coarsest, extras.count, scene.twin().marks_hits());
         let blocks = Block::cut(plan.size, self.cutting.block, coarsest);
-        let blocks: Vec<_> = blocks.into_iter().map(layout).collect();
+        let marked = scene.twin().marks_hits();
+        let blocks = turn::Layout::of_blocks(&blocks, coarsest, extras.count, marked);
         let largest = device.device.limits().max_texture_dimension_2d;
         let shown = extras.shown && plan.size.iter().all(|n| *n <= largest);
         let kinds = StageKind::all(&passes, shown);
-        let programs = kinds
-            .iter()
-            .map(|k| self.text(k.program(plan, &scene, extras)));
+        let programs = {
+            let kept = lock(&self.shared.kept);
+            let held = kept.target.as_ref().filter(|_| extras.reuse);
+            let program = |(stage, kind): (usize, &StageKind)| {
+                let lean = self.text(kind.program(plan, &scene, extras));
+                let held = held.and_then(|target| target.held(stage, &blocks[0], &lean));
+                held.unwrap_or(lean)
+            };
+            kinds.iter().enumerate().map(program).collect()
+        };
         let needs = Needs {
-            programs: programs.collect(),
+            programs,
             picture: shown.then_some(plan.size),
             // The first block is as large as any.
             layout: blocks[0].clone(),

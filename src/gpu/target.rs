@@ -188,6 +188,14 @@ impl Target {
         })
     }
 
+    /// The program of a stage that can run in place of another: that of the last frame, if a slider
+    /// passed through zero since.
+    pub fn held(&self, stage: usize, layout: &Layout, program: &Program) -> Option<Program> {
+        let held = self.needs.programs.get(stage);
+        let held = held.filter(|held| self.needs.layout == *layout && held.serves(program));
+        held.cloned()
+    }
+
     /// Whether the target serves a frame: its programs, sizes and arrays are the same.
     pub fn serves(&self, needs: &Needs, parameters: &Parameters, scene: &[KeptArray]) -> bool {
         let same = |own: &Parameter| {

@@ -9,9 +9,10 @@ use crate::base::shader::Module;
 use crate::plan::look::Look;
 use crate::wgsl;
 
-/// Makes the enum of all features from one list: name, module, stand-in, predicate.
+/// Makes the enum of all features from one list: name, module, stand-in, predicate. A module that
+/// leaves the colour as it is while the feature's number is zero is neutral.
 macro_rules! features {
-    ($($(#[$doc:meta])* $name:ident: $on:literal, $off:literal, $is_on:expr);* $(;)?) => {
+    ($($(#[$doc:meta])* $name:ident: $on:expr, $off:expr, $is_on:expr);* $(;)?) => {
         /// A feature of a look that can be absent.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum LookFeature { $($(#[$doc])* $name),* }
@@ -29,8 +30,8 @@ macro_rules! features {
             /// Its module, or the stand-in.
             pub fn module(self, on: bool) -> Module {
                 match (self, on) {
-                    $((Self::$name, true) => wgsl!($on),
-                    (Self::$name, false) => wgsl!($off)),*
+                    $((Self::$name, true) => $on,
+                    (Self::$name, false) => $off),*
                 }
             }
         }
@@ -39,9 +40,12 @@ macro_rules! features {
 
 features![
     /// Shadows of the key light.
-    Shadow: "pass/shadow.wgsl", "pass/shadow_off.wgsl", |look| look.shadow;
+    Shadow: wgsl!("pass/shadow.wgsl"), wgsl!("pass/shadow_off.wgsl"),
+        |look| look.shadow;
     /// Ambient occlusion.
-    Occlusion: "pass/occlusion.wgsl", "pass/occlusion_off.wgsl", |look| look.occlusion > 0.0;
+    Occlusion: wgsl!("pass/occlusion.wgsl").neutral(), wgsl!("pass/occlusion_off.wgsl"),
+        |look| look.occlusion > 0.0;
     /// Exponential fog.
-    Fog: "pass/fog.wgsl", "pass/fog_off.wgsl", |look| look.fog > 0.0;
+    Fog: wgsl!("pass/fog.wgsl").neutral(), wgsl!("pass/fog_off.wgsl"),
+        |look| look.fog > 0.0;
 ];

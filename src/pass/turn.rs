@@ -198,6 +198,10 @@ pub fn arrange() -> Program {
 
 /// Where the values of a block's cells are in one buffer of words: first the states of all
 /// levels, the finest first, then the counts of work, the fronts, and the marks of the pixels.
+///
+/// Blocks of different sizes use one buffer. Only states may stand where a state is looked for, as
+/// another word could be taken for the state of a cell that was not visited. So all blocks of an
+/// image reserve as many words for states as the largest one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// The block.
@@ -206,17 +210,26 @@ pub struct Layout {
     coarsest: u32,
     counted: bool,
     marked: bool,
+    /// Words reserved for states.
+    states: u32,
 }
 
 impl Layout {
-    /// The layout of a block.
-    pub fn new(block: Block, coarsest: u32, counted: bool, marked: bool) -> Self {
-        Self {
-            block,
+    /// The layouts of the blocks of an image, of which the first is as large as any.
+    pub fn of_blocks(blocks: &[Block], coarsest: u32, counted: bool, marked: bool) -> Vec<Self> {
+        let layout = |block: &Block| Self {
+            block: *block,
             coarsest,
             counted,
             marked,
-        }
+            states: 0,
+        };
+        let states = blocks.first().map_or(0, |b| layout(b).states_end());
+        let reserved = |block| Self {
+            states,
+            ..layout(block)
+        };
+        blocks.iter().map(reserved).collect()
     }
 
     /// Cells along each axis at a divisor.
@@ -235,7 +248,8 @@ impl Layout {
         finer.sum()
     }
 
-    fn all(&self) -> u32 {
+    /// Where the states of all levels end.
+    pub fn states_end(&self) -> u32 {
         self.finer(2 * self.coarsest)
     }
 
@@ -246,7 +260,7 @@ impl Layout {
 
     /// Where the counts of work of a level start.
     pub fn tally(&self, divisor: u32) -> u32 {
-        self.all()
+        self.states
             + if self.counted {
                 2 * self.finer(divisor)
             } else {

@@ -210,6 +210,7 @@ pub struct Extras {
     /// Keep a picture on the device that can be shown while it is made.
     pub shown: bool,
     /// Start from what the last frame left on the device: if only the look differs, from its
-    /// rays, and if only the exposure differs, from its colours.
+    /// rays, and if only the exposure differs, from its colours. Programs stay when the number of a
+    /// feature becomes zero.
     pub reuse: bool,
 }

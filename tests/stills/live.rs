@@ -166,3 +166,41 @@ fn what_is_picked_is_what_the_picture_shows() {
     }
     assert!(seen.iter().all(|n| *n > 10), "{seen:?}");
 }
+
+#[test]
+fn a_number_that_passes_through_zero_compiles_nothing() {
+    let (mut renderer, assets) = (adapter::open(), Assets::default());
+    let extras = Extras {
+        reuse: true,
+        ..EVERYTHING
+    };
+    let on = [
+        "look.fog=0.05",
+        "look.occlusion=0.8",
+        "scene.rotation=[10, 0, 20]",
+        "image.size=[64, 36]",
+    ];
+    let off = ["look.fog=0", "look.occlusion=0", "scene.rotation=[0, 0, 0]"];
+    let plan = preset("mandelbox", &on);
+    renderer
+        .render(&plan, &assets, extras, &mut |_| true)
+        .unwrap();
+    for without in off {
+        let key = without.split_once('=').unwrap().0;
+        let others = on.into_iter().filter(|set| !set.starts_with(key));
+        let sets: Vec<&str> = others.chain([without]).collect();
+        let plan = preset("mandelbox", &sets);
+        let frame = renderer.render(&plan, &assets, extras, &mut |_| true);
+        let frame = frame.unwrap();
+        let traffic = frame.traffic.unwrap();
+        assert_eq!(
+            (traffic.compilations, traffic.allocations),
+            (0, 0),
+            "{without}"
+        );
+        assert!(
+            bits(&frame) == whole(&mut adapter::open(), &plan).unwrap(),
+            "{without}"
+        );
+    }
+}

@@ -1,6 +1,9 @@
 // Exponential fog, which blends towards the sky with the distance from the eye.
 
 fn fog(color: vec3<f32>, axis: vec3<f32>, t: f32) -> vec3<f32> {
+    if look.fog == 0.0 {
+        return color;
+    }
     let seen = exp(-look.fog * t);
     return mix(sky(axis), color, seen);
 }

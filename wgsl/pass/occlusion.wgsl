@@ -5,6 +5,9 @@ const OCCLUSION_TAPS = 5u;
 
 fn occlusion(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> f32 {
     var open = 1.0;
+    if look.occlusion_strength == 0.0 {
+        return open;
+    }
     var h = max(look.occlusion_reach / 16.0, 2.0 * grain);
     var weight = 0.4;
     for (var i = 0u; i < OCCLUSION_TAPS; i++) {

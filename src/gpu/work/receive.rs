@@ -67,8 +67,10 @@ impl Work {
             staging.unmap();
             self.kept.readings.push(staging);
         }
-        // What is left of a stage that is over need not be encoded.
-        if turn.number > self.cursor {
+        // What is left of a stage that is over need not be encoded, except at the end of a block,
+        // where the results are read.
+        let [reached, next] = [turn.number, self.cursor].map(|stage| self.place(stage));
+        if reached.0 == next.0 && reached.1 > next.1 {
             self.go_to(turn.number);
         }
         // A submission from before a correction says nothing new.
