@@ -112,14 +112,27 @@ impl Format {
     }
 }
 
-/// The file that a picture goes to without -o: `NAME.png`, with another size
-/// `NAME-640x360.png`, and of another layer `NAME.depth.png`. A picture with other settings
-/// replaces only its own like.
+/// The longest part of a file's name that tells settings. File systems allow 255 bytes in all.
+const MOST_SETTINGS: usize = 120;
+
+/// The file that a picture goes to without -o: `NAME.png`, with other settings
+/// `NAME-camera.fov=33.png`, with another size `NAME-640x360.png`, and of another layer
+/// `NAME.depth.png`. A picture with other settings replaces only its own like.
 ///
 /// # Errors
 /// The file exists and holds another preset than the one with `--set`.
 pub fn default_name(name: &str, args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<PathBuf> {
     let mut file = name.to_string();
+    let settings = args
+        .set
+        .iter()
+        .flat_map(|set| ["-", set])
+        .collect::<String>();
+    let plain = |c: char| match c {
+        c if c.is_ascii_alphanumeric() || "-.=".contains(c) => c,
+        _ => '_',
+    };
+    file.extend(settings.chars().map(plain).take(MOST_SETTINGS));
     if plan.size != own_size {
         file += &format!("-{}x{}", plan.size[0], plan.size[1]);
     }

@@ -32,9 +32,10 @@ pub struct Render {
 
     /// Where to write: a .png, .jpg, .webp or .exr file, or - for PNG on standard output
     ///
-    /// Without -o the picture goes to the current folder as NAME.png, with another --size as
-    /// NAME-640x360.png, and with another --layer as NAME.depth.png. With --set such a file
-    /// is replaced only if it has the same settings.
+    /// Without -o the picture goes to the current folder as NAME.png, with --set as
+    /// NAME-camera.fov=60.png, with another --size as NAME-640x360.png, and with another
+    /// --layer as NAME.depth.png. With --set a file is replaced only if it has the same
+    /// settings.
     ///
     /// A PNG carries its preset and can be rendered again; JPEG and WebP carry none. WebP is
     /// without loss. An EXR has the channels R, G, B (linear), A (1), Z (along the view

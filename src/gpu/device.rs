@@ -357,8 +357,11 @@ impl Device {
             return Ok(());
         };
         if matches!(error, DeviceError::Reported { .. }) {
-            // Polling notes a loss.
-            let _ = self.device.poll(wgpu::PollType::Poll);
+            // A loss is noted once the device has nothing more to do.
+            let _ = self.device.poll(wgpu::PollType::Wait {
+                submission_index: None,
+                timeout: Some(Duration::from_secs(1)),
+            });
             if let Some(later) = self.noted()? {
                 return Err(later);
             }

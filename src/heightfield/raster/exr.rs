@@ -8,8 +8,8 @@ use std::io::{BufRead, Cursor, Read, Seek, Write};
 use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, LayerAttributes, ReadChannels,
-    ReadLayers, ReadSpecificChannel, SmallVec, WritableImage,
+    AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image, LayerAttributes, LineOrder,
+    ReadChannels, ReadLayers, ReadSpecificChannel, SmallVec, WritableImage,
 };
 
 use crate::heightfield::heights::MOST_SAMPLES;
@@ -112,7 +112,12 @@ pub fn write(
     let layer = exr::prelude::Layer::new(
         (size[0] as usize, size[1] as usize),
         attributes,
-        Encoding::SMALL_FAST_LOSSLESS,
+        // Lines in their order, so that threads that end in any order give the same bytes.
+        Encoding {
+            blocks: Blocks::ScanLines,
+            line_order: LineOrder::Increasing,
+            ..Encoding::SMALL_FAST_LOSSLESS
+        },
         AnyChannels::sort(list),
     );
     let mut bytes = Cursor::new(Vec::new());
