@@ -3,8 +3,8 @@
 
 use crate::pass::turn::Stage;
 
-/// The longest time in milliseconds that a dispatch is made for. At the end of each, some threads
-/// wait for others: dispatches of 5 ms cost a software device up to a tenth.
+/// The longest time in milliseconds that a dispatch is made for. At the end of each, some threads of
+/// a software device wait for others, so short dispatches cost it time.
 pub const LONGEST_MS: f64 = 30.0;
 /// The time that a dispatch of unknown cost is taken for.
 const FIRST_MS: f64 = 5.0;

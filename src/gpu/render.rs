@@ -29,10 +29,14 @@ use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Plan};
 use crate::scene::{AnySolid, Assets};
 
+/// The largest edge of a block in pixels. `queue_divide` in `wgsl/pass/queue.wgsl` is exact for so
+/// many pixels.
+const MOST_BLOCK: u32 = 1024;
+
 /// How work is cut. This never changes a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cutting {
-    /// The largest edge of a block in pixels.
+    /// The largest edge of a block in pixels. More than 1024 counts as 1024.
     pub block: u32,
     /// The step limit of the first dispatch of a pass. Each later one has four times as many.
     pub chunk: u32,
@@ -41,8 +45,7 @@ pub struct Cutting {
 impl Default for Cutting {
     fn default() -> Self {
         Self {
-            // The largest buffer has 64 MiB.
-            block: 1024,
+            block: MOST_BLOCK,
             // Most rays end within 64 steps. The rest are packed and run in dispatches of
             // 256. Packing sooner costs a software device more in visits than it saves in
             // idle lanes.
@@ -117,7 +120,7 @@ impl Renderer {
         let scene = plan.solid(assets)?;
         let passes = plan.passes(extras);
         let coarsest = plan.coarsest();
-        let blocks = Block::cut(plan.size, self.cutting.block, coarsest);
+        let blocks = Block::cut(plan.size, self.cutting.block.min(MOST_BLOCK), coarsest);
         let marked = scene.twin().marks_hits();
         let blocks = turn::Layout::of_blocks(&blocks, coarsest, extras.count, marked);
         let largest = device.device.limits().max_texture_dimension_2d;
@@ -207,7 +210,7 @@ impl Renderer {
     }
 
     /// Puts another plan into a work, which goes on with it from the start. What was submitted of
-    /// the old plan is discarded. With [`Extras::reuse`], see [`Renderer::begin`].
+    /// the old plan is discarded. The extras stay.
     ///
     /// # Errors
     /// Those of [`Renderer::begin`]; the work goes on with the old plan then.
@@ -231,7 +234,7 @@ impl Renderer {
     }
 
     /// Asks what there is at a place of a plan, for a cursor or for the speed of a flight. The work
-    /// under way goes on. A pixel costs about as much as a few tiles of the picture.
+    /// under way goes on.
     ///
     /// # Errors
     /// Those of [`Renderer::begin`].
@@ -245,7 +248,10 @@ impl Renderer {
         let kernels = std::slice::from_ref(&kernel);
         let arrays = arrays.keep(device, kernels, scene.twin().arrays(), &mut 0)?;
         let steps = most_steps(&scene);
-        let rounds = plan.ray_steps(assets).div_ceil(steps);
+        let rounds = match at {
+            At::Pixel(_) => plan.ray_steps(assets).div_ceil(steps),
+            At::Point(_) => 1,
+        };
         let question = PickQuestion::new(at, plan.camera.eye, steps);
         Pick::new(
             self.device.clone(),

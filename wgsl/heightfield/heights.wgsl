@@ -28,8 +28,8 @@ struct HeightmapUniform {
 override HEIGHTMAP_BOXES: bool;
 
 @group(0) @binding(5) var heights: texture_2d<f32>;
-/// One cone for each place. Cones and maxima, which most steps read, are buffers: software Vulkan
-/// reads textures more slowly, and rays took half as long again.
+/// One cone for each place. Most steps read cones and maxima. They are buffers, as software Vulkan
+/// reads textures more slowly.
 @group(0) @binding(6) var<storage, read> ratios: array<f32>;
 @group(0) @binding(7) var<storage, read> maxima: array<f32>;
 /// The scene loads it.

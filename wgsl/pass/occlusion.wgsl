@@ -5,6 +5,7 @@ const OCCLUSION_TAPS = 5u;
 
 fn occlusion(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> f32 {
     var open = 1.0;
+    // A program may be kept when the number becomes zero.
     if look.occlusion_strength == 0.0 {
         return open;
     }

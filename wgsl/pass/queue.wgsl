@@ -37,8 +37,8 @@ fn queue_index(cell: vec2<u32>) -> u32 {
     return cell.y * turn.stage.cells.x + cell.x;
 }
 
-/// The remainder and the quotient. Exact for `a` up to 2^20, which a block's pixels do not exceed:
-/// WGSL divides floats to within 2.5 units in the last place.
+/// The remainder and the quotient. Exact for `a` up to 2^20, the most pixels of a block, as WGSL
+/// divides floats to within 2.5 units in the last place.
 fn queue_divide(a: u32, by: u32) -> vec2<u32> {
     let quotient = u32((f32(a) + 0.5) / f32(by));
     return vec2<u32>(a - quotient * by, quotient);
