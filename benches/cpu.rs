@@ -76,7 +76,10 @@ fn comparisons(c: &mut Criterion) {
                 black_box(&one),
                 &two,
                 &plan,
-                &plan.solid(&Assets::default()).expect("no files are named"),
+                &plan
+                    .scene
+                    .solid(&plan.viewpoint(), &Assets::default())
+                    .expect("no files are named"),
             )
         });
     });

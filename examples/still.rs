@@ -1,8 +1,9 @@
 //! Renders a preset to a PNG file: `cargo run --release --example still`.
 
 use anyhow::{Context, Result, anyhow};
-use conemarch::command::executor::Executor;
-use conemarch::gpu::device::Choice;
+use conemarch::cpu;
+use conemarch::gpu::device::Adapters;
+use conemarch::gpu::render::Renderer;
 use conemarch::picture::{BitDepth, Layer, Shades, write_png};
 use conemarch::plan::Extras;
 use conemarch::preset;
@@ -18,9 +19,11 @@ fn main() -> Result<()> {
 
     // The best GPU, or the CPU if there is none. The last argument of `render` is called with
     // the progress; it may return false to cancel.
-    let (mut executor, name) = Executor::open(&Choice::Auto)?;
-    println!("rendering on {name}");
-    let frame = executor.render(&plan, &Assets::default(), Extras::default(), &mut |_| true)?;
+    let (assets, extras) = (Assets::default(), Extras::default());
+    let frame = match Adapters::find().open_first(true) {
+        Ok((device, _)) => Renderer::new(device).render(&plan, &assets, extras, &mut |_| true)?,
+        Err(_) => cpu::render(&plan, &assets, extras, &mut |_| true)?,
+    };
 
     let mut file = std::fs::File::create("still.png").context("still.png")?;
     let shades = Shades::new(Layer::Color, &frame, &plan);

@@ -49,14 +49,15 @@ pub fn render(
 ) -> Result<Frame, FrameError> {
     let plan = &*plan.lean(extras);
     let prepared = prepare(plan, assets, &mut generate, watch)?;
+    let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
     let render = Render {
         plan,
-        light: &Light::of(plan, assets),
-        ray_steps: plan.ray_steps(assets),
+        light: &Light::of(plan, &solid),
+        ray_steps: plan.ray_steps(&solid),
         extras,
         watch,
     };
-    let mut frame = plan.solid(assets)?.run(render)?;
+    let mut frame = solid.run(render)?;
     frame.finish(prepared);
     Ok(frame)
 }
@@ -277,12 +278,13 @@ pub fn sample(
     assets: &Assets,
     pixels: &[[u32; 2]],
 ) -> Result<Vec<(Hit, State)>, FrameError> {
+    let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
     let sample = Sample {
         view: plan.view(),
-        limit: plan.ray_steps(assets),
+        limit: plan.ray_steps(&solid),
         pixels,
     };
-    Ok(plan.solid(assets)?.run(sample))
+    Ok(solid.run(sample))
 }
 
 struct Sample<'a> {

@@ -117,7 +117,7 @@ impl Renderer {
         let plan = &*plan.lean(extras);
         let device = &*self.device;
         let prepared = self.prepare(plan, assets, watch)?;
-        let scene = plan.solid(assets)?;
+        let scene = plan.scene.solid(&plan.viewpoint(), assets)?;
         let passes = plan.passes(extras);
         let coarsest = plan.coarsest();
         let blocks = Block::cut(plan.size, self.cutting.block.min(MOST_BLOCK), coarsest);
@@ -146,7 +146,7 @@ impl Renderer {
                 (false, normals) => 1 + u32::from(normals),
             },
         };
-        let mut parameters = parameters(plan, &scene, assets);
+        let mut parameters = parameters(plan, &scene);
         if shown {
             let steps = tone_steps(plan.look.exposure.exp2());
             parameters.push(("tone_steps", bytes_of(&steps).to_vec()));
@@ -196,7 +196,7 @@ impl Renderer {
             made: Made {
                 passes,
                 blocks,
-                ray_steps: plan.ray_steps(assets),
+                ray_steps: plan.ray_steps(&scene),
                 marched,
                 look,
             },
@@ -240,7 +240,7 @@ impl Renderer {
     /// Those of [`Renderer::begin`].
     pub fn pick(&mut self, plan: &Plan, assets: &Assets, at: At) -> Result<Pick, RenderError> {
         self.reopen_if_lost()?;
-        let scene = plan.solid(assets)?;
+        let scene = plan.scene.solid(&plan.viewpoint(), assets)?;
         let device = &*self.device;
         let program = self.text(pick::program(&scene));
         let kernel = lock(&self.shared.kernels).get(device, &program)?;
@@ -249,14 +249,14 @@ impl Renderer {
         let arrays = arrays.keep(device, kernels, scene.twin().arrays(), &mut 0)?;
         let steps = most_steps(&scene);
         let rounds = match at {
-            At::Pixel(_) => plan.ray_steps(assets).div_ceil(steps),
+            At::Pixel(_) => plan.ray_steps(&scene).div_ceil(steps),
             At::Point(_) => 1,
         };
         let question = PickQuestion::new(at, plan.camera.eye, steps);
         Pick::new(
             self.device.clone(),
             &kernel,
-            &parameters(plan, &scene, assets),
+            &parameters(plan, &scene),
             arrays,
             (question, rounds),
             plan.camera.eye,
@@ -317,9 +317,9 @@ impl Renderer {
 }
 
 /// The parameters of a frame by the names of the WGSL variables.
-fn parameters(plan: &Plan, scene: &AnySolid, assets: &Assets) -> Parameters {
+fn parameters(plan: &Plan, scene: &AnySolid) -> Parameters {
     let view = plan.view().uniform();
-    let look = Light::of(plan, assets).uniform();
+    let look = Light::of(plan, scene).uniform();
     let frame = [
         ("view_parameters", bytes_of(&view).to_vec()),
         ("look_parameters", bytes_of(&look).to_vec()),

@@ -65,6 +65,8 @@ pub struct Ready {
     pub placement: Placement,
     /// The tracer's name.
     pub name: &'static str,
+    /// The most steps that a ray can take.
+    pub most_steps: u32,
 }
 
 impl Assets {
@@ -142,16 +144,6 @@ impl Assets {
         settings.generators().into_iter().filter_map(one).collect()
     }
 
-    /// The largest number of steps that a ray can take; `None` if the heights cannot be loaded.
-    pub fn most_steps(&self, settings: &HeightfieldSettings) -> Option<u32> {
-        let surface = self.surface(settings).ok()?;
-        Some(
-            settings
-                .tracing
-                .most_steps(surface.domain().map(i32::unsigned_abs)),
-        )
-    }
-
     /// Notes about the named files: what was ignored in them, and what could not be checked.
     pub fn notes(&self, settings: &HeightfieldSettings) -> Vec<String> {
         if settings.files().is_empty() {
@@ -198,7 +190,8 @@ impl Assets {
         let surface = self.surface(settings)?;
         let cones = self.cones(settings, &surface, &mut *make)?;
         let paint = self.paint(settings, &surface, make)?;
-        let [w, h] = surface.domain().map(f64::from);
+        let domain = surface.domain();
+        let [w, h] = domain.map(f64::from);
         let placement = settings.placement(DVec2::new(w, h));
         let pixel = placement.texel / (2.0 * grain);
         let colors = match (paint, self.texture(settings)?) {
@@ -214,6 +207,7 @@ impl Assets {
             placement,
             surface,
             name: settings.tracing.tracer.name(),
+            most_steps: settings.tracing.most_steps(domain.map(i32::unsigned_abs)),
         })
     }
 

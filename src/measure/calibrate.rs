@@ -125,13 +125,14 @@ pub fn calibrate(
     }
     let others = probes.split_off(rays.min(probes.len()));
     let known = &probes;
-    let (slope, slack) = plan.solid(assets)?.run(Slopes {
+    let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
+    let (slope, slack) = solid.run(Slopes {
         plan,
         probes: known,
     });
     let count = |plan: &Plan, probes: &[Probe]| {
-        let limit = plan.ray_steps(assets);
-        let solid = plan.solid(assets)?;
+        let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
+        let limit = plan.ray_steps(&solid);
         Ok::<_, RenderError>(solid.run(Lost {
             plan,
             limit,

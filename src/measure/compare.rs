@@ -188,7 +188,9 @@ mod tests {
     use glam::DVec3;
 
     fn solid(plan: &Plan) -> AnySolid {
-        plan.solid(&Assets::default()).expect("it names no file")
+        plan.scene
+            .solid(&plan.viewpoint(), &Assets::default())
+            .expect("it names no file")
     }
 
     fn rendered(plan: &Plan) -> Frame {

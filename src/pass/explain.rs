@@ -28,7 +28,7 @@ pub fn explain(plan: &Plan, assets: &Assets, extras: Extras) -> Result<String, P
     for pass in prepared.chain(plan.passes(extras)) {
         let limit = match pass {
             Pass::March(level) => level.steps.to_string(),
-            Pass::Trace => plan.ray_steps(assets).to_string(),
+            Pass::Trace => plan.ray_steps(&solid).to_string(),
             Pass::Prepare(_) | Pass::Color => "-".into(),
         };
         let [w, h] = pass.cells(plan.size);

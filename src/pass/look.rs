@@ -11,7 +11,7 @@ use crate::base::srgb::linear;
 use crate::pass::LookFeature;
 use crate::plan::Plan;
 use crate::plan::look::{Look, MOST_STOPS, SHADOW_STEPS};
-use crate::scene::{Assets, MOST_SHADOW_STEPS};
+use crate::scene::{AnySolid, MOST_SHADOW_STEPS};
 
 /// The look as WGSL reads it.
 #[repr(C)]
@@ -70,8 +70,8 @@ pub struct Light {
 }
 
 impl Light {
-    /// The light of a plan.
-    pub fn of(plan: &Plan, assets: &Assets) -> Self {
+    /// The light of a plan over its scene.
+    pub fn of(plan: &Plan, solid: &AnySolid) -> Self {
         let mut look = plan.look.clone();
         let colors = [&mut look.light_color, &mut look.sky_high, &mut look.sky_low];
         for color in colors.into_iter().chain(&mut look.palette) {
@@ -83,7 +83,7 @@ impl Light {
         look.light = look.light.normalize();
         look.occlusion_reach *= distance;
         look.fog /= distance;
-        let crossing = plan.scene.most_steps(assets).unwrap_or(SHADOW_STEPS);
+        let crossing = solid.twin().most_steps().unwrap_or(SHADOW_STEPS);
         let auto = crossing.clamp(SHADOW_STEPS, MOST_SHADOW_STEPS);
         Self {
             softness: look.light_size.to_radians().tan(),

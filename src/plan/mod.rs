@@ -2,7 +2,7 @@
 //!
 //! A [`Plan`] is everything that decides a picture, as one plain value. It can be printed,
 //! compared, written as a preset and tested without a GPU. It reads no file and makes no
-//! map: [`Assets`] do.
+//! map: [`crate::scene::Assets`] do.
 //!
 //! - [`camera`], [`march`], [`look`]: the sections of a preset beside `[scene]`
 //! - [`pyramid`]: the cone levels, and the blocks of a large image
@@ -17,9 +17,8 @@ use std::borrow::Cow;
 use crate::base::key::{Fault, Key, size, text};
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
-use crate::heightfield::tracer::settings::PrepareError;
 use crate::keys;
-use crate::scene::{AnySolid, Assets, Scene, Viewpoint};
+use crate::scene::{AnySolid, Scene, Viewpoint};
 use camera::Camera;
 use look::Look;
 use march::Marching;
@@ -80,7 +79,7 @@ impl Plan {
         })
     }
 
-    /// Checks that all settings fit together. No file is read: [`Assets::load`] does that.
+    /// Checks that all settings fit together. No file is read: [`Scene::load`] does that.
     ///
     /// # Errors
     /// The first value that does not fit, with a valid alternative.
@@ -115,23 +114,14 @@ impl Plan {
         }
     }
 
-    /// The scene with all settings resolved to numbers. Missing assets are loaded, or made on
-    /// the CPU.
-    ///
-    /// # Errors
-    /// A named file cannot be read or does not fit; a cone map cannot be made.
-    pub fn solid(&self, assets: &Assets) -> Result<AnySolid, PrepareError> {
-        self.scene.solid(&self.viewpoint(), assets)
-    }
-
     /// A warning if f32 is too coarse for the picture.
     pub fn precision_warning(&self) -> Option<String> {
         self.scene.precision_warning(&self.viewpoint())
     }
 
-    /// The step limit of a ray.
-    pub fn ray_steps(&self, assets: &Assets) -> u32 {
-        self.march.ray_steps(self.scene.most_steps(assets))
+    /// The step limit of a ray through the scene.
+    pub fn ray_steps(&self, solid: &AnySolid) -> u32 {
+        self.march.ray_steps(solid.twin().most_steps())
     }
 
     /// The passes of a frame, in order. [`Pass::Prepare`] is not among them: it runs once for

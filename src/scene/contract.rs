@@ -92,6 +92,10 @@ pub trait Twin {
     }
     /// A line about the scene, with the numbers that it was resolved to.
     fn describe(&self) -> String;
+    /// The most steps that a ray can take through the scene, where this is known.
+    fn most_steps(&self) -> Option<u32> {
+        None
+    }
     /// An upper bound of the inner loop rounds in one step.
     fn rounds(&self) -> u32;
     /// Whether hits carry an id and a place as well as a distance.

@@ -238,6 +238,10 @@ impl Twin for Heightfield {
         format!("heightfield: {w} x {h} samples, traced by {name}")
     }
 
+    fn most_steps(&self) -> Option<u32> {
+        Some(self.made.most_steps)
+    }
+
     fn rounds(&self) -> u32 {
         HEIGHTFIELD_ROUNDS
     }

@@ -174,9 +174,4 @@ impl Scene {
         let all = self.heightfield().map(|h| assets.contents(h));
         all.unwrap_or_default()
     }
-
-    /// The largest number of steps that a ray can take through the scene, where it is known.
-    pub fn most_steps(&self, assets: &Assets) -> Option<u32> {
-        assets.most_steps(self.heightfield()?)
-    }
 }

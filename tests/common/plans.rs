@@ -122,7 +122,7 @@ pub fn switch(plan: &mut Plan, feature: LookFeature, on: bool) {
 
 /// The scene of a plan in numbers, ready to be asked.
 pub fn solid(plan: &Plan) -> AnySolid {
-    let solid = plan.solid(&Assets::default());
+    let solid = plan.scene.solid(&plan.viewpoint(), &Assets::default());
     solid.unwrap_or_else(|e| panic!("{e}, {plan:?}"))
 }
 
@@ -142,7 +142,7 @@ pub fn distance_solid(plan: &Plan) -> Distance {
 
 /// The light of a plan.
 pub fn light(plan: &Plan) -> Light {
-    Light::of(plan, &Assets::default())
+    Light::of(plan, &solid(plan))
 }
 
 /// The report on a frame of a plan against a reference.

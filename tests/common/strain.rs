@@ -5,8 +5,8 @@ use conemarch::base::work::State;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::Plan;
 use conemarch::plan::march::Mode;
-use conemarch::scene::Assets;
 
+use super::plans::solid;
 use super::solved::{rays, solids, solved};
 use crate::adapter::{HIT, LEVELS, SKY, UNCONVERGED, both, on_cpu};
 
@@ -44,7 +44,7 @@ pub fn faults(plan: &Plan, frame: &Frame) -> Vec<String> {
     });
     let position = frame.positions(&plan.view());
     bad("position", &|i| position[i].iter().any(|x| !x.is_finite()));
-    let limit = plan.ray_steps(&Assets::default());
+    let limit = plan.ray_steps(&solid(plan));
     bad("evaluations", &|i| frame.work[i].evaluations > limit);
     for level in &frame.levels {
         let layer = format!("fronts of 1/{}", level.divisor);

@@ -41,7 +41,11 @@ pub fn ready(plan: &Plan) -> Ready {
 
 /// The scene of a plan in f64.
 pub fn solid(plan: &Plan) -> Heightfield {
-    match plan.solid(&Assets::default()).unwrap() {
+    match plan
+        .scene
+        .solid(&plan.viewpoint(), &Assets::default())
+        .unwrap()
+    {
         AnySolid::Heightfield(solid) => solid,
         _ => panic!("no heightfield"),
     }

@@ -146,7 +146,12 @@ fn measure(
             device: device.clone(),
             evaluations_per_pixel: work.0,
             iterations_per_pixel: work.1,
-            report: compare(&frame, &truth.frame, plan, &plan.solid(assets)?),
+            report: compare(
+                &frame,
+                &truth.frame,
+                plan,
+                &plan.scene.solid(&plan.viewpoint(), assets)?,
+            ),
             flip: look_apart(&truth.frame, &frame, plan),
             truth: truth.note,
             precision: precision.clone(),
