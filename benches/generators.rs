@@ -11,8 +11,9 @@ use std::fs;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::conemap::generate::Maker;
-use conemarch::gpu::device::{Adapters, Choice, Device};
+use conemarch::gpu::device::Device;
 use conemarch::heightfield::conemap::ConeMap;
 use conemarch::heightfield::conemap::generate::cpu;
 use conemarch::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};

@@ -9,7 +9,8 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
-use conemarch::gpu::device::{Adapters, Choice, Device};
+use conemarch::gpu::adapters::{Adapters, Choice};
+use conemarch::gpu::device::Device;
 use conemarch::gpu::render::Renderer;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};

@@ -6,7 +6,7 @@
 
 use anyhow::{Result, bail};
 use conemarch::command::executor::Executor;
-use conemarch::gpu::device::Choice;
+use conemarch::gpu::adapters::Choice;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset;

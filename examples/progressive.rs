@@ -3,7 +3,8 @@
 
 use std::path::PathBuf;
 
-use conemarch::gpu::device::{Adapters, Choice, Device};
+use conemarch::gpu::adapters::{Adapters, Choice};
+use conemarch::gpu::device::Device;
 use conemarch::gpu::render::Renderer;
 use conemarch::plan::Extras;
 use conemarch::preset;
@@ -24,7 +25,7 @@ fn main() -> anyhow::Result<()> {
         shown: true,
         ..Extras::default()
     };
-    let mut work = renderer.begin(&plan, &Assets::default(), extras, &mut |_| true)?;
+    let mut work = renderer.begin(&plan, &Assets::default(), extras)?;
     for slice in 0.. {
         work.advance(20.0)?;
         // Waits for the device, as a file needs the picture here. A window would show it there.

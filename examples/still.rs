@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, anyhow};
 use conemarch::cpu;
-use conemarch::gpu::device::Adapters;
+use conemarch::gpu::adapters::Adapters;
 use conemarch::gpu::render::Renderer;
 use conemarch::picture::{BitDepth, Layer, Shades, write_png};
 use conemarch::plan::Extras;

@@ -8,7 +8,7 @@ use anyhow::Result;
 use conemarch::base::work::State;
 use conemarch::command::executor::Executor;
 use conemarch::cpu;
-use conemarch::gpu::device::Choice;
+use conemarch::gpu::adapters::Choice;
 use conemarch::measure::compare::quantile;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::march::Mode;

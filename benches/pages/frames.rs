@@ -4,7 +4,7 @@
 use anyhow::{Context, Result, ensure};
 use conemarch::base::work::State;
 use conemarch::command::executor::Executor;
-use conemarch::gpu::device::Choice;
+use conemarch::gpu::adapters::Choice;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};

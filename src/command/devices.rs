@@ -7,7 +7,7 @@ use wgpu::{Adapter, Features};
 use crate::command::executor::Executor;
 use crate::command::print::print;
 use crate::command::table::columns;
-use crate::gpu::device::{Adapters, kind};
+use crate::gpu::adapters::{Adapters, kind};
 
 const HEAD: &str = "index,name,backend,type,driver,PCI id,max buffer,max binding,f64,timestamps";
 

@@ -2,7 +2,8 @@
 
 use crate::cpu;
 use crate::gpu::RenderError;
-use crate::gpu::device::{Adapters, Choice, Device, DeviceError};
+use crate::gpu::adapters::{Adapters, Choice};
+use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::render::Renderer;
 use crate::pass::progress::Watch;
 use crate::picture::frame::Frame;

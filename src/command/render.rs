@@ -14,7 +14,7 @@ use crate::command::progress::Progress;
 use crate::command::sink::{Parcel, Sink, apart, spared};
 use crate::command::stats::{Stats, summary};
 use crate::command::{completions, interrupt, memory};
-use crate::gpu::device::Choice;
+use crate::gpu::adapters::Choice;
 use crate::measure::truth::{self, Cache};
 use crate::pass;
 use crate::picture::frame::{Frame, errors};

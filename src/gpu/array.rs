@@ -121,6 +121,7 @@ fn write_rows(device: &Device, texture: &wgpu::Texture, y: u32, bytes: &[u8], wi
 pub struct Arrays(Vec<KeptArray>);
 
 /// An array with what it was made of.
+#[derive(Clone)]
 pub struct KeptArray {
     /// The WGSL variable.
     pub name: &'static str,
@@ -141,7 +142,7 @@ impl Arrays {
         kernels: &[Arc<Kernel>],
         scene: Vec<SceneArray>,
         uploads: &mut usize,
-    ) -> Result<&[KeptArray], RenderError> {
+    ) -> Result<Vec<KeptArray>, RenderError> {
         let mut old = std::mem::take(&mut self.0);
         for asked in scene {
             let same = |kept: &KeptArray| {
@@ -162,6 +163,6 @@ impl Arrays {
                 origin: asked.origin,
             });
         }
-        Ok(&self.0)
+        Ok(self.0.clone())
     }
 }

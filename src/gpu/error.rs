@@ -39,6 +39,9 @@ pub enum RenderError {
     /// The watch cancelled the render.
     #[error("cancelled")]
     Cancelled,
+    /// The thread that prepared the frame has panicked.
+    #[error("the preparation of the frame has panicked; this is a fault of conemarch")]
+    Panicked,
     /// The device reported no error but left cells unvisited.
     #[error(
         "the device `{device}` left {cells} cells unwritten and reported no error. Try a smaller --size, another --device, or --device cpu"

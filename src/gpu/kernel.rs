@@ -3,7 +3,9 @@
 //! Layouts are read from the WGSL, so a binding is declared in one place. Resources are bound
 //! by the names of the WGSL variables, so they cannot be swapped.
 
-use std::sync::Arc;
+use std::pin::pin;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Context, Poll, Waker};
 
 use thiserror::Error;
 use wgpu::naga::{self, AddressSpace, ImageClass, ScalarKind, StorageAccess};
@@ -64,27 +66,35 @@ enum Kind {
     Picture,
 }
 
-/// The compiled programs of a device. Each is compiled once.
-#[derive(Default)]
-pub struct Kernels(Vec<(Program, Arc<Kernel>)>);
+/// The compiled programs of a device. Each is compiled once. Clones share them.
+#[derive(Clone, Default)]
+pub struct Kernels(Arc<Mutex<Vec<(Program, Arc<Kernel>)>>>);
 
 impl Kernels {
     /// The kernel of a program, compiled now if it is new.
     ///
     /// # Errors
     /// The text is wrong, or the driver refuses it.
-    pub fn get(&mut self, device: &Device, program: &Program) -> Result<Arc<Kernel>, KernelError> {
-        if let Some((_, kernel)) = self.0.iter().find(|(p, _)| p == program) {
-            return Ok(kernel.clone());
+    pub fn get(&self, device: &Device, program: &Program) -> Result<Arc<Kernel>, KernelError> {
+        if let Some(kernel) = self.known(program) {
+            return Ok(kernel);
         }
+        // Other threads go on meanwhile.
         let kernel = Arc::new(Kernel::new(device, program)?);
-        self.0.push((program.clone(), kernel.clone()));
+        self.lock().push((program.clone(), kernel.clone()));
         Ok(kernel)
     }
 
-    /// Number of programs compiled so far.
-    pub fn count(&self) -> usize {
-        self.0.len()
+    /// The kernel of a program that was compiled before.
+    pub fn known(&self, program: &Program) -> Option<Arc<Kernel>> {
+        let all = self.lock();
+        let found = all.iter().find(|(p, _)| p == program);
+        found.map(|(_, kernel)| kernel.clone())
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<(Program, Arc<Kernel>)>> {
+        // Nothing half-made is put there.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -140,7 +150,7 @@ impl Kernel {
             },
             cache: None,
         });
-        if let Some(error) = pollster::block_on(scope.pop()) {
+        if let Some(error) = now(scope.pop()).flatten() {
             return Err(KernelError::Refused {
                 device: device.info.name.clone(),
                 entry: program.entry,
@@ -259,6 +269,16 @@ impl Kernel {
         for (i, group) in (0u32..).zip(groups) {
             pass.set_bind_group(i, group, &[]);
         }
+    }
+}
+
+/// The answer of a future that is ready at once, as an error scope is outside of browsers. In a
+/// browser the device reports the error later.
+fn now<T>(future: impl Future<Output = T>) -> Option<T> {
+    let mut context = Context::from_waker(Waker::noop());
+    match pin!(future).poll(&mut context) {
+        Poll::Ready(answer) => Some(answer),
+        Poll::Pending => None,
     }
 }
 

@@ -1,15 +1,17 @@
 //! The GPU executor: the passes of a Plan in f32 on a wgpu device.
 //!
 //! - [`render`]: from a Plan to a Frame
-//! - [`device`]: adapters and devices; [`buffer`]: typed buffers; [`kernel`]: compiled programs
+//! - [`adapters`]: how a device is chosen and opened; [`device`]; [`buffer`]: typed buffers; [`kernel`]: compiled programs
 //! - [`work`]: a render under way; `target`: its buffers and bound kernels; `cost`: how long
 //!   its dispatches take; `stamps`: the device's own time
 //! - [`pick`]: what there is at a pixel or at a point
 //! - `array`: arrays of the host on the device
 //! - `staging`: read-back without waiting; `collect`: results into the Frame
 //! - [`conemap`]: generators of cone maps on the device
+//! - `later`: work on a thread of its own
 //! - `error`: why a render failed
 
+pub mod adapters;
 mod array;
 pub mod buffer;
 mod collect;
@@ -18,6 +20,7 @@ mod cost;
 pub mod device;
 mod error;
 pub mod kernel;
+mod later;
 pub mod pick;
 pub mod render;
 mod staging;

@@ -1,38 +1,92 @@
 //! What there is at a pixel or at a point, answered without waiting.
 
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError};
 
 use bytemuck::{Zeroable, bytes_of};
 use glam::DVec3;
 use wgpu::{BindingResource, BufferUsages};
 
-use crate::gpu::array::{Array, KeptArray};
+use crate::base::shader::Sources;
+use crate::gpu::array::Array;
 use crate::gpu::buffer::{create, uniform};
-use crate::gpu::device::{Device, DeviceError};
+use crate::gpu::device::Device;
 use crate::gpu::error::RenderError;
-use crate::gpu::kernel::Kernel;
+use crate::gpu::later::{Later, Panicked};
 use crate::gpu::staging::Staging;
-use crate::gpu::target::Parameters;
-use crate::pass::pick::{PickAnswer, PickQuestion, Picked};
+use crate::gpu::work::{Shared, most_steps, parameters, with_texts};
+use crate::pass::pick::{self, At, PickAnswer, PickQuestion, Picked};
+use crate::plan::Plan;
+use crate::scene::Assets;
 
-/// A question that a device is about to answer.
+/// A question to a device.
 pub struct Pick {
     device: Arc<Device>,
+    later: Later<Result<Asked, RenderError>>,
+    asked: Option<Asked>,
+}
+
+impl Pick {
+    pub(super) fn new(device: Arc<Device>, later: Later<Result<Asked, RenderError>>) -> Self {
+        Self {
+            device,
+            later,
+            asked: None,
+        }
+    }
+
+    /// The answer, once the device has it. It never waits.
+    ///
+    /// # Errors
+    /// The device failed, a named file cannot be read or does not fit, or a shader text is wrong.
+    pub fn poll(&mut self) -> Result<Option<Picked>, RenderError> {
+        self.device.check()?;
+        if self.asked.is_none() {
+            let asked = self.later.poll();
+            self.asked = asked
+                .map_err(|Panicked| RenderError::Panicked)?
+                .transpose()?;
+        }
+        let Some(asked) = &self.asked else {
+            return Ok(None);
+        };
+        if !asked.answer.is_mapped() {
+            return Ok(None);
+        }
+        let answer: Vec<PickAnswer> = asked.answer.read(&self.device, 0, 1)?;
+        let answer = answer.first().copied().unwrap_or(PickAnswer::zeroed());
+        Ok(Some(answer.picked(asked.eye)))
+    }
+}
+
+/// A question that was submitted.
+pub struct Asked {
     answer: Staging,
     eye: DVec3,
 }
 
-impl Pick {
-    /// Submits a question in so many dispatches.
+impl Asked {
+    /// Compiles the program if it is new, and submits the question.
     pub(super) fn new(
-        device: Arc<Device>,
-        kernel: &Kernel,
-        parameters: &Parameters,
-        arrays: &[KeptArray],
-        (question, rounds): (PickQuestion, u32),
-        eye: DVec3,
+        shared: &Shared,
+        sources: Option<&Sources>,
+        plan: &Plan,
+        assets: &Assets,
+        at: At,
     ) -> Result<Self, RenderError> {
-        let gpu = &*device;
+        let gpu = &*shared.device;
+        let scene = plan.scene.solid(&plan.viewpoint(), assets)?;
+        let program = with_texts(sources, pick::program(&scene));
+        let kernel = shared.kernels.get(gpu, &program)?;
+        let arrays = shared.arrays.lock();
+        let mut arrays = arrays.unwrap_or_else(PoisonError::into_inner);
+        let kernels = std::slice::from_ref(&kernel);
+        let arrays = arrays.keep(gpu, kernels, scene.twin().arrays(), &mut 0)?;
+        let steps = most_steps(&scene);
+        let rounds = match at {
+            At::Pixel(_) => plan.ray_steps(&scene).div_ceil(steps),
+            At::Point(_) => 1,
+        };
+        let eye = plan.camera.eye;
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         let bytes = size_of::<PickAnswer>() as u64;
         let answer = create(gpu, "pick_answer", bytes, usage);
@@ -41,10 +95,11 @@ impl Pick {
             ("pick_answer", answer.clone()),
             ("walks", create(gpu, "walks", walk, usage)),
         ];
-        let numbers = [("pick_question", bytes_of(&question))];
-        let own = parameters.iter().map(|(name, bytes)| (*name, &bytes[..]));
-        let written = own.chain(numbers);
-        let written = written.map(|(name, bytes)| (name, uniform(gpu, name, bytes)));
+        let question = PickQuestion::new(at, eye, steps);
+        let mut numbers = parameters(plan, &scene);
+        numbers.push(("pick_question", bytes_of(&question).to_vec()));
+        let written = numbers.iter();
+        let written = written.map(|(name, bytes)| (*name, uniform(gpu, name, bytes)));
         let buffers: Vec<_> = written.chain(buffers).collect();
         let groups = kernel.bind(gpu, |name| {
             let buffer = buffers.iter().find(|b| b.0 == name);
@@ -63,23 +118,8 @@ impl Pick {
         gpu.queue.submit([encoder.finish()]);
         staging.map();
         Ok(Self {
-            device,
             answer: staging,
             eye,
         })
-    }
-
-    /// The answer, once the device has it. It never waits.
-    ///
-    /// # Errors
-    /// The device failed.
-    pub fn poll(&self) -> Result<Option<Picked>, DeviceError> {
-        self.device.check()?;
-        if !self.answer.is_mapped() {
-            return Ok(None);
-        }
-        let answer: Vec<PickAnswer> = self.answer.read(&self.device, 0, 1)?;
-        let answer = answer.first().copied().unwrap_or(PickAnswer::zeroed());
-        Ok(Some(answer.picked(self.eye)))
     }
 }

@@ -29,6 +29,16 @@ pub struct Needs {
     pub picture: Option<[u32; 2]>,
 }
 
+impl Needs {
+    /// The program of a stage that can run in place of another: that of the last frame, if a slider
+    /// passed through zero since.
+    pub fn held(&self, stage: usize, layout: &Layout, program: &Program) -> Option<Program> {
+        let held = self.programs.get(stage);
+        let held = held.filter(|held| self.layout == *layout && held.serves(program));
+        held.cloned()
+    }
+}
+
 /// The parameters of a frame: bytes by the names of the WGSL variables.
 pub type Parameters = Vec<(&'static str, Vec<u8>)>;
 
@@ -53,7 +63,8 @@ pub struct Bound {
 
 /// Buffers, kernels and bound resources of the frames of one kind.
 pub struct Target {
-    needs: Needs,
+    /// Programs and sizes.
+    pub needs: Needs,
     parameters: Vec<Parameter>,
     arrays: Vec<Arc<Array>>,
     /// The number of the last block of the last frame. States contain it in 30 bits.
@@ -186,14 +197,6 @@ impl Target {
             workgroups,
             arrange,
         })
-    }
-
-    /// The program of a stage that can run in place of another: that of the last frame, if a slider
-    /// passed through zero since.
-    pub fn held(&self, stage: usize, layout: &Layout, program: &Program) -> Option<Program> {
-        let held = self.needs.programs.get(stage);
-        let held = held.filter(|held| self.needs.layout == *layout && held.serves(program));
-        held.cloned()
     }
 
     /// Whether the target serves a frame: its programs, sizes and arrays are the same.

@@ -108,6 +108,17 @@ impl Assets {
         self.paint(settings, &surface, make).map(|_| ())
     }
 
+    /// Whether everything is loaded and made. It never waits for a thread that does it.
+    pub fn has(&self, settings: &HeightfieldSettings) -> bool {
+        let surface = surface_key(settings);
+        let path = settings.source.folder.join(&settings.texture);
+        let paint = settings.paint;
+        is_kept(&self.surfaces, &surface)
+            && is_kept(&self.cones, &cones_key(settings))
+            && paint.is_none_or(|by| is_kept(&self.paints, &paint_key(settings, by)))
+            && (!settings.is_textured() || is_kept(&self.textures, &path))
+    }
+
     /// All assets of a heightfield. Cone maps that were not prepared are made on the CPU.
     /// `grain` is half a pixel's width at distance 1, where pixels are finest.
     ///
@@ -254,10 +265,9 @@ impl Assets {
         surface: &HeightSurface,
         make: Make<'_>,
     ) -> Result<Arc<Option<Supply>>, PrepareError> {
-        let t = &settings.tracing;
-        let key = (surface_key(settings), t.tracer, t.map.clone(), t.offset);
-        kept(&self.cones, key, |_| {
-            t.cones(surface, &settings.source.folder, make)
+        kept(&self.cones, cones_key(settings), |_| {
+            let folder = &settings.source.folder;
+            settings.tracing.cones(surface, folder, make)
         })
     }
 
@@ -271,21 +281,33 @@ impl Assets {
             return Ok(None);
         };
         let tracing = &settings.tracing;
-        let key = (surface_key(settings), by, tracing.offset);
-        let made = kept(&self.paints, key, |_| -> Result<_, PrepareError> {
-            if tracing.generator() == Some(by)
-                && let Some(supply) = &*self.cones(settings, surface, make)?
-            {
-                return Ok(Paint::new(&supply.map));
-            }
-            Ok(Paint::new(&tracing.made(by, surface, make)?))
-        });
+        let made = kept(
+            &self.paints,
+            paint_key(settings, by),
+            |_| -> Result<_, PrepareError> {
+                if tracing.generator() == Some(by)
+                    && let Some(supply) = &*self.cones(settings, surface, make)?
+                {
+                    return Ok(Paint::new(&supply.map));
+                }
+                Ok(Paint::new(&tracing.made(by, surface, make)?))
+            },
+        );
         made.map(Some)
     }
 }
 
 fn surface_key(settings: &HeightfieldSettings) -> SurfaceKey {
     (settings.source.clone(), settings.patches, settings.tiles)
+}
+
+fn cones_key(settings: &HeightfieldSettings) -> ConesKey {
+    let t = &settings.tracing;
+    (surface_key(settings), t.tracer, t.map.clone(), t.offset)
+}
+
+fn paint_key(settings: &HeightfieldSettings, by: Generator) -> PaintKey {
+    (surface_key(settings), by, settings.tracing.offset)
 }
 
 /// A fault of `scene.tiles`.
@@ -312,6 +334,12 @@ fn kept<K: PartialEq, V, E>(
     let value = Arc::new(make(&key)?);
     *last = Some((key, value.clone()));
     Ok(value)
+}
+
+/// Whether the value of a key is kept. It does not wait for one that is being made.
+fn is_kept<K: PartialEq, V>(last: &Last<K, V>, key: &K) -> bool {
+    let last = last.try_lock();
+    last.is_ok_and(|last| last.as_ref().is_some_and(|(of, _)| of == key))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! How far a render has come.
 
 /// How far a render has come.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Progress {
     /// The current pass, or the one that has just ended.
     pub pass: String,

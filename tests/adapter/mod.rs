@@ -12,7 +12,8 @@ use std::sync::{LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
 use conemarch::base::work::State;
-use conemarch::gpu::device::{Adapters, Choice, Device};
+use conemarch::gpu::adapters::{Adapters, Choice};
+use conemarch::gpu::device::Device;
 use conemarch::gpu::render::{Cutting, Renderer};
 use conemarch::pass::progress::Progress;
 use conemarch::picture::frame::Frame;

@@ -2,7 +2,8 @@
 //! lost and what would do, never a panic and never a frame.
 
 use conemarch::gpu::RenderError;
-use conemarch::gpu::device::{Adapters, Choice, DeviceError, kind};
+use conemarch::gpu::adapters::{Adapters, Choice, kind};
+use conemarch::gpu::device::DeviceError;
 use conemarch::gpu::render::Renderer;
 use conemarch::pass::progress::Watch;
 use conemarch::plan::{Extras, Plan};

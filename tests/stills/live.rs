@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex};
 
 use conemarch::base::work::State;
 use conemarch::gpu::RenderError;
-use conemarch::gpu::device::{Adapters, Choice, Device, DeviceError};
+use conemarch::gpu::adapters::{Adapters, Choice, clock};
+use conemarch::gpu::device::{Device, DeviceError};
 use conemarch::gpu::render::Renderer;
 use conemarch::pass::pick::{At, Picked};
 use conemarch::plan::{Extras, Plan};
@@ -30,24 +31,26 @@ fn another_plan_in_the_middle_discards_what_was_submitted() {
         .collect();
     for (from, to) in [(0, 1), (1, 2), (2, 0), (1, 1)] {
         for slices in 0..6 {
-            let mut work = renderer
-                .begin(&plans()[from], &assets, EVERYTHING, go)
-                .unwrap();
+            let mut work = renderer.begin(&plans()[from], &assets, EVERYTHING).unwrap();
             for _ in 0..slices {
                 work.advance(0.1).unwrap();
             }
-            renderer.set(&mut work, &plans()[to], &assets, go).unwrap();
+            renderer.set(&mut work, &plans()[to], &assets).unwrap();
             let frame = work.finish(go).unwrap();
             assert!(bits(&frame) == wanted[to], "{from} to {to} after {slices}");
         }
     }
     // A plan that cannot be rendered leaves the work as it was.
-    let mut work = renderer
-        .begin(&plans()[1], &assets, EVERYTHING, go)
-        .unwrap();
+    let mut work = renderer.begin(&plans()[1], &assets, EVERYTHING).unwrap();
     work.advance(0.1).unwrap();
     let missing = preset("terrain", &["scene.field=no-such-file.png"]);
-    assert!(renderer.set(&mut work, &missing, &assets, go).is_err());
+    renderer.set(&mut work, &missing, &assets).unwrap();
+    let error = loop {
+        if let Err(error) = work.advance(0.1) {
+            break error.to_string();
+        }
+    };
+    assert!(error.contains("no-such-file.png"), "{error}");
     assert!(bits(&work.finish(go).unwrap()) == wanted[1]);
 }
 
@@ -88,7 +91,7 @@ fn a_lost_device_is_opened_again() {
     let plan = &plans()[1];
     let wanted = whole(&mut renderer, plan).unwrap();
     for slices in 0..4 {
-        let mut work = renderer.begin(plan, &assets, EVERYTHING, go).unwrap();
+        let mut work = renderer.begin(plan, &assets, EVERYTHING).unwrap();
         for _ in 0..slices {
             work.advance(0.1).unwrap();
         }
@@ -106,7 +109,7 @@ fn a_lost_device_is_opened_again() {
     let (adapter, _) = chosen.expect(adapter::NO_ADAPTER);
     let opened = pollster::block_on(adapter.request_device(&Default::default()));
     let (device, queue) = opened.unwrap();
-    let mut lent = Renderer::new(Device::adopt(adapter, device, queue));
+    let mut lent = Renderer::new(Device::adopt(adapter, device, queue, clock));
     lent.device.device.destroy();
     let error = whole(&mut lent, plan).unwrap_err();
     assert!(matches!(
@@ -116,9 +119,12 @@ fn a_lost_device_is_opened_again() {
 }
 
 fn picked(renderer: &mut Renderer, plan: &Plan, at: At) -> Picked {
-    let pick = renderer.pick(plan, &Assets::default(), at).unwrap();
-    renderer.device.wait().unwrap();
-    pick.poll().unwrap().expect("the device has run")
+    let mut pick = renderer.pick(plan, &Assets::default(), at).unwrap();
+    loop {
+        if let Some(picked) = pick.poll().unwrap() {
+            return picked;
+        }
+    }
 }
 
 #[test]

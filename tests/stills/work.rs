@@ -1,7 +1,8 @@
 //! A render in slices: whatever their sizes, and whatever was begun before, the picture is the
 //! same; and what a frame needs again stays on the device.
 
-use conemarch::gpu::device::{Adapters, Choice, Device};
+use conemarch::gpu::adapters::{Adapters, Choice, clock};
+use conemarch::gpu::device::Device;
 use conemarch::gpu::render::{Cutting, Renderer};
 use conemarch::pass::tone::byte;
 use conemarch::picture::frame::{Frame, Traffic};
@@ -66,9 +67,7 @@ fn slices_and_what_was_begun_before_change_no_bit() {
             chunk: [1, 5, 64][random.index(3)],
         };
         let which = random.index(plans.len());
-        let mut work = renderer
-            .begin(&plans[which], &assets, EVERYTHING, go)
-            .unwrap();
+        let mut work = renderer.begin(&plans[which], &assets, EVERYTHING).unwrap();
         let patience = [3, 10_000][random.index(2)];
         let frame = (0..patience).find_map(|_| {
             work.advance(10.0_f64.powf(random.between(-2.0, 2.0)))
@@ -185,9 +184,10 @@ fn the_picture_on_the_device_grows_into_that_of_the_file() {
             let mut renderer = adapter::open();
             renderer.cutting.block = block;
             plan.look.exposure = exposure;
-            let mut work = renderer
-                .begin(&plan, &assets, shown, &mut |_| true)
-                .unwrap();
+            let mut work = renderer.begin(&plan, &assets, shown).unwrap();
+            while work.picture().is_none() {
+                work.advance(0.0).unwrap();
+            }
             let mut seen = vec![work.pixels().unwrap()];
             let frame = (0..10_000).find_map(|_| {
                 work.advance(1e-3).unwrap();
@@ -217,9 +217,9 @@ fn a_host_lends_its_device_and_a_render_moves_to_another_thread() {
     // A window's device: what WebGPU promises, and no timestamps.
     let opened = pollster::block_on(adapter.request_device(&Default::default()));
     let (device, queue) = opened.unwrap();
-    let mut renderer = Renderer::new(Device::adopt(adapter, device, queue));
+    let mut renderer = Renderer::new(Device::adopt(adapter, device, queue, clock));
     let plan = sized("mandelbox", [96, 54]);
-    let work = renderer.begin(&plan, &Assets::default(), EVERYTHING, &mut |_| true);
+    let work = renderer.begin(&plan, &Assets::default(), EVERYTHING);
     let work = work.unwrap();
     let frame = std::thread::spawn(move || work.finish(&mut |_| true))
         .join()

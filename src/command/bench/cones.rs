@@ -18,7 +18,7 @@ use crate::command::executor::{Executor, device};
 use crate::command::interrupt;
 use crate::command::print::say;
 use crate::command::progress::Progress;
-use crate::gpu::device::Choice;
+use crate::gpu::adapters::Choice;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
 use crate::heightfield::height_surface::HeightSurface;

@@ -17,7 +17,7 @@ use crate::command::print::say;
 use crate::command::progress::Progress;
 use crate::command::sink::{Sink, shown, spared};
 use crate::command::{interrupt, memory};
-use crate::gpu::device::Choice;
+use crate::gpu::adapters::Choice;
 use crate::heightfield::conemap::file::MapFile;
 use crate::heightfield::conemap::generate::generator::{Generator, Options};
 use crate::heightfield::heights::Patches;

@@ -1,7 +1,6 @@
 //! What comes back of a submission.
 
 use std::ops::RangeInclusive;
-use std::time::Instant;
 
 use crate::gpu::collect::Parts;
 use crate::gpu::error::RenderError;
@@ -10,9 +9,9 @@ use crate::gpu::stamps::{PAIRS, Pair};
 use crate::pass::turn::{ListsHead, MOST_STAGES, Turn};
 use crate::picture::frame::Traffic;
 
-use super::{Flight, REPORT, Work};
+use super::run::{Flight, REPORT, Run};
 
-impl Work {
+impl Run {
     /// The counts of the frame.
     pub(super) fn traffic_mut(&mut self) -> &mut Traffic {
         self.frame.traffic.get_or_insert_default()
@@ -46,9 +45,8 @@ impl Work {
             .read(device, (REPORT - PAIRS) as usize, encoded)?;
         flight.report.unmap();
         self.kept.reports.push(flight.report);
-        let now = Instant::now();
-        let started = flight.submitted.max(self.ended);
-        let elapsed_ms = now.duration_since(started).as_secs_f64() * 1e3;
+        let now = (device.clock)();
+        let elapsed_ms = now - flight.submitted.max(self.ended);
         self.ended = now;
         let last = flight.stages.start + flight.encoded - 1;
         self.count_time(flight.stages.start..=last, elapsed_ms, &pairs);

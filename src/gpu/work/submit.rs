@@ -1,16 +1,14 @@
 //! Encoding and submission.
 
-use std::time::Instant;
-
 use crate::gpu::collect::Parts;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::PAIRS;
 use crate::pass::turn::{ListsHead, StageKind, Turn};
 use crate::plan::Pass;
 
-use super::{Flight, REPORT, Work};
+use super::run::{Flight, REPORT, Run};
 
-impl Work {
+impl Run {
     /// Encodes and submits work of about so many milliseconds, of one block. Returns its
     /// estimated milliseconds.
     pub(super) fn submit(&mut self, budget_ms: f64) -> f64 {
@@ -102,7 +100,7 @@ impl Work {
             stages: first..cursor,
             encoded,
             corrections: self.corrections,
-            submitted: Instant::now(),
+            submitted: (device.clock)(),
         });
         if ends_block {
             self.go_to(cursor);

@@ -1,0 +1,105 @@
+//! Work on a thread of its own, which nobody waits for unasked.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use crate::pass::progress::Progress;
+
+/// What a thread tells, and whether its answer is still wanted.
+#[derive(Debug)]
+pub struct Told {
+    unwanted: AtomicBool,
+    progress: Mutex<Progress>,
+}
+
+impl Told {
+    /// Tells what is under way. Returns whether the answer is still wanted.
+    pub fn tell(&self, progress: &Progress) -> bool {
+        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = progress.clone();
+        !self.unwanted.load(Ordering::Relaxed)
+    }
+}
+
+/// The threads of a renderer. Dropping it waits for them, as a driver may fail if a program ends
+/// while it compiles.
+#[derive(Default)]
+pub struct Threads(Vec<JoinHandle<()>>);
+
+impl Drop for Threads {
+    fn drop(&mut self) {
+        for thread in self.0.drain(..) {
+            // A panic was noticed by who waited for the answer.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The answer of a thread. Dropping it tells the thread to stop.
+pub struct Later<T> {
+    told: Arc<Told>,
+    answer: Receiver<T>,
+}
+
+impl<T: Send + 'static> Later<T> {
+    /// Starts a thread. `first` is the progress until it tells another.
+    pub fn start(
+        threads: &mut Threads,
+        first: &str,
+        work: impl FnOnce(&Told) -> T + Send + 'static,
+    ) -> Self {
+        let told = Arc::new(Told {
+            unwanted: AtomicBool::new(false),
+            progress: Mutex::new(Progress {
+                pass: first.into(),
+                done: 0.0,
+            }),
+        });
+        let (send, answer) = channel();
+        let own = told.clone();
+        threads.0.retain(|thread| !thread.is_finished());
+        threads.0.push(std::thread::spawn(move || {
+            // Nobody may wait any more.
+            let _ = send.send(work(&own));
+        }));
+        Self { told, answer }
+    }
+}
+
+impl<T> Later<T> {
+    /// What is under way.
+    pub fn progress(&self) -> Progress {
+        let progress = self.told.progress.lock();
+        progress.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// The answer, once it is there; an error if the thread has panicked.
+    pub fn poll(&self) -> Result<Option<T>, Panicked> {
+        match self.answer.try_recv() {
+            Ok(answer) => Ok(Some(answer)),
+            Err(TryRecvError::Empty) => Ok(None),
+            Err(TryRecvError::Disconnected) => Err(Panicked),
+        }
+    }
+
+    /// Waits for the answer for a moment.
+    pub fn wait(&self) -> Result<Option<T>, Panicked> {
+        match self.answer.recv_timeout(Duration::from_millis(20)) {
+            Ok(answer) => Ok(Some(answer)),
+            Err(RecvTimeoutError::Timeout) => Ok(None),
+            Err(RecvTimeoutError::Disconnected) => Err(Panicked),
+        }
+    }
+}
+
+impl<T> Drop for Later<T> {
+    fn drop(&mut self) {
+        self.told.unwanted.store(true, Ordering::Relaxed);
+    }
+}
+
+/// The thread has panicked.
+#[derive(Debug)]
+pub struct Panicked;

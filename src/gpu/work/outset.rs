@@ -1,0 +1,233 @@
+//! What a frame needs before its first submission: assets, programs, and arrays on the device.
+//!
+//! An [`Order`] becomes an [`Outset`] at once if everything is known from frames before, else on a
+//! thread.
+
+use std::sync::{Arc, PoisonError};
+
+use bytemuck::bytes_of;
+
+use super::Shared;
+use super::run::{Job, Made};
+use crate::base::shader::{Program, Sources};
+use crate::gpu::array::KeptArray;
+use crate::gpu::conemap::generate::Maker;
+use crate::gpu::error::RenderError;
+use crate::gpu::kernel::Kernel;
+use crate::gpu::later::Told;
+use crate::gpu::render::Cutting;
+use crate::gpu::target::{Needs, Parameters};
+use crate::heightfield::assets::Preparation;
+use crate::pass::look::Light;
+use crate::pass::prepare::prepare;
+use crate::pass::progress::Progress;
+use crate::pass::tone::tone_steps;
+use crate::pass::turn::{self, StageKind};
+use crate::picture::frame::{Frame, Traffic};
+use crate::plan::pyramid::Block;
+use crate::plan::{Extras, Plan};
+use crate::scene::{AnySolid, Assets};
+
+/// The largest step limit of a dispatch. With a block of a million pixels it stays far below
+/// the time limit of drivers.
+const MOST_STEPS_AT_ONCE: u32 = 256;
+
+/// The largest number of loop rounds of an invocation in one dispatch. Mesa's software Vulkan
+/// silently ends every loop after 65 535 rounds: at 287 iterations and 256 steps all pixels
+/// were wrong. The rest is left to loops that are not counted.
+const MOST_ROUNDS_AT_ONCE: u32 = 60_000;
+
+/// The largest step limit of a dispatch over a scene.
+pub fn most_steps(scene: &AnySolid) -> u32 {
+    let rounds = scene.twin().rounds().saturating_add(1);
+    (MOST_ROUNDS_AT_ONCE / rounds).clamp(1, MOST_STEPS_AT_ONCE)
+}
+
+/// A program with the texts of `sources`.
+pub fn with_texts(sources: Option<&Sources>, program: Program) -> Program {
+    match sources {
+        Some(sources) => program.with_sources(sources),
+        None => program,
+    }
+}
+
+/// The parameters of a frame by the names of the WGSL variables.
+pub fn parameters(plan: &Plan, scene: &AnySolid) -> Parameters {
+    let view = plan.view().uniform();
+    let look = Light::of(plan, scene).uniform();
+    let frame = [
+        ("view_parameters", bytes_of(&view).to_vec()),
+        ("look_parameters", bytes_of(&look).to_vec()),
+    ];
+    scene.twin().uniforms().into_iter().chain(frame).collect()
+}
+
+/// A frame that is asked for.
+pub struct Order {
+    pub plan: Plan,
+    pub assets: Assets,
+    pub extras: Extras,
+    pub cutting: Cutting,
+    pub sources: Option<Sources>,
+    /// What the last frame had. Its programs may stay.
+    pub held: Option<Needs>,
+    pub shared: Arc<Shared>,
+}
+
+/// A frame that can begin.
+pub struct Outset {
+    pub job: Job,
+    pub frame: Frame,
+    pub needs: Needs,
+    pub parameters: Parameters,
+    pub kernels: Vec<Arc<Kernel>>,
+    pub arrange: Arc<Kernel>,
+    pub arrays: Vec<KeptArray>,
+}
+
+/// The programs of a frame, and what follows from the plan besides.
+struct Draft {
+    scene: AnySolid,
+    kinds: Vec<StageKind>,
+    blocks: Vec<turn::Layout>,
+    needs: Needs,
+    arrange: Program,
+}
+
+impl Order {
+    /// The outset, unless an asset or a program is missing.
+    ///
+    /// # Errors
+    /// A scene's settings do not fit.
+    pub fn at_once(&self) -> Result<Option<Outset>, RenderError> {
+        if !self.plan.scene.has_assets(&self.assets) {
+            return Ok(None);
+        }
+        let draft = self.draft()?;
+        let known = |program| self.shared.kernels.known(program).is_some();
+        if !draft.needs.programs.iter().all(known) || !known(&draft.arrange) {
+            return Ok(None);
+        }
+        let maps = self.plan.scene.preparations(&self.assets);
+        let kept = maps.into_iter().map(|map| (map, 0.0)).collect();
+        self.complete(draft, kept, &mut |_| true).map(Some)
+    }
+
+    /// Loads and makes what is missing.
+    ///
+    /// # Errors
+    /// The device fails, a named file cannot be read or does not fit, a cone map cannot be made, a
+    /// shader text is wrong, or nobody waits any more. What was compiled and uploaded stays.
+    pub fn prepare(&self, told: &Told) -> Result<Outset, RenderError> {
+        let mut tell = |progress: &Progress| told.tell(progress);
+        let mut maker = Maker::new(&self.shared.device);
+        maker.kernels = self.shared.kernels.clone();
+        let make = &mut |generator,
+                         heights: &_,
+                         patches,
+                         options: &_,
+                         share: &mut dyn FnMut(f64) -> bool| {
+            maker.generate(generator, heights, patches, options, share)
+        };
+        let maps = prepare(&self.plan, &self.assets, make, &mut tell)?;
+        self.complete(self.draft()?, maps, &mut tell)
+    }
+
+    fn draft(&self) -> Result<Draft, RenderError> {
+        let Self { plan, extras, .. } = self;
+        let scene = plan.scene.solid(&plan.viewpoint(), &self.assets)?;
+        let coarsest = plan.coarsest();
+        let blocks = Block::cut(plan.size, self.cutting.edge(), coarsest);
+        let marked = scene.twin().marks_hits();
+        let blocks = turn::Layout::of_blocks(&blocks, coarsest, extras.count, marked);
+        let limits = self.shared.device.device.limits();
+        let largest = limits.max_texture_dimension_2d;
+        let shown = extras.shown && plan.size.iter().all(|n| *n <= largest);
+        let kinds = StageKind::all(&plan.passes(*extras), shown);
+        let text = |program| with_texts(self.sources.as_ref(), program);
+        let held = self.held.as_ref().filter(|_| extras.reuse);
+        let program = |(stage, kind): (usize, &StageKind)| {
+            let lean = text(kind.program(plan, &scene, *extras));
+            let held = held.and_then(|needs| needs.held(stage, &blocks[0], &lean));
+            held.unwrap_or(lean)
+        };
+        let needs = Needs {
+            programs: kinds.iter().enumerate().map(program).collect(),
+            picture: shown.then_some(plan.size),
+            // The first block is as large as any.
+            layout: blocks[0].clone(),
+            pixel_layers: match (extras.depth_only, extras.normals) {
+                (true, _) => 0,
+                (false, normals) => 1 + u32::from(normals),
+            },
+        };
+        Ok(Draft {
+            scene,
+            kinds,
+            blocks,
+            needs,
+            arrange: text(turn::arrange()),
+        })
+    }
+
+    fn complete(
+        &self,
+        draft: Draft,
+        prepared: Vec<(Preparation, f64)>,
+        tell: &mut dyn FnMut(&Progress) -> bool,
+    ) -> Result<Outset, RenderError> {
+        let Self { plan, extras, .. } = self;
+        let (scene, needs) = (draft.scene, draft.needs);
+        let mut parameters = parameters(plan, &scene);
+        if needs.picture.is_some() {
+            let steps = tone_steps(plan.look.exposure.exp2());
+            parameters.push(("tone_steps", bytes_of(&steps).to_vec()));
+        }
+        let of_look = |p: &&(&str, Vec<u8>)| p.0 == "look_parameters";
+        let look = parameters.iter().find(of_look).map(|p| p.1.clone());
+        let of_march = |p: &&(&str, Vec<u8>)| !["look_parameters", "tone_steps"].contains(&p.0);
+        let marched = parameters.iter().filter(of_march).cloned().collect();
+        let mut traffic = Traffic::default();
+        let device = &self.shared.device;
+        let mut compile = |program| {
+            let known = self.shared.kernels.known(program);
+            traffic.compilations += usize::from(known.is_none());
+            let pass = "compile".into();
+            if known.is_none() && !tell(&Progress { pass, done: 0.0 }) {
+                return Err(RenderError::Cancelled);
+            }
+            Ok(self.shared.kernels.get(device, program)?)
+        };
+        let kernels = needs.programs.iter().map(&mut compile);
+        let kernels: Vec<_> = kernels.collect::<Result<_, _>>()?;
+        let arrange = compile(&draft.arrange)?;
+        let arrays = self.shared.arrays.lock();
+        let mut arrays = arrays.unwrap_or_else(PoisonError::into_inner);
+        let uploads = &mut traffic.uploads;
+        let arrays = arrays.keep(device, &kernels, scene.twin().arrays(), uploads)?;
+        let most = most_steps(&scene);
+        let mut frame = Frame::blank(plan, *extras);
+        frame.traffic = Some(traffic);
+        Ok(Outset {
+            job: Job {
+                kinds: draft.kinds,
+                made: Made {
+                    passes: plan.passes(*extras),
+                    blocks: draft.blocks,
+                    ray_steps: plan.ray_steps(&scene),
+                    marched,
+                    look: look.unwrap_or_default(),
+                },
+                steps: [self.cutting.chunk.clamp(1, most), most],
+                extras: *extras,
+                prepared,
+            },
+            frame,
+            needs,
+            parameters,
+            kernels,
+            arrange,
+            arrays,
+        })
+    }
+}
