@@ -1,5 +1,4 @@
-//! Renders distance-estimated fractals and heightfields by multi-pass cone marching on wgpu
-//! compute.
+//! Renders fractals and height maps on the GPU by multi-pass cone marching.
 //!
 //! A [`plan::Plan`] is everything that decides a picture. One of two executors renders it:
 //! the GPU in f32 ([`gpu::render::Renderer`]) or the CPU in f64 ([`cpu::render`]). Both return a

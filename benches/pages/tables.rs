@@ -265,10 +265,10 @@ pub fn large(rows: &[TimesRow]) -> String {
     let about = |estimated| if estimated { "about " } else { "" };
     let one = |row: &TimesRow| {
         let peak = row.peak.map_or(String::new(), |bytes| {
-            format!(" The process had at most {:.0} MiB of memory.", mib(bytes))
+            format!(" The process used at most {:.0} MiB of memory.", mib(bytes))
         });
         format!(
-            "\n`{}` at {size} x {size}: {}{:.1} s on the device, {}{:.1} s on the CPU. The largest buffer that is bound has {:.1} MiB.{peak}\n",
+            "\n`{}` takes {}{:.1} s on the device and {}{:.1} s on the CPU for {size} x {size} heights. Its largest buffer has {:.1} MiB.{peak}\n",
             row.generator,
             about(row.estimated),
             row.ms / 1e3,

@@ -13,7 +13,7 @@ use crate::command::conemap::ConeMapVerb;
 use crate::command::print::say;
 use crate::command::{bench, completions, conemap, devices, failure, presets, render};
 
-/// Renders distance-estimated fractals by multi-pass cone marching.
+/// Renders fractals and height maps by multi-pass cone marching.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong usage, 130 and 143 after SIGINT and SIGTERM.
 #[derive(Debug, Parser)]
@@ -27,10 +27,10 @@ pub struct Line {
 enum Verb {
     /// Render a preset to a picture
     Render(Box<render::Render>),
-    /// Measure run time against error
+    /// Measure time and error
     #[command(subcommand)]
     Bench(Bench),
-    /// Make, inspect and convert cone maps of heights
+    /// Make, inspect and convert cone maps of height maps
     #[command(name = "conemap", subcommand)]
     ConeMap(ConeMapVerb),
     /// List the built-in presets, or print one

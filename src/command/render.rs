@@ -58,7 +58,7 @@ pub struct Render {
     #[arg(add = completions::settings())]
     pub(crate) set: Vec<String>,
 
-    /// auto, gpu, software, cpu, an index, or part of a name
+    /// Who renders: auto, gpu, software, cpu, or an index or part of a name from `devices`
     #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
     device: Choice,
 
@@ -78,7 +78,7 @@ pub struct Render {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     stats: Option<PathBuf>,
 
-    /// Print the passes and programs of this very command, and render nothing
+    /// Print the passes and shader programs of this render, and render nothing
     #[arg(long)]
     explain: bool,
 }
@@ -131,7 +131,7 @@ pub fn run(args: &Render) -> Result<()> {
     say(&format!("rendering on {who}"));
     if args.layer == Layer::Error {
         say(
-            "the truth to compare with is rendered too, in f64 on the CPU: that takes much longer than the picture",
+            "the truth, a slow reference in f64 on the CPU, is rendered too: that takes much longer than the picture",
         );
     }
     if let Some(warning) = executor.precision_warning(&plan) {
@@ -162,7 +162,7 @@ pub fn run(args: &Render) -> Result<()> {
     say(&summary(&output, &frame));
     if ends_at_the_eye(&frame, &plan) {
         say(
-            "warning: every ray ends at the eye: camera.eye lies inside the solid, or touches it, and there is nothing to see; move it away",
+            "warning: every ray ends at the eye, so the picture shows nothing: camera.eye lies inside the solid, or touches it; move it away",
         );
     }
     Ok(())
@@ -184,10 +184,10 @@ fn explain(args: &Render, plan: &Plan, assets: &Assets, extras: Extras) -> Resul
     Executor::check(&args.device)?;
     let mut text = String::new();
     if args.device == Choice::Cpu {
-        text += "on the CPU: the same passes in f64, by the twins in Rust of these programs\n";
+        text += "on the CPU: the same passes in f64, by the Rust twins of these programs\n";
     }
     if args.layer == Layer::Error {
-        text += "compared with: the truth of the same plan, in f64 on the CPU\n";
+        text += "compared with the truth: a slow render of the same plan in f64 on the CPU\n";
     }
     text += &pass::explain(plan, assets, extras)?;
     print(text.as_bytes())

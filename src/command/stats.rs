@@ -26,9 +26,9 @@ pub struct Stats {
     pub wall_ms: f64,
     /// Every pass in order.
     pub passes: Vec<PassFigures>,
-    /// Evaluations of march and trace over pixels.
+    /// Evaluations of march and trace per pixel.
     pub evaluations_per_pixel: Option<f64>,
-    /// Fold iterations of march and trace over pixels.
+    /// Iterations of march and trace per pixel.
     pub iterations_per_pixel: Option<f64>,
     /// Share of pixels that met the surface, 0..1.
     pub hit: f64,
@@ -36,7 +36,7 @@ pub struct Stats {
     pub sky: f64,
     /// Share of pixels that reached a limit, 0..1.
     pub unconverged: f64,
-    /// Share of pixels whose shadow's ray did, 0..1.
+    /// Share of pixels whose shadow ray reached its step limit, 0..1.
     pub undecided: f64,
     /// How the host and the device worked together.
     #[serde(flatten)]
@@ -95,7 +95,7 @@ pub fn summary(output: &Path, frame: &Frame) -> String {
     let [sky, hit, unconverged] = shares(frame).map(|s| 100.0 * s);
     let shadows = match 100.0 * undecided(frame) {
         share if share < 0.05 => String::new(),
-        share => format!(", shadows cut short {share:.1} %"),
+        share => format!(", shadow ray out of steps {share:.1} %"),
     };
     format!(
         "{}  {w} x {h}  {cones}march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %{shadows}",

@@ -42,7 +42,7 @@ impl Bounds {
 }
 
 /// A shape given by an estimate of the distance to it. Its WGSL twin has the functions
-/// `estimate` and `trap`.
+/// `formula_load`, `estimate` and `trap`.
 pub trait DistanceEstimate {
     /// Name in presets, and of the two files.
     fn name(&self) -> &'static str;

@@ -63,17 +63,17 @@ named_enum! {
 settings! {
     /// The Mandelbox and its parameters.
     pub struct Mandelbox {
-        scale: f64 = 2.0, number(-100.0, 100.0), "factor after the folds; its size must be at least 1.001";
+        scale: f64 = 2.0, number(-100.0, 100.0), "factor by which each iteration scales the point after the folds; its absolute value must be at least 1.001";
         min_radius: f64 = 0.5, number(1e-6, 1e3), "inner radius of the ball fold";
         fixed_radius: f64 = 1.0, number(1e-6, 1e3), "outer radius of the ball fold";
-        fold_limit: f64 = 1.0, number(1e-3, 1e3), "half edge of the box fold";
+        fold_limit: f64 = 1.0, number(1e-3, 1e3), "half edge of the box at whose sides the box fold mirrors points";
         rotation: DVec3 = DVec3::ZERO, triple(-360.0, 360.0),
-            "degrees about x, y, z between folds and scale";
-        julia: bool = false, switch(), "add a constant instead of the starting point";
-        julia_constant: DVec3 = DVec3::ZERO, triple(-1e3, 1e3), "that constant";
-        estimate: Estimate = Estimate::Proven, word(&Estimate::WORDS), "which distance estimate";
+            "rotation about x, then y, then z in degrees, between the folds and the scale";
+        julia: bool = false, switch(), "whether each iteration adds julia_constant instead of the starting point";
+        julia_constant: DVec3 = DVec3::ZERO, triple(-1e3, 1e3), "the constant that each iteration adds if julia is true";
+        estimate: Estimate = Estimate::Proven, word(&Estimate::WORDS), "the distance estimate: the proven one, or for comparison the classic one of other programs";
         lipschitz: Option<f64> = None, auto_number(0.05, 100.0),
-            "steps divide by it; auto is the formula's own";
+            "Lipschitz constant, the largest change of the estimate per unit of distance; steps are divided by it; auto is the formula's own";
     }
 }
 

@@ -42,9 +42,9 @@ impl Source {
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
             "field" = text(&mut self.field),
-                "a pattern like fbm:512x512,seed=7,power=2.6, or a file of heights";
+                "a built-in pattern like fbm:512x512,seed=7,power=2.6, or the file of a height map";
             "invert" = switch(&mut self.options.invert),
-                "whether the numbers are depths";
+                "whether the numbers of the map are depths instead of heights";
             "normalize" = switch(&mut self.options.normalize),
                 "whether to stretch the heights to the range from 0 to 1";
             "wrap" = word(&mut self.options.wrap, &WRAPS),

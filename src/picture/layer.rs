@@ -34,7 +34,7 @@ named_enum! {
         State = "state" => "sky dark blue, hit light grey, unconverged magenta",
         /// Errors of the depth.
         Error = "error" =>
-            "depth against the truth in footprints (half a pixel's width): grey 0, red 8 too deep or lost, blue 8 too near",
+            "error of the depth against a slow reference, in footprints (half a pixel's width): grey 0, red 8 too deep or no hit, blue 8 too near",
     }
 }
 

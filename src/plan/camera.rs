@@ -9,10 +9,10 @@ use crate::settings;
 settings! {
     /// Where the camera stands and where it looks.
     pub struct Camera {
-        eye: DVec3 = DVec3::new(10.0, -17.0, 12.0), triple(-1e9, 1e9), "position";
-        target: DVec3 = DVec3::ZERO, triple(-1e9, 1e9), "point in the middle of the image";
-        up: DVec3 = DVec3::Z, triple(-1e9, 1e9), "direction that is up in the image";
-        fov: f64 = 40.0, number(1.0, 170.0), "vertical field of view, degrees";
+        eye: DVec3 = DVec3::new(10.0, -17.0, 12.0), triple(-1e9, 1e9), "position of the camera";
+        target: DVec3 = DVec3::ZERO, triple(-1e9, 1e9), "point that the camera looks at, in the middle of the image";
+        up: DVec3 = DVec3::Z, triple(-1e9, 1e9), "direction that points up in the image";
+        fov: f64 = 40.0, number(1.0, 170.0), "vertical field of view in degrees";
     }
 }
 

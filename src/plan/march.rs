@@ -78,21 +78,21 @@ const STEPS: u32 = 256;
 settings! {
     /// How a picture is marched.
     pub struct Marching {
-        mode: Mode = Mode::Safe, word(&Mode::WORDS), "how the work is spent";
-        coarsest: u32 = 16, divisor(), "divisor of the first cone pass";
+        mode: Mode = Mode::Safe, word(&Mode::WORDS), "the method; benchmarks.md explains and compares the modes";
+        coarsest: u32 = 16, divisor(), "side in pixels of the blocks of the first cone pass";
         detail: f64 = 1.0, number(1e-3, 1e3),
-            "a ray hits where the estimate is below this many footprints";
+            "hit threshold in footprints: a ray hits where the estimate is at most this";
         shell: f64 = 0.45, number(0.0, 0.99),
-            "share of that threshold that steps keep clear of; more costs time and lowers the error";
-        relaxation: Relaxation = Relaxation::Auto, relaxation(), "how rays stretch their steps";
+            "share of the hit threshold by which steps keep away from the surface; more costs time and lowers the error";
+        relaxation: Relaxation = Relaxation::Auto, relaxation(), "factor on the steps of rays; auto follows the change of the estimate from step to step, and off is 1";
         fudge: Vec<f64> = vec![1.0], numbers(6, 0.01, 1.0),
-            "factors on the cones' width in mode calibrated, coarse to fine; the last one repeats";
+            "factors on the width of the cones in mode calibrated, for each pass from coarse to fine; the last one repeats";
         steps: Option<u32> = None, auto_count(1, 1_000_000),
-            "step limit per cone level and of a ray; auto is 256, and for rays over a heightfield as many as they can need";
+            "step limit of each cone in a pass, and of each ray; auto is 256, and for rays over a heightfield as many as they can need";
         stride: Option<f64> = None, auto_number(1e-3, 1.0),
-            "factor on ray steps; auto is 1, and 0.1 for the truth";
+            "factor on the steps of rays, for shorter steps; auto is 1, and 0.1 in mode truth";
         clip: Option<bool> = None, word(&[("auto", None), ("on", Some(true)), ("off", Some(false))]),
-            "start rays where they enter the bounds; auto is on after cones";
+            "whether rays start where they enter the bounds; auto is on in modes with cones";
     }
 }
 

@@ -67,7 +67,7 @@ impl Plan {
     /// [`Scene`].
     pub fn keys(&mut self, section: &str) -> Option<Vec<Key<'_>>> {
         Some(match section {
-            "" => keys!["title" = text(&mut self.title), "a line for people";],
+            "" => keys!["title" = text(&mut self.title), "a name of the picture, for people";],
             "scene" => self.scene.keys(),
             "camera" => self.camera.keys(),
             "march" => self.march.keys(),

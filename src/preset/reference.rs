@@ -14,18 +14,48 @@ const HEAD: &str = "# Presets
 
 <!-- Written by `cargo bench --bench pages -- presets`; do not edit. -->
 
-A preset is a TOML file with a title and the sections below. Only `scene.kind` is required, and
-`scene.formula` if the kind is \"distance\". The tables show the defaults of all other keys. An
-unknown key or a wrong value is an error. The error names the file, the line and a valid
-alternative.
+A preset is a TOML file that describes one picture: a scene, a camera, and how they are rendered.
+This is a whole preset:
+
+```toml
+title = \"A Mandelbox\"
+
+[scene]
+kind = \"distance\"
+formula = \"mandelbox\"
+scale = -1.5
+
+[camera]
+eye = [4.2, -5.6, 3.3]
+```
+
+If its file is `box.toml`, `conemarch render box.toml` writes the picture `box.png`. Only
+`scene.kind` is required, and `scene.formula` if the kind is \"distance\". The tables show the
+defaults of all other keys. An unknown key or a wrong value is an error. The error names the file,
+the line and a valid alternative.
 
 `conemarch presets NAME` prints a built-in preset to start from. In `conemarch render PRESET`, each
 `--set section.key=value` changes one value, for example `--set camera.fov=30`. Words, fields and
 paths need no quotes there, for example `--set scene.field=fbm:64x64,seed=3`. A whole number may
-stand for any number.
+stand for any number. A relative path starts at the folder of the preset, and for a
+built-in preset at the current folder.
 
-[method.md](method.md) explains shell, detail, cones and bounds. [benchmarks.md](benchmarks.md)
-shows what the modes and the keys of `[march]` cost in time and in error.
+These are the terms of the tables. [method.md](method.md) explains them in full, and
+[benchmarks.md](benchmarks.md) shows what the modes and the keys of `[march]` cost in time and in
+error.
+
+- A *distance estimate* is a function that estimates the distance from a point to the surface. A
+  ray can move by it without crossing the surface. A *formula* computes it in *iterations*.
+- A *cone* contains the rays of a block of pixels. *Cone passes* move cones forward first, for
+  smaller and smaller blocks. Rays start where the last cones stopped.
+- A *footprint* is half the width of a pixel, at the distance of the hit.
+- The *bounds* are a region that contains the whole surface.
+- A *heightfield* is a surface over a grid of heights, its *samples*. A *texel* is the distance
+  between two samples. Four neighbouring samples are the corners of a *cell*.
+- A *cone map* tells, for each place of a heightfield, how wide a cone that opens upwards there
+  stays empty. A *generator* makes cone maps. A *tracer* finds where a ray hits a heightfield,
+  mostly by means of a cone map. [heightfields.md](heightfields.md) explains all of them.
+- A *slab* is a round plate between two parallel planes.
 
 ";
 
@@ -55,7 +85,7 @@ pub fn reference() -> String {
 /// Every `section.key` that `--set` takes, with its help.
 pub fn keys() -> Vec<(String, &'static str)> {
     let first = [
-        ("title", "a line for people"),
+        ("title", "a name of the picture, for people"),
         ("scene.kind", "what kind of scene it is"),
         ("scene.formula", "the formula of a distance scene"),
     ];

@@ -67,7 +67,7 @@ impl SceneSettings for DistanceSettings {
         let mut keys = self.formula.keys();
         keys.extend(keys![
             "iterations" = auto_count(&mut self.iterations, 1, MOST_ITERATIONS),
-                "iteration limit; auto is as many as the finest footprint needs, up to 1000";
+                "limit of the iterations of the formula; auto is as many as the finest footprint needs, up to 1000";
         ]);
         keys
     }

@@ -23,7 +23,8 @@ use crate::scene::Assets;
 pub struct CalibrateBench {
     #[command(flatten)]
     common: Common,
-    /// Share of pixels that may be lost: behind, holes or unconverged
+    /// Share of pixels that may be lost: too deep by over 2 footprints (half a pixel's width), sky
+    /// in place of a hit, or out of steps
     #[arg(long, value_name = "SHARE", default_value_t = 0.002, value_parser = share)]
     budget: f64,
     /// Number of camera rays that probe the preset
@@ -136,13 +137,13 @@ fn sentence(row: &CalibrateRow, plan: &Plan) -> String {
     let verdict = match row.found.within {
         true => String::new(),
         false => {
-            format!("\nThe budget of {budget:.3} % is out of reach: these settings come nearest.\n")
+            format!("\nNo tested settings keep the budget of {budget:.3} %. These come nearest.\n")
         }
     };
     let fudge: Vec<String> = row.found.fudge.iter().map(|f| format!("{f}")).collect();
     let precision = table::precision(row.precision.as_deref());
     let mut text = format!(
-        "\n### {}, {w} x {h}, {} rays\n\n{precision}Largest slope {:.3}, slack {:.1} in the median. Lost {:.3} % of rays in f64, {:.3} % on the\ndevice. Evaluations per pixel {:.2}, `safe` {:.2}; {:.1} ms of wall\ntime, `safe` {:.1}.\n{verdict}\n",
+        "\n### {}, {w} x {h}, {} rays\n\n{precision}The distance estimate changes by at most {:.3} per unit of distance. The true distance is {:.1}\ntimes the estimate in the median. The settings below lose {:.3} % of the rays in f64, and {:.3} %\non the device. They take {:.2} evaluations per pixel (mode `safe` takes {:.2}) and {:.1} ms of wall\ntime (`safe` takes {:.1}).\n{verdict}\n",
         row.preset,
         row.rays,
         row.found.slope,

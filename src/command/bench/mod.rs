@@ -19,12 +19,12 @@ pub mod table;
 /// What to measure.
 #[derive(Debug, Subcommand)]
 pub enum Bench {
-    /// Time and error of every mode against the truth
+    /// Time and error of every mode, compared with a slow reference, the truth
     Error(error::ErrorBench),
-    /// Evaluations, iterations and lane waste of every pass
+    /// Work of every pass: evaluations, iterations, and time lost while rays wait for others
     Steps(steps::StepsBench),
     /// Cone maps and tracers of heightfields: time, width, steps, missed hits
     Cones(cones::ConesBench),
-    /// Propose lipschitz, shell and fudge for a budget of lost pixels
+    /// Propose lipschitz, shell and fudge that lose at most a given share of the pixels
     Calibrate(calibrate::CalibrateBench),
 }

@@ -224,7 +224,7 @@ fn legend(svg: &mut Vec<String>, y: f64) {
         x += 30.0 + 6.5 * name.len() as f64;
     }
     svg.push(format!(
-        r##"<text x="20" y="{below:.1}">Small dots: one key of the mode changed. Green line: no other setting is both faster and less wrong. Wrong: behind, lost or unconverged.</text>"##
+        r##"<text x="20" y="{below:.1}">Small dots: one key of the mode changed. Green line: no other setting is both faster and less wrong. A pixel is wrong if it is behind, a hole or unconverged.</text>"##
     ));
 }
 

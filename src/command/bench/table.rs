@@ -94,7 +94,7 @@ pub fn means(rows: &[Row]) -> String {
     let text = "
 ### Means over the presets
 
-Ratios are geometric means. Shares are arithmetic means. Wrong pixels are behind, holes or
+Ratios are geometric means. Shares are arithmetic means. A pixel is wrong if it is behind, a hole or
 unconverged.
 
 ";
@@ -125,9 +125,9 @@ unconverged.
 const BEATS: &str = "
 ### What beats `safe`
 
-These settings take at most 0.95 of the time of `safe`, and are wrong on fewer pixels. Pixels that
-are behind, holes or unconverged are wrong. Settings of `detail` are left out: they ask for another
-picture, which has another truth.
+These settings take at most 0.95 of the time of `safe`, and are wrong on fewer pixels. A pixel is
+wrong if it is behind, a hole or unconverged. Settings with another `detail` are left out, because
+their truth is another picture.
 
 ";
 
@@ -169,8 +169,9 @@ pub fn slides(rows: &[Row]) -> String {
     let text = "
 ### The claims of the 2012 slides
 
-The slides claim a gain in speed over plain rays for each of their budgets of steps. The table
-compares it with the measured gain, and the wrong pixels with those of `safe`.
+The slides have three budgets of steps. For each of them they claim a gain in speed over rays
+without cones. The table compares the claimed gain with the measured one, and the wrong pixels with
+those of `safe`.
 
 ";
     let own = |(name, _): &(&str, u32)| of(rows, name);

@@ -27,7 +27,7 @@ pub struct Convert {
     #[command(flatten)]
     foreign: Foreign,
 
-    /// Which axes of another program's map wrap
+    /// Axes along which another program's map repeats
     #[arg(long, value_name = "AXES", default_value = "none", value_parser = wraps(), requires = "from")]
     wrap: [bool; 2],
 }

@@ -133,7 +133,7 @@ pub fn describe_map(name: &str, file: &MapFile) -> String {
 /// What made a map, with a warning if its cones may be too wide.
 fn maker(label: Option<&str>) -> String {
     let Some(by) = label else {
-        return "another program: its cones may have been rounded up".into();
+        return "another program; it may have rounded cones up, to too wide ones".into();
     };
     let generator = by.split(',').next().and_then(Generator::named);
     match generator.map(|g| g.facts().quality) {

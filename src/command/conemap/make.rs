@@ -54,7 +54,7 @@ pub struct Make {
     #[arg(long)]
     boxes: bool,
 
-    /// Room in texels that the cones of walk and walk-relaxed leave
+    /// Texels that are added to each distance when the cones of walk and walk-relaxed are made
     #[arg(long, value_name = "TEXELS")]
     offset: Option<f64>,
 

@@ -23,11 +23,11 @@ use crate::heightfield::load::{LoadOptions, Loaded, load};
 /// How heights are read.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Reading {
-    /// Which axes wrap
+    /// Axes along which the map repeats
     #[arg(long, value_name = "AXES", default_value = "none", value_parser = wraps())]
     pub wrap: [bool; 2],
 
-    /// Read depths instead of heights
+    /// Read the numbers as depths instead of heights
     #[arg(long)]
     pub invert: bool,
 
@@ -91,7 +91,7 @@ pub struct Foreign {
     #[arg(long, value_name = "LAYOUT", value_parser = layouts())]
     from: Option<Layout>,
 
-    /// How its numbers stand for ratios [default: sqrt, for relief linear]
+    /// How its numbers encode ratios: as roots or as they are [default: sqrt, for relief linear]
     #[arg(long, value_name = "HOW", value_parser = ratio_scales(), requires = "from")]
     from_ratio: Option<RatioScale>,
 }
@@ -140,7 +140,7 @@ pub struct Writing {
     #[arg(long, value_name = "BITS", value_parser = bits())]
     bits: Option<Bits>,
 
-    /// How the numbers of a PNG stand for ratios [default: sqrt, for relief linear]
+    /// How numbers of a PNG encode ratios: as roots or as they are [default: sqrt, for relief linear]
     #[arg(long, value_name = "HOW", value_parser = ratio_scales())]
     ratio: Option<RatioScale>,
 
@@ -215,7 +215,7 @@ pub fn write(file: &MapFile, format: &MapFormat, sink: Sink) -> Result<String> {
     let share = if share > 0.999_999 { 1.0 } else { share };
     let share = (share * 1e4).floor() / 1e2;
     Ok(format!(
-        "mean ratio {is:.4} of the width, {share} % of what it was"
+        "mean ratio (radius over height) of the cones {is:.4} map widths, {share} % of the ratio before the file rounded it"
     ))
 }
 

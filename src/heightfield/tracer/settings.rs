@@ -105,7 +105,7 @@ static TRACER_HELP: LazyLock<String> = LazyLock::new(|| {
     };
     let [exact, pixel] = [Accuracy::Exact, Accuracy::Pixel].map(names);
     format!(
-        "how rays find the surface; these find every first hit: {exact}; these are off by at most a pixel: {pixel}"
+        "how rays find the surface; these find every first hit: {exact}; the hits of these are off by at most a pixel: {pixel}; the others may miss thin parts"
     )
 });
 
@@ -163,19 +163,19 @@ impl TracerSettings {
         keys![
             "tracer" = word(&mut self.tracer, &TracerKind::WORDS), &TRACER_HELP;
             "map" = text(&mut self.map),
-                "auto, a generator's name, or the file of a cone map";
+                "the cone map: auto makes one that fits the tracer; a generator's name makes its map; or the file of a map";
             "lookup" = word(&mut self.lookup, &Lookup::WORDS),
-                "how ratios are read between samples";
+                "how height and cone are read between samples: interpolated, or from the nearest sample; only for the csm tracers, quad, rcs-binary and secant";
             "tracer_steps" = auto_count(&mut self.steps, 1, MOST_STEPS),
-                "steps of a tracer that counts its own";
+                "number of steps of linear-binary, and step limit of the csm tracers, quad, rcs-binary and secant; auto is the tracer's own, see heightfields.md";
             "tracer_rounds" = auto_count(&mut self.rounds, 1, MOST_ROUNDS),
-                "rounds of its refinement";
+                "rounds of bisection or false position that refine a hit of the tracers with tracer_steps, except csm-exact; auto is the tracer's own";
             "stretch" = auto_number(&mut self.stretch, 0.01, 100.0),
-                "factor on the steps that cones give";
+                "factor on the cone steps of the csm tracers, quad, rcs-binary and secant; auto is 1.5 for csm-scaled, else 1";
             "lod" = auto_number(&mut self.lod, 0.0, 1e6),
-                "distance at which a texel is as wide as a pixel to walk-mip and cone-mip, and csm-loop has half its steps; 0 for never; auto follows the camera for the first two and is never for csm-loop";
+                "distance from which walk-mip and cone-mip take texels to be narrower than a pixel, and at which csm-loop has half of its steps; 0 for none; auto follows the camera for walk-mip and cone-mip, and is 0 for csm-loop";
             "offset" = number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
-                "offset of the walks' cones when they are made, in texels";
+                "texels that are added to each distance when the cones of the walk and its variants are made";
         ]
     }
 
