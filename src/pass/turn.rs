@@ -26,7 +26,7 @@ pub struct Stage {
     pub most: u32,
     /// The largest product of the workgroups and the step limit of a dispatch.
     pub slice: u32,
-    /// Workgroups that visit every cell.
+    /// Workgroups that visit every cell; 0 if the stage is left out.
     pub tiles: u32,
     /// Cells per row of the parent level in the block; 0 if there is no parent level.
     pub parent_width: u32,
@@ -159,6 +159,13 @@ impl StageKind {
         };
         let passes = passes.iter().flat_map(of_pass).flatten();
         passes.chain([Self::Census]).collect()
+    }
+
+    /// Stages of a block that are enough for a first picture of it: up to the sketch of the level of
+    /// 1/4, which takes a few percent of the time; 0 without such a sketch.
+    pub fn first_picture(kinds: &[Self]) -> usize {
+        let is_coarse = |kind: &Self| matches!(kind, Self::Sketch(level) if level.divisor >= 4);
+        kinds.iter().rposition(is_coarse).map_or(0, |last| last + 1)
     }
 
     /// The program of the stage.

@@ -203,6 +203,12 @@ fn the_picture_on_the_device_grows_into_that_of_the_file() {
             // At first it is black, and a sketch is nearer to the picture than that.
             let (first, sketched) = (wrong(&seen[0]), seen.iter().map(wrong));
             assert!(first > 0 && sketched.clone().any(|w| w > 0 && w < first / 2));
+            // All blocks are sketched before the first one is finished.
+            if block < 1024 {
+                let reached = seen.iter().find(|picture| !picture.ends_with(&[0; 4]));
+                let half = wanted.len() / 2;
+                assert!(reached.unwrap()[..half] != wanted[..half], "{block}");
+            }
         }
     }
 }

@@ -62,7 +62,9 @@ fn begin_stage() {
     turn.visits = VISIT_ALL;
     if turn.stage.parent_width > 0u {
         turn.visits = VISIT_PARENTS;
-        turn.count = atomicExchange(&lists.parents, 0u);
+        let count = atomicExchange(&lists.parents, 0u);
+        // A stage without tiles is left out.
+        turn.count = select(0u, count, turn.stage.tiles > 0u);
         turn.read = turn.stage.listed;
     }
 }

@@ -17,7 +17,7 @@ struct Stage {
     most: u32,
     /// The largest product of the workgroups and the step limit of a dispatch.
     slice: u32,
-    /// Workgroups that visit every cell.
+    /// Workgroups that visit every cell; 0 if the stage is left out.
     tiles: u32,
     /// Cells per row of the parent level in the block; 0 if there is no parent level.
     parent_width: u32,

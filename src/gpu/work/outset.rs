@@ -205,15 +205,25 @@ impl Order {
         let mut arrays = arrays.unwrap_or_else(PoisonError::into_inner);
         let uploads = &mut traffic.uploads;
         let arrays = arrays.keep(device, &kernels, scene.twin().arrays(), uploads)?;
+        let first_stages = match draft.blocks.len() {
+            1 => 0,
+            _ => StageKind::first_picture(&draft.kinds),
+        };
+        let firsts = match first_stages {
+            0 => &[],
+            _ => &draft.blocks[..],
+        };
         let most = most_steps(&scene);
         let mut frame = Frame::blank(plan, *extras);
         frame.traffic = Some(traffic);
         Ok(Outset {
             job: Job {
+                firsts: firsts.len(),
+                first_stages,
                 kinds: draft.kinds,
                 made: Made {
                     passes: plan.passes(*extras),
-                    blocks: draft.blocks,
+                    blocks: [firsts, &draft.blocks].concat(),
                     ray_steps: plan.ray_steps(&scene),
                     marched,
                     look: look.unwrap_or_default(),

@@ -56,10 +56,13 @@ impl Run {
             false => turn.share(),
         };
         self.reached = turn.number;
-        if let Some((block, staging)) = flight.reading {
+        if flight.stages.end % self.per_block() == 0 {
             // Each block counts anew.
             self.told = [0; MOST_STAGES];
-            if turn.number >= (block as u32 + 1) * self.per_block() && self.collected == block {
+        }
+        if let Some((block, staging)) = flight.reading {
+            let is_next = self.collected + self.job.firsts == block;
+            if turn.number >= (block as u32 + 1) * self.per_block() && is_next {
                 self.collect(block, &staging, &head)?;
             }
             staging.unmap();

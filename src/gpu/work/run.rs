@@ -69,13 +69,32 @@ pub(in crate::gpu) struct Kept {
 }
 
 /// What a render knows from the start.
+///
+/// If an image of several blocks is shown while it is made, the coarse levels run over all blocks
+/// before any ray, and once more with each block.
 pub(in crate::gpu) struct Job {
     pub kinds: Vec<StageKind>,
     pub made: Made,
+    /// How many of the blocks come before all others, only for a first picture of the whole image,
+    /// and how many stages of them run.
+    pub firsts: usize,
+    pub first_stages: usize,
     /// The step limits of the first dispatch of a stage and of the largest.
     pub steps: [u32; 2],
     pub extras: Extras,
     pub prepared: Vec<(Preparation, f64)>,
+}
+
+impl Job {
+    /// Whether a stage of a block is left out.
+    fn leaves_out(&self, block: usize, index: usize) -> bool {
+        let is_sketch = || matches!(self.kinds[index], StageKind::Sketch(_));
+        match block < self.firsts {
+            true => index >= self.first_stages,
+            // The first picture is finer.
+            false => self.firsts > 0 && index < self.first_stages && is_sketch(),
+        }
+    }
 }
 
 /// A submission that has not ended, as far as the host knows.
@@ -111,7 +130,7 @@ pub struct Run {
     pub(super) flights: VecDeque<Flight>,
     pub(super) corrections: u32,
     pub(super) ended: f64,
-    /// Blocks in the frame.
+    /// Blocks in the frame, without those of the first picture.
     pub(super) collected: usize,
 }
 
@@ -228,10 +247,13 @@ impl Run {
         let first = block as u32 * self.per_block();
         let layout = &self.job.made.blocks[block];
         let mut stages = layout.stages(&self.job.kinds, first, self.job.made.ray_steps);
-        for (stage, cost) in stages.iter_mut().zip(&self.kept.costs) {
+        for (index, (stage, cost)) in stages.iter_mut().zip(&self.kept.costs).enumerate() {
             [stage.chunk, stage.most] = self.job.steps;
             stage.slice = cost.slice;
             stage.generation = self.generation(block);
+            if self.job.leaves_out(block, index) {
+                stage.tiles = 0;
+            }
         }
         stages
     }
@@ -308,7 +330,7 @@ impl Run {
     /// The device failed, or left cells unvisited.
     pub fn poll(&mut self) -> Result<Option<Frame>, RenderError> {
         self.receive()?;
-        if self.collected < self.job.made.blocks.len() {
+        if self.collected < self.job.made.blocks.len() - self.job.firsts {
             return Ok(None);
         }
         self.kept.made = Some(self.job.made.clone());

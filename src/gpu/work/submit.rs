@@ -79,7 +79,8 @@ impl Run {
             ranges.push((&stamps.pairs, 0, PAIRS));
         }
         report.copy(&mut encoder, &ranges);
-        let reading = ends_block.then(|| {
+        let reads = ends_block && block >= self.job.firsts;
+        let reading = reads.then(|| {
             let parts = Parts::new(&self.job.made.blocks[block], self.job.extras);
             let kept = self.kept.readings.pop();
             let staging = kept.filter(|s| s.holds(parts.bytes()));
