@@ -5,6 +5,7 @@
 //! its radius, in texels, at one whole height above the apex.
 
 use crate::base::named::named_enum;
+use crate::heightfield::conemap::generate::Generator;
 use crate::heightfield::heights::{Patches, cells};
 
 pub mod file;
@@ -19,6 +20,8 @@ pub struct KindFacts {
     pub channels: usize,
     /// What the cones promise, in words.
     pub promise: &'static str,
+    /// What makes such maps by default.
+    pub generator: Generator,
 }
 
 named_enum! {
@@ -27,26 +30,41 @@ named_enum! {
         /// Apex on a sample; no other sample lies inside (Dummer 2006). The surface between
         /// the samples may.
         Samples = "samples" => KindFacts {
-            over_cells: false, channels: 1, promise: "apex on a sample, no other sample inside",
+            over_cells: false,
+            channels: 1,
+            promise: "apex on a sample, no other sample inside",
+            generator: Generator::Exact,
         },
         /// As `Samples`, with one cone per side: +x, -x, +y, -y.
         Quad = "quad" => KindFacts {
-            over_cells: false, channels: 4, promise: "apex on a sample, one cone for each of four sides",
+            over_cells: false,
+            channels: 4,
+            promise: "apex on a sample, one cone for each of four sides",
+            generator: Generator::Quad,
         },
         /// Apex on a sample; a ray from above through the cone should meet the surface at
         /// most once (Policarpo and Oliveira 2007).
         Relaxed = "relaxed" => KindFacts {
-            over_cells: false, channels: 1, promise: "apex on a sample, a ray inside should cross the surface once",
+            over_cells: false,
+            channels: 1,
+            promise: "apex on a sample, a ray inside should cross the surface once",
+            generator: Generator::RelaxedExact,
         },
         /// Apex over a cell; the cells that rise above it keep clear by an offset (the cone
         /// walk). Proven for the surface between the samples.
         Walk = "walk" => KindFacts {
-            over_cells: true, channels: 1, promise: "apex over a cell, proven for the surface between the samples",
+            over_cells: true,
+            channels: 1,
+            promise: "apex over a cell, proven for the surface between the samples",
+            generator: Generator::Walk,
         },
         /// As `Walk`, for rays that go down: only the cells from which a ray can come out on
         /// the far side limit the cone.
         WalkRelaxed = "walk-relaxed" => KindFacts {
-            over_cells: true, channels: 1, promise: "apex over a cell, proven for rays that go down",
+            over_cells: true,
+            channels: 1,
+            promise: "apex over a cell, proven for rays that go down",
+            generator: Generator::WalkRelaxed,
         },
     }
 }

@@ -17,8 +17,8 @@ use crate::base::{shader::Module, work::Work};
 use crate::heightfield::conemap::generate::mips::stored;
 use crate::heightfield::height_surface::{HeightmapUniform, TracerParameters};
 use crate::heightfield::tracer::{
-    GridRay, cones::Lookup, grid::grid_begin, reference::Reference, settings::TracerSettings,
-    walk_mip::NodeCones,
+    GridRay, cones::Lookup, grid::grid_begin, reference::Reference, settings::Supply,
+    settings::TracerSettings, walk_mip::NodeCones,
 };
 use crate::heightfield::{ConeMap, HeightSurface, MapKind};
 
@@ -144,6 +144,11 @@ pub trait Method: Debug + Sync {
     /// the eye at which a texel is as wide as a pixel.
     fn numbers(&self, _: &TracerSettings, _pixel: f64) -> TracerParameters {
         TracerParameters::default()
+    }
+
+    /// The cones of nodes, if it reads those: the supplied ones, or new ones.
+    fn nodes(&self, _: &HeightSurface, _: &Supply) -> Option<NodeCones> {
+        None
     }
 
     /// Completes the state of a ray that starts.
