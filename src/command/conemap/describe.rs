@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::heightfield::conemap::WIDEST;
-use crate::heightfield::conemap::file::{Layout, MapFile, RatioScale, Slopes};
+use crate::heightfield::conemap::file::{Channel, MapFile, RatioScale, Slopes};
 use crate::heightfield::conemap::generate::generator::{Generator, Quality};
 use crate::heightfield::conemap::generate::slopes::slopes;
 use crate::heightfield::heights::wrap_name;
@@ -145,11 +145,11 @@ fn maker(label: Option<&str>) -> String {
 fn format_of(file: &MapFile) -> String {
     let (format, scale) = (&file.format, figure(file.label.scale));
     let layout = format.layout.name();
-    if format.layout == Layout::Full {
+    if format.layout.is_exr() {
         return format!("EXR, 32-bit floats, 1 means {scale} texels");
     }
-    let slopes = match (format.layout, format.slopes) {
-        (Layout::Dummer, Slopes::Half) => "half slopes, ",
+    let slopes = match format.slopes {
+        Slopes::Half if format.layout.has(Channel::SlopeX) => "half slopes, ",
         _ => "",
     };
     let ratios = match format.ratio {

@@ -5,7 +5,7 @@
 //! its radius, in texels, at one whole height above the apex.
 
 use crate::base::named::named_enum;
-use crate::heightfield::conemap::generate::Generator;
+use crate::heightfield::conemap::{file::Layout, generate::Generator};
 use crate::heightfield::heights::{Patches, cells};
 
 pub mod file;
@@ -22,6 +22,8 @@ pub struct KindFacts {
     pub promise: &'static str,
     /// What makes such maps by default.
     pub generator: Generator,
+    /// The PNG layout that such maps have by default.
+    pub layout: Layout,
 }
 
 named_enum! {
@@ -34,6 +36,7 @@ named_enum! {
             channels: 1,
             promise: "apex on a sample, no other sample inside",
             generator: Generator::Exact,
+            layout: Layout::Dummer,
         },
         /// As `Samples`, with one cone per side: +x, -x, +y, -y.
         Quad = "quad" => KindFacts {
@@ -41,6 +44,7 @@ named_enum! {
             channels: 4,
             promise: "apex on a sample, one cone for each of four sides",
             generator: Generator::Quad,
+            layout: Layout::Quad,
         },
         /// Apex on a sample; a ray from above through the cone should meet the surface at
         /// most once (Policarpo and Oliveira 2007).
@@ -49,6 +53,7 @@ named_enum! {
             channels: 1,
             promise: "apex on a sample, a ray inside should cross the surface once",
             generator: Generator::RelaxedExact,
+            layout: Layout::Relief,
         },
         /// Apex over a cell; the cells that rise above it keep clear by an offset (the cone
         /// walk). Proven for the surface between the samples.
@@ -57,6 +62,7 @@ named_enum! {
             channels: 1,
             promise: "apex over a cell, proven for the surface between the samples",
             generator: Generator::Walk,
+            layout: Layout::Pair,
         },
         /// As `Walk`, for rays that go down: only the cells from which a ray can come out on
         /// the far side limit the cone.
@@ -65,6 +71,7 @@ named_enum! {
             channels: 1,
             promise: "apex over a cell, proven for rays that go down",
             generator: Generator::WalkRelaxed,
+            layout: Layout::Pair,
         },
     }
 }
