@@ -3,6 +3,9 @@
 //! A *place* is a sample of the height map, or a cell between samples. The *apex* of its cone
 //! is at the sample's height, or at the highest point of the cell. The *ratio* of a cone is
 //! its radius, in texels, at one whole height above the apex.
+//!
+//! - [`mod@file`]: cone maps in files
+//! - [`generate`]: the generators
 
 use crate::base::named::named_enum;
 use crate::heightfield::conemap::{file::Layout, generate::Generator};

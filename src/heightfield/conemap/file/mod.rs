@@ -1,5 +1,11 @@
 //! Cone maps in files: the layouts of the papers, rounded so that no cone becomes wider,
 //! with a label that says what the map is and which heights it belongs to.
+//!
+//! - `format`: the layouts, and what their channels hold
+//! - `map_file`: a map with what its file knows of it; `label`: that as text
+//! - `encode`, `decode`: a map to the bytes of a file, and back
+//! - `rounding`: ratios and heights as whole numbers; `shading`: slopes and normals
+//! - `compatibility`: whether a map fits heights and a tracer
 
 mod compatibility;
 mod decode;

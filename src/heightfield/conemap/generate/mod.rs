@@ -1,7 +1,17 @@
 //! Generators of cone maps, in f64 on the CPU and in f32 on a device, with the same result.
 //!
-//! [`generator`] lists the generators, and a [`ConeSearch`] is how one of them searches.
-//! A new generator is one entry in the list; a new method is one Rust file and one WGSL file.
+//! - [`generator`]: the list of generators, and their options
+//! - [`cone_search`]: the trait of how one of them searches; [`task`]: what a search reads
+//! - [`brute`]: in growing [`mod@rings`]; [`search`]: by branch and bound, with [`planes`]
+//! - [`quick`]: over neighbours in each level; [`relaxed`]: along rays
+//! - [`cost`]: how wide a cone a place allows; [`grid_distance`]: how far away the place is
+//! - [`falling`]: places that limit relaxed cones
+//! - [`cpu`]: whole maps in f64; [`refine_f64`]: ratios of what a device has found
+//! - [`pyramid`]: the maxima in a buffer; [`uniform`]: parameters and results of the kernels
+//! - [`min3x3`]: the least cone of nine; [`mips`]: the cones of nodes
+//! - [`mod@slopes`]: slopes at the samples
+//!
+//! A new generator is one entry in the list; a new search is one Rust file and one WGSL file.
 
 pub mod brute;
 pub mod cone_search;
