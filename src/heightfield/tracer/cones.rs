@@ -17,7 +17,7 @@
 
 use glam::DVec3;
 
-use crate::base::{named::named_enum, shader::Module, work::Work};
+use crate::base::{named::named_enum, shader::Module, work::Counts};
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{
     GridRay, LocalRay, Method, Step, Trace, Tracer, cone::cone_way, settings::TracerSettings,
@@ -169,7 +169,7 @@ impl Method for Cones {
         };
     }
 
-    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Work) -> Step {
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Counts) -> Step {
         let Trace { s, end, .. } = *grid.trace;
         let node = grid.surface.node(grid.trace.cell, 0);
         let over = grid.over(&node);

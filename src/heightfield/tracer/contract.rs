@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use crate::base::array::SceneArray;
 pub use crate::base::work::Step;
-use crate::base::{shader::Module, work::Work};
+use crate::base::{shader::Module, work::Counts};
 use crate::heightfield::conemap::generate::mips::stored;
 use crate::heightfield::height_surface::{HeightmapUniform, TracerParameters};
 use crate::heightfield::tracer::{
@@ -155,7 +155,7 @@ pub trait Method: Debug + Sync {
     fn begin(&self, _: &Tracer, _: &LocalRay, _: &mut Trace) {}
 
     /// What a step does with a ray that is moving.
-    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Work) -> Step;
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Counts) -> Step;
 
     /// The WGSL modules of its own.
     fn modules(&self, tracer: &Tracer) -> Vec<Module>;
@@ -192,7 +192,7 @@ impl Tracer {
 
     /// One step of bounded work; a ray that has ended stays as it is. `work` gains one
     /// evaluation, and an iteration for each round of refinement.
-    pub fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+    pub fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Counts) -> Step {
         if trace.state != Step::Moving {
             return trace.state;
         }

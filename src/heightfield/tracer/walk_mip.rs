@@ -20,7 +20,7 @@
 use std::sync::Arc;
 
 use crate::base::array::SceneArray;
-use crate::base::{shader::Module, work::Work};
+use crate::base::{shader::Module, work::Counts};
 use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, stored};
 use crate::heightfield::height_surface::{Node, TracerParameters};
 use crate::heightfield::tracer::cone::{WALK_TRUST, cone_end};
@@ -101,7 +101,7 @@ impl Method for WalkMip {
             .then(|| supply.nodes.clone().unwrap_or_else(made))
     }
 
-    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, _work: &mut Counts) -> Step {
         grid.trace.level = walk_mip_level(grid.surface, tracer.numbers.lod, grid.trace.s);
         let node = grid.surface.node(grid.trace.cell, grid.trace.level);
         let over = grid.over(&node);
