@@ -241,7 +241,7 @@ impl Assets {
                 note: loaded.note,
             })
         };
-        kept(&self.surfaces, surface_key(settings), make)
+        kept_or_made(&self.surfaces, surface_key(settings), make)
     }
 
     fn texture(&self, settings: &HeightfieldSettings) -> Result<Option<Arc<Texture>>, Fault> {
@@ -249,7 +249,7 @@ impl Assets {
             return Ok(None);
         }
         let path = settings.source.folder.join(&settings.texture);
-        let read = kept(&self.textures, path, |path| Texture::read(path));
+        let read = kept_or_made(&self.textures, path, |path| Texture::read(path));
         read.map(Some)
             .map_err(|why| Fault::new("scene.texture", why))
     }
@@ -262,7 +262,7 @@ impl Assets {
     ) -> Result<Arc<Option<Supply>>, PrepareError> {
         let t = &settings.tracing;
         let key = (surface_key(settings), t.tracer, t.map.clone(), t.offset);
-        kept(&self.cones, key, |_| {
+        kept_or_made(&self.cones, key, |_| {
             t.cones(surface, &settings.source.folder, make)
         })
     }
@@ -278,7 +278,7 @@ impl Assets {
         };
         let tracing = &settings.tracing;
         let key = (surface_key(settings), by, tracing.offset);
-        let made = kept(&self.paints, key, |_| -> Result<_, PrepareError> {
+        let made = kept_or_made(&self.paints, key, |_| -> Result<_, PrepareError> {
             if tracing.generator() == Some(by)
                 && let Some(supply) = &*self.cones(settings, surface, make)?
             {
@@ -303,7 +303,7 @@ pub(super) fn tiles_fault(e: HeightSurfaceError) -> Fault {
 type Last<K, V> = Arc<Mutex<Option<(K, Arc<V>)>>>;
 
 /// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.
-fn kept<K: PartialEq, V, E>(
+fn kept_or_made<K: PartialEq, V, E>(
     last: &Last<K, V>,
     key: K,
     make: impl FnOnce(&K) -> Result<V, E>,
@@ -329,14 +329,14 @@ mod tests {
         let last = Last::<u32, u32>::default();
         let mut made = 0;
         for (key, times) in [(1, 1), (1, 1), (2, 2), (1, 3)] {
-            let value = kept(&last.clone(), key, |k| {
+            let value = kept_or_made(&last.clone(), key, |k| {
                 made += 1;
                 Ok::<u32, ()>(10 * k)
             });
             assert_eq!(value, Ok(Arc::new(10 * key)));
             assert_eq!(made, times);
         }
-        assert_eq!(kept(&last, 3, |_| Err("no")), Err("no"));
-        assert_eq!(kept(&last, 1, |_| Err("no")), Ok(Arc::new(10)));
+        assert_eq!(kept_or_made(&last, 3, |_| Err("no")), Err("no"));
+        assert_eq!(kept_or_made(&last, 1, |_| Err("no")), Ok(Arc::new(10)));
     }
 }

@@ -119,11 +119,11 @@ pub fn run(args: &Make) -> Result<()> {
     progress.report(1.0, "the file");
     let file = MapFile::new(map, heights, patches, &made_by(generator, &options));
     interrupt::check()?;
-    let kept = write(&file, &format, sink)?;
+    let what_is_kept = write(&file, &format, sink)?;
     drop(progress);
     let [w, h] = file.map.size;
     say(&format!(
-        "{}  {w} x {h}  {} by {}, layout {}  {took:.0} ms  {kept}",
+        "{}  {w} x {h}  {} by {}, layout {}  {took:.0} ms  {what_is_kept}",
         shown(&output),
         file.map.kind.name(),
         generator.name(),
