@@ -22,7 +22,7 @@ use common::exact::first_hit;
 use common::overclaims::{brought_near, overclaims};
 use common::plans::{camera, compared, sized};
 use common::solved::{balls, cameras, rays, slab, solids, solved};
-use conemarch::base::work::Work;
+use conemarch::base::work::Counts;
 use conemarch::gpu::render::Cutting;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
@@ -103,7 +103,7 @@ fn the_rule_of_the_slides_is_caught() {
 /// Every number of a frame but times, as bits.
 fn bits(frame: &Frame) -> Vec<u32> {
     let mut all = Vec::new();
-    let mut add = |numbers: &[f32], states: &[u8], work: &[Work]| {
+    let mut add = |numbers: &[f32], states: &[u8], work: &[Counts]| {
         all.extend(numbers.iter().map(|x| x.to_bits()));
         all.extend(states.iter().map(|s| u32::from(*s)));
         all.extend(work.iter().flat_map(|w| [w.evaluations, w.iterations]));
@@ -173,7 +173,7 @@ fn levels_halve_and_children_of_the_sky_do_nothing() {
                     busy += u32::from(work.evaluations > 0);
                     continue;
                 }
-                assert_eq!(*work, Work::default());
+                assert_eq!(*work, Counts::default());
                 idle += 1;
                 assert_eq!(fine.map_or(frame.state[i], |l| l.state[i]), SKY);
             }
@@ -268,7 +268,7 @@ fn passes_figures_and_fudge_are_what_the_plan_says() {
     );
     let layers = marched.levels.iter().map(|l| &l.work);
     for (pass, work) in marched.passes.iter().zip(layers.chain([&marched.work])) {
-        let sum = |f: fn(&Work) -> u32| work.iter().map(|w| u64::from(f(w))).sum::<u64>();
+        let sum = |f: fn(&Counts) -> u32| work.iter().map(|w| u64::from(f(w))).sum::<u64>();
         assert_eq!(pass.cells, work.len() as u64);
         assert_eq!(pass.evaluations, Some(sum(|w| w.evaluations)));
         assert_eq!(pass.iterations, Some(sum(|w| w.iterations)));

@@ -7,6 +7,8 @@
 //! - [`cone`]: how far an empty ball carries a cone
 //! - [`work`]: what a pixel is, and what it cost
 //! - [`srgb`]: linear colours to and from sRGB
+//! - [`named`]: enums whose variants are chosen by a word
+//! - [`units`]: amounts of memory for people to read
 
 pub mod array;
 pub mod cone;

@@ -34,11 +34,14 @@ impl State {
     }
 }
 
-/// Work of one cell or pixel.
+/// The work of one cell or pixel, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct Counts {
     /// Evaluations of the distance estimate, or lookups in a heightfield.
     pub evaluations: u32,
     /// Iterations of the formula in these evaluations.
     pub iterations: u32,
 }
+
+/// [`Counts`] as pictures name them.
+pub type Work = Counts;

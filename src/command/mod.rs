@@ -1,4 +1,13 @@
-//! The command line: one verb in each file.
+//! The command line: its verbs, and what they share.
+//!
+//! - [`mod@line`]: the command line as a whole; [`arguments`]: parsers of arguments
+//! - [`render`], [`mod@bench`], [`conemap`], [`presets`], [`devices`], [`completions`]: the verbs
+//! - [`executor`]: the device or the CPU that `--device` chooses
+//! - [`memory`]: checks before the work that a picture fits
+//! - [`output`]: where a render writes, and how; [`sink`]: files and standard output
+//! - [`progress`]: how much is done; [`mod@print`]: standard output and standard error
+//! - [`stats`]: the figures of a render; [`table`]: rows of cells as text
+//! - [`failure`]: errors as sentences and exit codes; [`interrupt`]: requests to end
 
 pub mod arguments;
 pub mod bench;

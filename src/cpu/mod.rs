@@ -8,7 +8,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::base::view::View;
-use crate::base::work::{State, Work};
+use crate::base::work::{Counts, State};
 use crate::heightfield::conemap::generate::cpu::generate;
 use crate::pass::look::Light;
 use crate::pass::march::{Ended, march};
@@ -129,7 +129,7 @@ impl<S: Solid> Run<'_, S> {
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
         let one = |cell| {
             let parent = parent_of(parents, cell);
-            let mut work = Work::default();
+            let mut work = Counts::default();
             if parent.ended == Ended::Sky {
                 return (parent, work);
             }
@@ -159,7 +159,7 @@ impl<S: Solid> Run<'_, S> {
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
         let one = |pixel| {
             let parent = parent_of(parents, pixel);
-            let mut work = Work::default();
+            let mut work = Counts::default();
             if parent.ended == Ended::Sky {
                 return (Hit::default(), State::Sky, work);
             }
@@ -210,7 +210,7 @@ fn set<T>(layer: &mut [T], i: usize, value: T) {
     }
 }
 
-fn add(sum: &mut Sum, work: Work) {
+fn add(sum: &mut Sum, work: Counts) {
     sum.0 += u64::from(work.evaluations);
     sum.1 += u64::from(work.iterations);
 }
@@ -299,7 +299,7 @@ impl Task for Sample<'_> {
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let one = |pixel: &[u32; 2]| {
             let ray = self.view.view_ray(*pixel);
-            trace::trace(solid, &ray, 0.0, self.limit, &mut Work::default())
+            trace::trace(solid, &ray, 0.0, self.limit, &mut Counts::default())
         };
         self.pixels.par_iter().map(one).collect()
     }

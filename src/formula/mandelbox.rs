@@ -39,12 +39,12 @@ pub struct MandelboxUniform {
     pub fixed2: f32,
     /// The orbit has escaped where |z|^2 exceeds this.
     pub bail2: f32,
-    /// 2 sqrt(3) L |s| / (|s| - 1).
-    pub reach: f32,
+    /// K for c = 0: 2 sqrt(3) L |s| / (|s| - 1).
+    pub k_at_zero: f32,
     /// 1 / (|s| - 1).
     pub tail: f32,
     /// |s - 1|.
-    pub classic_reach: f32,
+    pub classic_offset: f32,
     /// |s|^(1 - iterations).
     pub classic_skin: f32,
 }
@@ -87,14 +87,9 @@ impl Mandelbox {
         1.0 / (self.scale.abs() - 1.0)
     }
 
-    /// The part of K that does not depend on c.
-    fn reach(&self) -> f64 {
-        TWO_SQRT_3 * self.fold_limit * self.scale.abs() * self.tail()
-    }
-
     /// K for |c|.
     fn k(&self, c: f64) -> f64 {
-        self.reach() + c * self.tail()
+        TWO_SQRT_3 * self.fold_limit * self.scale.abs() * self.tail() + c * self.tail()
     }
 
     /// The largest |c| of any orbit.
@@ -170,9 +165,9 @@ impl DistanceEstimate for Mandelbox {
             min2: min2 as f32,
             fixed2: fixed2 as f32,
             bail2: self.bail2() as f32,
-            reach: self.reach() as f32,
+            k_at_zero: self.k(0.0) as f32,
             tail: self.tail() as f32,
-            classic_reach: (self.scale - 1.0).abs() as f32,
+            classic_offset: (self.scale - 1.0).abs() as f32,
             classic_skin: self.classic_skin(iterations) as f32,
         };
         let rows = Rotation::uniform(self.rotated().as_ref());

@@ -3,6 +3,7 @@
 //! - [`mandelbox`]: the Mandelbox, and its Julia sets
 //! - [`balls`]: balls, boxes and a rod, for tests
 //! - [`rotation`]: a rotation between folds
+//! - `contract`: [`DistanceEstimate`], what a scene asks a formula
 //!
 //! A new formula is a file here, a twin in `wgsl/formula/` and a word in the list
 //! `formulas!` below. The documentation and the tests follow that list.

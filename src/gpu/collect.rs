@@ -1,6 +1,6 @@
 //! Copies what the device made of a block into the frame of the whole picture.
 
-use crate::base::work::{State, Work};
+use crate::base::work::{Counts, State};
 use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::staging::Staging;
 use crate::gpu::target::Target;
@@ -137,10 +137,10 @@ impl Parts {
             };
             let work = tally.get(cells.clone()).unwrap_or_default();
             let work = work.iter().zip(states).map(|(w, s)| work_of(*w, *s));
-            let work: Vec<Work> = work.collect();
+            let work: Vec<Counts> = work.collect();
             if !work.is_empty() {
                 let figures = &mut frame.passes[i];
-                let sum = |f: fn(&Work) -> u32| work.iter().map(|w| u64::from(f(w))).sum::<u64>();
+                let sum = |f: fn(&Counts) -> u32| work.iter().map(|w| u64::from(f(w))).sum::<u64>();
                 *figures.evaluations.get_or_insert(0) += sum(|w| w.evaluations);
                 *figures.iterations.get_or_insert(0) += sum(|w| w.iterations);
             }
@@ -178,8 +178,8 @@ fn state(word: u32, generation: u32) -> Option<State> {
 }
 
 /// What the device counted in a cell, which is out of date if the cell was not visited.
-fn work_of([evaluations, iterations]: [u32; 2], state: Option<State>) -> Work {
-    let counted = Work {
+fn work_of([evaluations, iterations]: [u32; 2], state: Option<State>) -> Counts {
+    let counted = Counts {
         evaluations,
         iterations,
     };

@@ -246,7 +246,7 @@ impl Assets {
                 note: loaded.note,
             })
         };
-        kept(&self.surfaces, surface_key(settings), make)
+        kept_or_made(&self.surfaces, surface_key(settings), make)
     }
 
     fn texture(&self, settings: &HeightfieldSettings) -> Result<Option<Arc<Texture>>, Fault> {
@@ -254,7 +254,7 @@ impl Assets {
             return Ok(None);
         }
         let path = settings.source.folder.join(&settings.texture);
-        let read = kept(&self.textures, path, |path| Texture::read(path));
+        let read = kept_or_made(&self.textures, path, |path| Texture::read(path));
         read.map(Some)
             .map_err(|why| Fault::new("scene.texture", why))
     }
@@ -265,7 +265,7 @@ impl Assets {
         surface: &HeightSurface,
         make: Make<'_>,
     ) -> Result<Arc<Option<Supply>>, PrepareError> {
-        kept(&self.cones, cones_key(settings), |_| {
+        kept_or_made(&self.cones, cones_key(settings), |_| {
             let folder = &settings.source.folder;
             settings.tracing.cones(surface, folder, make)
         })
@@ -281,7 +281,7 @@ impl Assets {
             return Ok(None);
         };
         let tracing = &settings.tracing;
-        let made = kept(
+        let made = kept_or_made(
             &self.paints,
             paint_key(settings, by),
             |_| -> Result<_, PrepareError> {
@@ -319,7 +319,7 @@ pub(super) fn tiles_fault(e: HeightSurfaceError) -> Fault {
 type Last<K, V> = Arc<Mutex<Option<(K, Arc<V>)>>>;
 
 /// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.
-fn kept<K: PartialEq, V, E>(
+fn kept_or_made<K: PartialEq, V, E>(
     last: &Last<K, V>,
     key: K,
     make: impl FnOnce(&K) -> Result<V, E>,
@@ -351,14 +351,14 @@ mod tests {
         let last = Last::<u32, u32>::default();
         let mut made = 0;
         for (key, times) in [(1, 1), (1, 1), (2, 2), (1, 3)] {
-            let value = kept(&last.clone(), key, |k| {
+            let value = kept_or_made(&last.clone(), key, |k| {
                 made += 1;
                 Ok::<u32, ()>(10 * k)
             });
             assert_eq!(value, Ok(Arc::new(10 * key)));
             assert_eq!(made, times);
         }
-        assert_eq!(kept(&last, 3, |_| Err("no")), Err("no"));
-        assert_eq!(kept(&last, 1, |_| Err("no")), Ok(Arc::new(10)));
+        assert_eq!(kept_or_made(&last, 3, |_| Err("no")), Err("no"));
+        assert_eq!(kept_or_made(&last, 1, |_| Err("no")), Ok(Arc::new(10)));
     }
 }

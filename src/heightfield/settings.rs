@@ -170,7 +170,7 @@ impl HeightfieldSettings {
     pub fn exact(&self) -> Self {
         Self {
             tracing: TracerSettings {
-                tracer: TracerKind::MaxMip,
+                tracer: TracerKind::exact_without_map(),
                 offset: self.tracing.offset,
                 ..TracerSettings::default()
             },

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::base::view::{View, footprint};
-use crate::base::work::{State, Work};
+use crate::base::work::{Counts, State};
 use crate::cpu;
 use crate::gpu::RenderError;
 use crate::pass::march::{Ended, march};
@@ -247,7 +247,7 @@ impl Task for Lost<'_> {
                 return true;
             };
             let ray = view.view_ray(probe.pixel);
-            let (met, state) = trace(solid, &ray, front, self.limit, &mut Work::default());
+            let (met, state) = trace(solid, &ray, front, self.limit, &mut Counts::default());
             state != State::Hit || met.t > hit + BEHIND * probe.grain
         };
         let lost = self.probes.par_iter().filter(one).count();
@@ -261,7 +261,7 @@ fn front<S: Solid>(solid: &S, view: &View, levels: &[Level], pixel: [u32; 2]) ->
     for level in levels {
         let mut cone = view.view_cone(pixel.map(|p| p / level.divisor), level.divisor);
         cone.k *= level.fudge;
-        let work = &mut Work::default();
+        let work = &mut Counts::default();
         let (next, ended) = march(solid, &cone, front, level.steps, work);
         if ended == Ended::Sky {
             return None;

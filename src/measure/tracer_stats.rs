@@ -11,7 +11,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::base::work::{Step, Work};
+use crate::base::work::{Counts, Step};
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::tracer::{LocalRay, Tracer};
 
@@ -61,7 +61,7 @@ pub fn view_rays(surface: &HeightSurface, degrees: f64, count: u32) -> Vec<Local
 
 /// How a ray ends: its state, its parameter, and its steps.
 fn trace(tracer: &Tracer, ray: &LocalRay) -> (Step, f64, u32) {
-    let mut work = Work::default();
+    let mut work = Counts::default();
     let mut trace = tracer.begin(ray, 0.0, f64::MAX);
     for _ in 0..MOST_STEPS {
         if tracer.step(ray, &mut trace, &mut work) != Step::Moving {

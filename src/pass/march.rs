@@ -3,7 +3,7 @@
 //! Twin: `wgsl/pass/march.wgsl`.
 
 use crate::base::view::Beam;
-use crate::base::work::Work;
+use crate::base::work::Counts;
 use crate::scene::Solid;
 
 /// Why a cone ended.
@@ -23,7 +23,7 @@ pub fn march<S: Solid>(
     cone: &Beam,
     front: f64,
     limit: u32,
-    work: &mut Work,
+    work: &mut Counts,
 ) -> (f64, Ended) {
     let mut f = front;
     for _ in 0..limit {

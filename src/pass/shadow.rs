@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use crate::base::view::Beam;
-use crate::base::work::Work;
+use crate::base::work::Counts;
 use crate::pass::LookFeature;
 use crate::pass::look::{Light, smoothstep};
 use crate::scene::{Solid, Step};
@@ -41,7 +41,7 @@ pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain
         grain0: grain,
         grain: 0.0,
     };
-    let work = &mut Work::default();
+    let work = &mut Counts::default();
     let mut walk = solid.begin(&ray, 0.0, 2.0 * solid.bounds_far(), work);
     let mut open = 1.0_f64;
     let mut decided = false;

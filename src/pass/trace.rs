@@ -2,7 +2,7 @@
 //! Twin: `wgsl/pass/trace.wgsl`.
 
 use crate::base::view::Beam;
-use crate::base::work::{State, Work};
+use crate::base::work::{Counts, State};
 use crate::scene::{Hit, Solid, Step};
 
 /// Follows one ray from a proven front by at most `limit` steps.
@@ -11,7 +11,7 @@ pub fn trace<S: Solid>(
     ray: &Beam,
     front: f64,
     limit: u32,
-    work: &mut Work,
+    work: &mut Counts,
 ) -> (Hit, State) {
     let mut walk = solid.begin(ray, front, solid.bounds_far(), work);
     for _ in 0..limit {

@@ -5,8 +5,8 @@ use glam::DVec3;
 use crate::base::array::SceneArray;
 use crate::base::shader::Module;
 use crate::base::view::Beam;
+use crate::base::work::Counts;
 pub use crate::base::work::Step;
-use crate::base::work::Work;
 
 /// The result of one step of a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,13 +45,13 @@ pub trait Solid: Sync {
     type Walk: Copy;
 
     /// One step of a cone. The new front is never below the old one.
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance;
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Counts) -> Advance;
 
     /// Starts a ray at a proven front. It ends at `t_max` at the latest.
-    fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Self::Walk;
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Counts) -> Self::Walk;
 
     /// One step of a ray.
-    fn walk_step(&self, ray: &Beam, walk: &mut Self::Walk, work: &mut Work) -> Step;
+    fn walk_step(&self, ray: &Beam, walk: &mut Self::Walk, work: &mut Counts) -> Step;
 
     /// Where the ray is; its hit, once it has one.
     fn walk_hit(&self, walk: &Self::Walk) -> Hit;

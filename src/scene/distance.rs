@@ -13,7 +13,7 @@ use glam::{DVec3, Vec3};
 use crate::base::cone::ConeRule;
 use crate::base::shader::Module;
 use crate::base::view::{Beam, footprint};
-use crate::base::work::Work;
+use crate::base::work::Counts;
 use crate::formula::{Bounds, Formula};
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::wgsl;
@@ -146,7 +146,7 @@ impl Distance {
         self.stepping.detail * footprint(beam, t)
     }
 
-    fn estimate_at(&self, q: DVec3, work: &mut Work) -> f64 {
+    fn estimate_at(&self, q: DVec3, work: &mut Counts) -> f64 {
         let (d, n) = self.formula.estimate(self.eye + q, self.iterations);
         work.evaluations += 1;
         work.iterations += n;
@@ -155,7 +155,7 @@ impl Distance {
 
     /// The value of the field, and the radius of a ball in which it exceeds `clear`. Inside the
     /// bounds the value may be negative: the gradient needs it.
-    fn field(&self, q: DVec3, clear: f64, work: &mut Work) -> (f64, f64) {
+    fn field(&self, q: DVec3, clear: f64, work: &mut Counts) -> (f64, f64) {
         let outside = self.bounds.distance(self.eye + q);
         let inside = self.estimate_at(q, work);
         let ball = ((inside - clear) / self.lipschitz).max(outside - clear);
@@ -270,7 +270,7 @@ pub struct Walk {
 impl Solid for Distance {
     type Walk = Walk;
 
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance {
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Counts) -> Advance {
         let q = cone.at(front);
         let shell = self.stepping.shell * self.threshold(cone, front);
         let mut d = self.bounds.distance(self.eye + q) - cone.r0 - shell;
@@ -287,7 +287,7 @@ impl Solid for Distance {
         }
     }
 
-    fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Work) -> Walk {
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Counts) -> Walk {
         let (near, far) = self.bounds_interval(ray);
         let clip = self.stepping.clip;
         Walk {
@@ -299,7 +299,7 @@ impl Solid for Distance {
         }
     }
 
-    fn walk_step(&self, ray: &Beam, walk: &mut Walk, work: &mut Work) -> Step {
+    fn walk_step(&self, ray: &Beam, walk: &mut Walk, work: &mut Counts) -> Step {
         let w = *walk;
         if w.t + w.radius > w.end {
             return Step::Out;
@@ -347,7 +347,7 @@ impl Solid for Distance {
     }
 
     fn clearance(&self, q: DVec3) -> f64 {
-        self.field(q, 0.0, &mut Work::default()).1.max(0.0)
+        self.field(q, 0.0, &mut Counts::default()).1.max(0.0)
     }
 
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface {
@@ -360,7 +360,7 @@ impl Solid for Distance {
             DVec3::new(-1.0, 1.0, -1.0),
             DVec3::new(1.0, 1.0, 1.0),
         ];
-        let work = &mut Work::default();
+        let work = &mut Counts::default();
         let g: DVec3 = corners
             .iter()
             .map(|&c| c * self.field(q + h * c, 0.0, work).0)

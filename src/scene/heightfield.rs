@@ -13,7 +13,7 @@ use crate::base::cone::ConeRule;
 use crate::base::key::{Fault, Key};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
-use crate::base::work::Work;
+use crate::base::work::Counts;
 use crate::heightfield::assets::{Assets, Ready};
 use crate::heightfield::height_surface::HeightmapUniform;
 use crate::heightfield::heights::Patches;
@@ -140,7 +140,7 @@ impl Heightfield {
 
     /// Whether a ball of a world radius that moves between two local positions meets nothing
     /// solid.
-    fn sweep_is_free(&self, one: DVec3, two: DVec3, radius: f64, work: &mut Work) -> bool {
+    fn sweep_is_free(&self, one: DVec3, two: DVec3, radius: f64, work: &mut Counts) -> bool {
         work.evaluations += 1;
         let room = radius / self.made.placement.units();
         let (low, high) = (one.min(two) - room, one.max(two) + room);
@@ -250,7 +250,7 @@ impl Twin for Heightfield {
 impl Solid for Heightfield {
     type Walk = Trace;
 
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance {
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Counts) -> Advance {
         let free_to = |front| Advance { front, going: true };
         let ray = self.local(cone);
         let here = ray.at(front);
@@ -279,12 +279,12 @@ impl Solid for Heightfield {
         }
     }
 
-    fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Work) -> Trace {
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Counts) -> Trace {
         // The tracer ends the ray where the block ends.
         self.made.tracer.begin(&self.local(ray), front, t_max)
     }
 
-    fn walk_step(&self, ray: &Beam, walk: &mut Trace, work: &mut Work) -> Step {
+    fn walk_step(&self, ray: &Beam, walk: &mut Trace, work: &mut Counts) -> Step {
         self.made.tracer.step(&self.local(ray), walk, work)
     }
 

@@ -1,6 +1,6 @@
 //! Scenes: what there is to see.
 //!
-//! - [`distance`]: a formula
+//! - [`distance`]: a formula; [`distance_settings`]: its keys
 //! - [`heightfield`]: a block with heights on top
 //! - [`slab`]: a slab between two planes, the smallest complete scene
 //! - `contract`: [`Solid`], what passes ask a scene; [`Twin`], what a GPU needs of it

@@ -10,7 +10,7 @@ use crate::base::cone::ConeRule;
 use crate::base::key::{Fault, Key, number, triple};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
-use crate::base::work::Work;
+use crate::base::work::Counts;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::scene::{AnySolid, Assets, SceneSettings, Viewpoint};
@@ -158,7 +158,7 @@ pub struct Walk {
 impl Solid for Slab {
     type Walk = Walk;
 
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Work) -> Advance {
+    fn advance(&self, cone: &Beam, front: f64, work: &mut Counts) -> Advance {
         work.evaluations += 1;
         let d = self.slab_distance(cone.at(front)) - cone.r0;
         let next = self.rule.cone_front(front, front, d, cone.k);
@@ -168,7 +168,7 @@ impl Solid for Slab {
         }
     }
 
-    fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Work) -> Walk {
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Counts) -> Walk {
         work.evaluations += 1;
         let p = self.eye + ray.origin;
         let (z, dz) = (p.dot(self.normal), ray.axis.dot(self.normal));
@@ -199,7 +199,7 @@ impl Solid for Slab {
         }
     }
 
-    fn walk_step(&self, _ray: &Beam, walk: &mut Walk, _work: &mut Work) -> Step {
+    fn walk_step(&self, _ray: &Beam, walk: &mut Walk, _work: &mut Counts) -> Step {
         match walk.hit {
             Some(hit) if hit.t <= walk.end => {
                 walk.t = hit.t;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use conemarch::base::work::Work;
+use conemarch::base::work::Counts;
 use conemarch::heightfield::conemap::generate::cpu;
 use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
@@ -304,7 +304,7 @@ pub fn run(tracer: &Tracer, ray: &LocalRay, to: f64) -> Option<(Step, TraceHit, 
 
 /// The trace of a ray at its end, and its steps.
 pub fn traced(tracer: &Tracer, ray: &LocalRay, to: f64) -> Option<(Trace, u32)> {
-    let mut work = Work::default();
+    let mut work = Counts::default();
     let mut trace = tracer.begin(ray, 0.0, to);
     for _ in 0..100_000 {
         let step = tracer.step(ray, &mut trace, &mut work);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use conemarch::base::work::Work;
+use conemarch::base::work::Counts;
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
 use conemarch::heightfield::height_surface::{HeightSurface, HeightSurfaceError};
 use conemarch::heightfield::heights::{Heights, Patches};
@@ -188,7 +188,7 @@ fn rays_of_no_numbers_end() {
         };
         for own in &all {
             // The caller limits the steps; none of them panics.
-            let mut work = Work::default();
+            let mut work = Counts::default();
             let mut trace = own.tracer.begin(&ray, any(), any());
             for _ in 0..200 {
                 own.tracer.step(&ray, &mut trace, &mut work);

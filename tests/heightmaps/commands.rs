@@ -131,7 +131,7 @@ fn every_generator_and_layout_goes_through_every_verb() {
         }
         let (exact, small) = (read(&folder, "a.exr"), read(&folder, "a.png"));
         let layout = small.format.layout;
-        assert_eq!(layout, Layout::usual(generator.kind()), "{name}");
+        assert_eq!(layout, generator.kind().facts().layout, "{name}");
         for layout in Layout::ALL.into_iter().filter(|l| *l != Layout::Full) {
             let word = layout.name();
             let line = format!("conemap convert a.exr -o b.png --layout {word}");

@@ -3,7 +3,7 @@
 
 use conemarch::base::cone::ConeRule;
 use conemarch::base::view::Beam;
-use conemarch::base::work::Work;
+use conemarch::base::work::Counts;
 use conemarch::scene::Solid;
 use glam::DVec3;
 
@@ -45,7 +45,7 @@ pub fn ray_of(cone: &Beam, random: &mut Random) -> (DVec3, DVec3) {
 
 /// The front that a solid claims for a cone after so many steps.
 pub fn claimed<S: Solid>(solid: &S, cone: &Beam, steps: u32) -> f64 {
-    let work = &mut Work::default();
+    let work = &mut Counts::default();
     let mut front = 0.0;
     for _ in 0..steps {
         let next = solid.advance(cone, front, work);

@@ -22,7 +22,7 @@ use common::exact::{Exact, balls, distance, first_hit};
 use common::random::Random;
 use conemarch::base::cone::ConeRule;
 use conemarch::base::view::{Beam, footprint};
-use conemarch::base::work::{State, Work};
+use conemarch::base::work::{Counts, State};
 use conemarch::formula::balls::Balls;
 use conemarch::formula::{Bounds, Formula};
 use conemarch::pass::trace::trace;
@@ -214,7 +214,7 @@ proptest! {
         let how = Stepping { relaxation, shell, ..stepping(ConeRule::Exact) };
         let (scene, exact) = balls_scene(size, eye, how);
         let ray = pixel_ray(direction.normalize());
-        let (hit, state) = trace(&scene, &ray, 0.0, 100_000, &mut Work::default());
+        let (hit, state) = trace(&scene, &ray, 0.0, 100_000, &mut Counts::default());
         let want = first_hit(&exact, eye, ray.axis);
         let width = footprint(&ray, hit.t);
         match state {
@@ -235,7 +235,7 @@ proptest! {
     ) {
         let (scene, exact) = slab_scene(normal, size, eye, ConeRule::Exact);
         let ray = pixel_ray((aim - eye).normalize());
-        let (hit, state) = trace(&scene, &ray, 0.0, 1, &mut Work::default());
+        let (hit, state) = trace(&scene, &ray, 0.0, 1, &mut Counts::default());
         let want = first_hit(&exact, eye, ray.axis);
         prop_assert_eq!(state == State::Hit, want.is_finite());
         if state == State::Hit {

@@ -1,7 +1,7 @@
 //! Cones and rays in scenes: fronts, empty balls, walks, hits and bounds agree.
 
 use conemarch::base::view::Beam;
-use conemarch::base::work::Work;
+use conemarch::base::work::Counts;
 use conemarch::plan::Plan;
 use conemarch::scene::distance::Relaxation;
 use conemarch::scene::{Solid, Step, Task};
@@ -63,7 +63,7 @@ impl Task for Beams<'_> {
 
 /// Adds what a scene answers in f64.
 fn pair<S: Solid>(solid: &S, pairs: &mut Pairs, q: &Numbers, a: &Numbers) {
-    let (ray, front, work) = (beam(q), f64::from(q[0][3]), &mut Work::default());
+    let (ray, front, work) = (beam(q), f64::from(q[0][3]), &mut Counts::default());
     let next = solid.advance(&ray, front, work);
     // What is gained: the front itself would hide an error behind the way so far.
     let gained = (f64::from(a[0][0]) - front) as f32;

@@ -19,11 +19,11 @@ struct MandelboxUniform {
     fixed2: f32,
     /// The orbit has escaped where |z|^2 exceeds this: (20 K)^2 at the largest |c|.
     bail2: f32,
-    /// 2 sqrt(3) L |s| / (|s| - 1), and 1 / (|s| - 1).
-    reach: f32,
+    /// K for c = 0, which is 2 sqrt(3) L |s| / (|s| - 1), and 1 / (|s| - 1).
+    k_at_zero: f32,
     tail: f32,
     /// |s - 1| and |s|^(1 - iterations), of the classic estimate.
-    classic_reach: f32,
+    classic_offset: f32,
     classic_skin: f32,
 }
 
@@ -70,10 +70,10 @@ fn estimate(p: real3, most: u32) -> real {
     count_evaluation();
     count_iterations(n);
     if MANDELBOX_CLASSIC {
-        return (sqrt(z2) - real(mandelbox.classic_reach)) / w - real(mandelbox.classic_skin);
+        return (sqrt(z2) - real(mandelbox.classic_offset)) / w - real(mandelbox.classic_skin);
     }
     let tail = real(mandelbox.tail);
-    let bound = real(mandelbox.reach) + length(c) * tail;
+    let bound = real(mandelbox.k_at_zero) + length(c) * tail;
     if MANDELBOX_JULIA {
         return (sqrt(z2) - bound) / w;
     }

@@ -19,14 +19,15 @@ use crate::command::interrupt;
 use crate::command::print::say;
 use crate::command::progress::Progress;
 use crate::gpu::adapters::Choice;
-use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
+use crate::heightfield::conemap::generate::generator::{
+    GenerateError, Generator, Options, Quality,
+};
+use crate::heightfield::conemap::{ConeMap, MapKind};
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::pattern::Pattern;
-use crate::heightfield::tracer::Tracer;
-use crate::heightfield::tracer::TracerKind;
 use crate::heightfield::tracer::settings::{Supply, TracerSettings};
+use crate::heightfield::tracer::{Accuracy, Tracer, TracerKind};
 use crate::measure::tracer_stats::{first_hits, measure, view_rays};
 
 /// Fields by default.
@@ -49,25 +50,37 @@ const BUDGET: Duration = Duration::from_secs(10);
 const SEED: u32 = 7;
 const POWER: f64 = 2.6;
 
-/// Tracers, each with the cones that it is measured with. `exact` gives the same bits as `brute`.
-const PAIRS: [(TracerKind, Option<Generator>); 16] = [
-    (TracerKind::LinearBinary, None),
-    (TracerKind::CsmExact, Some(Generator::Exact)),
-    (TracerKind::CsmExact, Some(Generator::Improved)),
-    (TracerKind::CsmExact, Some(Generator::Center)),
-    (TracerKind::CsmLoop, Some(Generator::Exact)),
-    (TracerKind::CsmFixed, Some(Generator::Exact)),
-    (TracerKind::CsmScaled, Some(Generator::Exact)),
-    (TracerKind::Quad, Some(Generator::Quad)),
-    (TracerKind::RcsBinary, Some(Generator::RelaxedSearch)),
-    (TracerKind::RcsBinary, Some(Generator::RelaxedExact)),
-    (TracerKind::Secant, Some(Generator::Exact)),
-    (TracerKind::Secant, Some(Generator::Improved)),
-    (TracerKind::Secant, Some(Generator::RelaxedExact)),
-    (TracerKind::MaxMip, None),
-    (TracerKind::Walk, Some(Generator::Walk)),
-    (TracerKind::WalkRelaxed, Some(Generator::WalkRelaxed)),
+/// The cones of tracers that are measured with more than their default ones. `exact` gives the same
+/// bits as `brute`.
+const CHOSEN: [(TracerKind, Generator); 8] = [
+    (TracerKind::CsmExact, Generator::Exact),
+    (TracerKind::CsmExact, Generator::Improved),
+    (TracerKind::CsmExact, Generator::Center),
+    (TracerKind::RcsBinary, Generator::RelaxedSearch),
+    (TracerKind::RcsBinary, Generator::RelaxedExact),
+    (TracerKind::Secant, Generator::Exact),
+    (TracerKind::Secant, Generator::Improved),
+    (TracerKind::Secant, Generator::RelaxedExact),
 ];
+
+/// Tracers, each with the cones that it is measured with; the exact ones last. Those that may be
+/// off by a pixel are left out: rays without pixels have nothing to show of them.
+fn pairs() -> Vec<(TracerKind, Option<Generator>)> {
+    let accuracy = |kind: &TracerKind| kind.facts().accuracy;
+    let mut kinds = Vec::from(TracerKind::ALL);
+    kinds.retain(|kind| accuracy(kind) != Accuracy::Pixel);
+    kinds.sort_by_key(|kind| (accuracy(kind) == Accuracy::Exact, kind.needs_map()));
+    let mut pairs = Vec::new();
+    for kind in kinds {
+        let chosen = CHOSEN.iter().filter(|(of, _)| *of == kind);
+        let before = pairs.len();
+        pairs.extend(chosen.map(|(_, by)| (kind, Some(*by))));
+        if pairs.len() == before {
+            pairs.push((kind, TracerSettings::from(kind).generator()));
+        }
+    }
+    pairs
+}
 
 /// Options of `bench cones`.
 #[derive(Debug, Args)]
@@ -200,14 +213,14 @@ impl Measured<'_> {
     /// Rows of all tracers over all views.
     fn trace(&self, maps: &Maps) -> Result<Vec<TracerRow>> {
         let reference = Tracer::reference(self.surface.clone());
-        let mut rows = Vec::new();
+        let (mut rows, pairs) = (Vec::new(), pairs());
         let mut progress = Progress::start(&format!("tracing {}", self.note.field));
         for (i, view_deg) in VIEWS.into_iter().enumerate() {
             let rays = view_rays(&self.surface, f64::from(view_deg), RAYS);
             let truths = first_hits(&reference, &rays);
-            for (j, (kind, generator)) in PAIRS.into_iter().enumerate() {
-                let done = (i * PAIRS.len() + j) as f64;
-                let share = done / (VIEWS.len() * PAIRS.len()) as f64;
+            for (j, (kind, generator)) in pairs.iter().copied().enumerate() {
+                let done = (i * pairs.len() + j) as f64;
+                let share = done / (VIEWS.len() * pairs.len()) as f64;
                 progress.report(share, kind.name());
                 interrupt::check()?;
                 let map = maps.iter().find(|(g, _)| Some(*g) == generator);
@@ -246,8 +259,8 @@ fn mean_ratio(map: &ConeMap) -> f64 {
 /// Fills in the figures that compare a map with that of Dummer's rule by brute force.
 fn compare(rows: &mut [GeneratorRow], maps: &Maps) {
     // Branch and bound gives the same bits if brute force takes too long.
-    let same = [Generator::Brute, Generator::Exact];
-    let Some((_, exact)) = maps.iter().find(|(g, _)| same.contains(g)) else {
+    let same = |g: Generator| g.kind() == MapKind::Samples && g.facts().quality == Quality::Exact;
+    let Some((_, exact)) = maps.iter().find(|(g, _)| same(*g)) else {
         return;
     };
     for (generator, map) in maps {

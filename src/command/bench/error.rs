@@ -103,9 +103,9 @@ fn truths(
             continue;
         }
         let mut progress = Progress::start(&format!("rendering the truth of {what}"));
-        let (truth, kept) = cached(cache, plan, assets, &mut progress.watch())?;
+        let (truth, is_cached) = cached(cache, plan, assets, &mut progress.watch())?;
         drop(progress);
-        let kept = if kept { ", kept from before," } else { "" };
+        let kept = if is_cached { ", kept from before," } else { "" };
         let (stride, moved) = (truth.note.stride, 100.0 * truth.note.moved);
         say(&format!(
             "{name}: truth{kept} at {stride} of the estimate, {moved:.4} % of pixels still move"

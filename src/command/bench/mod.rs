@@ -1,4 +1,11 @@
 //! `conemarch bench`: the time that pictures take, and their errors.
+//!
+//! - [`error`]: run time against error, with [`setting`], what is measured, and [`row`]
+//! - [`steps`]: the work of every pass, with [`steps_row`]
+//! - [`cones`]: cone maps and tracers of heightfields, with [`cone_rows`]
+//! - [`calibrate`]: the fastest settings for a share of lost pixels
+//! - [`common`]: the options of measurements; [`runner`]: their renders
+//! - [`files`]: rows as files; [`table`]: as tables; [`plot`]: as a picture
 
 use clap::Subcommand;
 

@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::Args;
 use clap::builder::TypedValueParser;
 
-use crate::base::work::{State, Work};
+use crate::base::work::{Counts, State};
 use crate::command::arguments::words;
 use crate::command::bench::common::{Common, Subject, of_how_many};
 use crate::command::bench::runner::{COUNTED, RUNS, Runner, TIMED, median_of};
@@ -121,7 +121,7 @@ fn measure(
 }
 
 /// The figures of one pass's cells.
-fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
+fn count(work: &[Counts], states: &[u8], width: usize) -> StepsRow {
     let spent = work.iter().map(|w| w.evaluations);
     let mut spent: Vec<u32> = spent.filter(|n| *n > 0).collect();
     spent.sort_unstable();
@@ -157,7 +157,7 @@ fn count(work: &[Work], states: &[u8], width: usize) -> StepsRow {
 
 /// Evaluations of tiles whose lanes all run until the last one is done, over those that the
 /// lanes need. Lanes past the edge of the level idle too.
-fn waste(work: &[Work], width: usize, tile: [usize; 2]) -> f64 {
+fn waste(work: &[Counts], width: usize, tile: [usize; 2]) -> f64 {
     let height = work.len().checked_div(width).unwrap_or(0);
     let needed = |cell: usize| u64::from(work[cell].evaluations);
     let mut spent = 0;
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn cells_are_counted() {
-        let of = |n: u32| Work {
+        let of = |n: u32| Counts {
             evaluations: n,
             iterations: 10 * n,
         };

@@ -49,10 +49,10 @@ pub fn run(args: &Convert) -> Result<()> {
     let file = args.foreign.decode(&args.map, args.wrap)?;
     let format = args.writing.format(output, file.map.kind)?;
     interrupt::listen();
-    let kept = write(&file, &format, Sink::prepare(output)?)?;
+    let what_is_kept = write(&file, &format, Sink::prepare(output)?)?;
     let [w, h] = file.map.size;
     say(&format!(
-        "{}  {w} x {h}  {}, layout {}  {kept}",
+        "{}  {w} x {h}  {}, layout {}  {what_is_kept}",
         shown(output),
         file.map.kind.name(),
         format.layout.name(),

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::heightfield::conemap::WIDEST;
-use crate::heightfield::conemap::file::{Layout, MapFile, RatioScale, Slopes};
+use crate::heightfield::conemap::file::{Channel, MapFile, RatioScale, Slopes};
 use crate::heightfield::conemap::generate::generator::{Generator, Quality};
 use crate::heightfield::conemap::generate::slopes::slopes;
 use crate::heightfield::heights::wrap_name;
@@ -40,7 +40,7 @@ impl Sorted {
     }
 
     /// How many are under a bound.
-    fn under(&self, bound: f64) -> usize {
+    fn count_under(&self, bound: f64) -> usize {
         self.0.partition_point(|v| *v < bound)
     }
 }
@@ -116,7 +116,7 @@ pub fn describe_map(name: &str, file: &MapFile) -> String {
         "mean {mean} of the width ({texels} texels), wider cones counted as the width; median {median} texels"
     );
     let zeros = percent(ratios.zeros(), all);
-    let wide = percent(all - ratios.under(scale), all);
+    let wide = percent(all - ratios.count_under(scale), all);
     let range = format!("from {low} to {high}; {zeros} are 0, {wide} are {widest} or wider");
     let rows = [
         ("cone map", format!("{w} x {h}, kind {word}: {promise}")),
@@ -145,11 +145,11 @@ fn maker(label: Option<&str>) -> String {
 fn format_of(file: &MapFile) -> String {
     let (format, scale) = (&file.format, figure(file.label.scale));
     let layout = format.layout.name();
-    if format.layout == Layout::Full {
+    if format.layout.is_exr() {
         return format!("EXR, 32-bit floats, 1 means {scale} texels");
     }
-    let slopes = match (format.layout, format.slopes) {
-        (Layout::Dummer, Slopes::Half) => "half slopes, ",
+    let slopes = match format.slopes {
+        Slopes::Half if format.layout.has(Channel::SlopeX) => "half slopes, ",
         _ => "",
     };
     let ratios = match format.ratio {
@@ -187,7 +187,7 @@ fn octaves(ratios: &Sorted, scale: f64) -> Vec<(String, usize)> {
     let between = between.map(|pair| format!("{} to {}", short(pair[0]), short(pair[1])));
     let names = ["0".to_string(), format!("under {least}")].into_iter();
     let names = names.chain(between).chain([format!("{most} and wider")]);
-    let under = bounds.iter().map(|bound| ratios.under(*bound).max(zero));
+    let under = bounds.iter().map(|b| ratios.count_under(*b).max(zero));
     let counts: Vec<usize> = [0, zero].into_iter().chain(under).chain([all]).collect();
     let counts = counts.windows(2).map(|pair| pair[1] - pair[0]);
     let rows: Vec<(String, usize)> = names.zip(counts).collect();
@@ -221,7 +221,7 @@ pub fn describe_heights(name: &str, loaded: &Loaded) -> String {
     let bound = |i: usize| i as f64 / 10.0;
     let bars: [_; 10] = std::array::from_fn(|i| {
         let end = if i == 9 { f64::INFINITY } else { bound(i + 1) };
-        let n = sorted.under(end) - sorted.under(bound(i));
+        let n = sorted.count_under(end) - sorted.count_under(bound(i));
         (format!("{:.1} to {:.1}", bound(i), bound(i + 1)), n)
     });
     report(name, &rows, "heights", &bars, sorted.0.len())

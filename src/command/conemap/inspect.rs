@@ -47,7 +47,7 @@ pub fn run(args: &Inspect) -> Result<()> {
     let mut inputs = vec![("what it shows", path.to_path_buf())];
     inputs.extend(args.heights.iter().map(|h| ("the heights", h.into())));
     spared(&[("the picture", args.output.as_deref())], &inputs)?;
-    let picture = args.output.as_deref().map(prepared).transpose()?;
+    let picture = args.output.as_deref().map(picture_sink).transpose()?;
     // Fields have no file. The reader of heights reports a file that is neither.
     let is_map = args.foreign.is_given() || has_map(path).unwrap_or(false);
     let name = path.display().to_string();
@@ -82,8 +82,8 @@ pub fn run(args: &Inspect) -> Result<()> {
     Ok(())
 }
 
-/// The name of a picture, checked to be writable.
-fn prepared(path: &Path) -> Result<(PathBuf, Sink)> {
+/// The name of a picture and where it goes, checked to be writable.
+fn picture_sink(path: &Path) -> Result<(PathBuf, Sink)> {
     if ending(path) != "png" {
         return Err(usage(format!(
             "`{}` must end in .png, the format of these pictures",

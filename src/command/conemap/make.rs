@@ -119,11 +119,11 @@ pub fn run(args: &Make) -> Result<()> {
     progress.report(1.0, "the file");
     let file = MapFile::new(map, heights, patches, &made_by(generator, &options));
     interrupt::check()?;
-    let kept = write(&file, &format, sink)?;
+    let what_is_kept = write(&file, &format, sink)?;
     drop(progress);
     let [w, h] = file.map.size;
     say(&format!(
-        "{}  {w} x {h}  {} by {}, layout {}  {took:.0} ms  {kept}",
+        "{}  {w} x {h}  {} by {}, layout {}  {took:.0} ms  {what_is_kept}",
         shown(&output),
         file.map.kind.name(),
         generator.name(),
@@ -140,18 +140,20 @@ fn check_memory(generator: Generator, [w, h]: [u32; 2]) -> Result<()> {
 /// The generator's options. An option that the generator does not have is wrong usage.
 fn options(args: &Make) -> Result<Options> {
     let generator = args.generator;
-    let searches = generator == Generator::RelaxedSearch;
-    let cells = (generator.over_cells(), "walk and walk-relaxed");
-    let search = (searches, "relaxed-search");
-    for (given, option, (applies, owners)) in [
+    let (cells, steps): (fn(Generator) -> bool, fn(Generator) -> bool) =
+        (Generator::over_cells, Generator::counts_steps);
+    for (given, option, applies) in [
         (args.offset.is_some(), "offset", cells),
         (args.boxes, "boxes", cells),
-        (args.search_steps.is_some(), "search-steps", search),
+        (args.search_steps.is_some(), "search-steps", steps),
     ] {
-        if given && !applies {
-            let name = generator.name();
+        if given && !applies(generator) {
+            let owners = Generator::ALL.into_iter().filter(|g| applies(*g));
+            let owners: Vec<&str> = owners.map(Generator::name).collect();
             return Err(usage(format!(
-                "--{option} is for {owners}, and the generator is {name}; leave it out"
+                "--{option} is for {}, and the generator is {}; leave it out",
+                owners.join(" and "),
+                generator.name()
             )));
         }
     }
@@ -168,7 +170,7 @@ fn options(args: &Make) -> Result<Options> {
 /// The generator with its options, as the label of a map names it.
 fn made_by(generator: Generator, options: &Options) -> String {
     let mut words = generator.name().to_string();
-    if generator == Generator::RelaxedSearch {
+    if generator.counts_steps() {
         words.push_str(&format!(", {} steps", options.search_steps));
     }
     if options.min3x3 {

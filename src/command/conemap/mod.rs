@@ -1,4 +1,9 @@
 //! `conemarch conemap make|inspect|convert`
+//!
+//! - [`make`], [`inspect`], [`convert`]: the verbs; `options`: what they share
+//! - [`maker`]: makes maps on a device or on the CPU
+//! - `describe`: what is in a file, as text
+//! - `panels`: its channels as pictures; `sheet`: pictures side by side
 
 use clap::Subcommand;
 

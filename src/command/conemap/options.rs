@@ -14,8 +14,8 @@ use crate::command::print::say;
 use crate::command::sink::{Sink, ending, is_stdout};
 use crate::heightfield::conemap::MapKind;
 use crate::heightfield::conemap::file::{
-    Bits, ForeignFormat, Layout, MapFile, MapFormat, RatioScale, Slopes, decode, decode_bytes,
-    encode, has_map,
+    Bits, Channel, ForeignFormat, Layout, MapFile, MapFormat, RatioScale, Slopes, decode,
+    decode_bytes, encode, has_map,
 };
 use crate::heightfield::heights::wrap_name;
 use crate::heightfield::load::{LoadOptions, Loaded, load};
@@ -108,11 +108,7 @@ impl Foreign {
         }
         let foreign = self.from.map(|layout| ForeignFormat {
             layout,
-            kind: match layout {
-                Layout::Relief => MapKind::Relaxed,
-                Layout::Quad => MapKind::Quad,
-                _ => MapKind::Samples,
-            },
+            kind: layout.facts().foreign,
             ratio: self.from_ratio.unwrap_or(MapFormat::new(layout).ratio),
             wrap,
         });
@@ -159,7 +155,7 @@ impl Writing {
         let layout = match ending(output).as_str() {
             "exr" => Layout::Full,
             other if other == "png" || is_stdout(output) => {
-                self.layout.unwrap_or(Layout::usual(kind))
+                self.layout.unwrap_or(kind.facts().layout)
             }
             _ => {
                 return Err(usage(format!(
@@ -175,18 +171,19 @@ impl Writing {
             (self.depth.is_some(), "--depth"),
             (self.slopes.is_some(), "--slopes"),
         ]);
-        if let (Layout::Full, Some(option)) = (layout, given) {
+        if let (true, Some(option)) = (layout.is_exr(), given) {
             return Err(usage(format!(
                 "an EXR holds everything in 32 bits; leave out {option}, or write a .png"
             )));
         }
         layout.check(kind)?;
-        for (is_given, option, whose, owner) in [
-            (self.depth.is_some(), "--depth", "normals", Layout::Relief),
-            (self.slopes.is_some(), "--slopes", "slopes", Layout::Dummer),
+        for (is_given, option, whose, channel) in [
+            (self.depth.is_some(), "--depth", "normals", Channel::NormalX),
+            (self.slopes.is_some(), "--slopes", "slopes", Channel::SlopeX),
         ] {
-            if is_given && layout != owner {
-                let (owner, layout) = (owner.name(), layout.name());
+            if is_given && !layout.has(channel) {
+                let owner = Layout::ALL.into_iter().find(|l| l.has(channel));
+                let (owner, layout) = (owner.map_or("", Layout::name), layout.name());
                 return Err(usage(format!(
                     "{option} is for the {whose} of {owner}, and the layout is {layout}; leave it out, or add --layout {owner}"
                 )));
@@ -226,7 +223,7 @@ fn depth(text: &str) -> Result<f64, String> {
 
 /// The layouts of PNGs.
 fn layouts() -> impl TypedValueParser<Value = Layout> {
-    let png = Layout::ALL.into_iter().filter(|l| *l != Layout::Full);
+    let png = Layout::ALL.into_iter().filter(|l| !l.is_exr());
     words(png.map(|l| (l, l.name(), l.facts().about)))
 }
 
@@ -235,13 +232,7 @@ fn bits() -> impl TypedValueParser<Value = Bits> {
 }
 
 fn slopes() -> impl TypedValueParser<Value = Slopes> {
-    words(Slopes::ALL.map(|slopes| {
-        let help = match slopes {
-            Slopes::Whole => "slopes, as Dummer's shader takes them",
-            Slopes::Half => "half slopes, as Dummer's program stores them",
-        };
-        (slopes, slopes.name(), help)
-    }))
+    words(Slopes::ALL.map(|slopes| (slopes, slopes.name(), slopes.facts())))
 }
 
 fn ratio_scales() -> impl TypedValueParser<Value = RatioScale> {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::command::conemap::describe::steepness;
 use crate::command::conemap::sheet::{Bar, Panel};
-use crate::heightfield::conemap::file::{Layout, MapFile};
+use crate::heightfield::conemap::file::{Channel, MapFile};
 use crate::heightfield::conemap::generate::slopes::slopes;
 use crate::heightfield::heights::Heights;
 use crate::picture::heat;
@@ -102,9 +102,10 @@ pub fn map_panels(file: &MapFile) -> Vec<Panel> {
     for (channel, caption) in captions.iter().enumerate() {
         panels.push(ratio_panel(file, caption, channel));
     }
-    match (file.format.layout, file.shading.as_slice()) {
-        (Layout::Relief, [x, y]) => panels.push(normal_panel(size, &x.shares, &y.shares)),
-        (_, slopes) => {
+    let has_normals = file.format.layout.has(Channel::NormalX);
+    match file.shading.as_slice() {
+        [x, y] if has_normals => panels.push(normal_panel(size, &x.shares, &y.shares)),
+        slopes => {
             panels.extend(slopes.iter().map(|s| signed_panel(size, s.name, &s.shares)));
         }
     }

@@ -3,8 +3,12 @@
 //! A *place* is a sample of the height map, or a cell between samples. The *apex* of its cone
 //! is at the sample's height, or at the highest point of the cell. The *ratio* of a cone is
 //! its radius, in texels, at one whole height above the apex.
+//!
+//! - [`mod@file`]: cone maps in files
+//! - [`generate`]: the generators
 
 use crate::base::named::named_enum;
+use crate::heightfield::conemap::{file::Layout, generate::Generator};
 use crate::heightfield::heights::{Patches, cells};
 
 pub mod file;
@@ -19,6 +23,10 @@ pub struct KindFacts {
     pub channels: usize,
     /// What the cones promise, in words.
     pub promise: &'static str,
+    /// What makes such maps by default.
+    pub generator: Generator,
+    /// The PNG layout that such maps have by default.
+    pub layout: Layout,
 }
 
 named_enum! {
@@ -27,26 +35,46 @@ named_enum! {
         /// Apex on a sample; no other sample lies inside (Dummer 2006). The surface between
         /// the samples may.
         Samples = "samples" => KindFacts {
-            over_cells: false, channels: 1, promise: "apex on a sample, no other sample inside",
+            over_cells: false,
+            channels: 1,
+            promise: "apex on a sample, no other sample inside",
+            generator: Generator::Exact,
+            layout: Layout::Dummer,
         },
         /// As `Samples`, with one cone per side: +x, -x, +y, -y.
         Quad = "quad" => KindFacts {
-            over_cells: false, channels: 4, promise: "apex on a sample, one cone for each of four sides",
+            over_cells: false,
+            channels: 4,
+            promise: "apex on a sample, one cone for each of four sides",
+            generator: Generator::Quad,
+            layout: Layout::Quad,
         },
         /// Apex on a sample; a ray from above through the cone should meet the surface at
         /// most once (Policarpo and Oliveira 2007).
         Relaxed = "relaxed" => KindFacts {
-            over_cells: false, channels: 1, promise: "apex on a sample, a ray inside should cross the surface once",
+            over_cells: false,
+            channels: 1,
+            promise: "apex on a sample, a ray inside should cross the surface once",
+            generator: Generator::RelaxedExact,
+            layout: Layout::Relief,
         },
         /// Apex over a cell; the cells that rise above it keep clear by an offset (the cone
         /// walk). Proven for the surface between the samples.
         Walk = "walk" => KindFacts {
-            over_cells: true, channels: 1, promise: "apex over a cell, proven for the surface between the samples",
+            over_cells: true,
+            channels: 1,
+            promise: "apex over a cell, proven for the surface between the samples",
+            generator: Generator::Walk,
+            layout: Layout::Pair,
         },
         /// As `Walk`, for rays that go down: only the cells from which a ray can come out on
         /// the far side limit the cone.
         WalkRelaxed = "walk-relaxed" => KindFacts {
-            over_cells: true, channels: 1, promise: "apex over a cell, proven for rays that go down",
+            over_cells: true,
+            channels: 1,
+            promise: "apex over a cell, proven for rays that go down",
+            generator: Generator::WalkRelaxed,
+            layout: Layout::Pair,
         },
     }
 }

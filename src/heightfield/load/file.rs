@@ -15,7 +15,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::heightfield::Patches;
-use crate::heightfield::conemap::file::{Layout, decode_as, has_map};
+use crate::heightfield::conemap::file::{decode_as, has_map};
 use crate::heightfield::load::pattern_spec::read_size;
 use crate::heightfield::raster::open::{Format, Opened, open};
 use crate::heightfield::raster::{exr, png, tiff};
@@ -71,24 +71,19 @@ fn of_map(opened: Opened) -> Result<Grid, String> {
         ));
     }
     let (layout, name) = (file.format.layout, file.format.layout.name());
-    let channel = match layout {
-        Layout::Full => "the channel height",
-        Layout::Relief => "alpha, which holds depths",
-        Layout::Pair => "grey",
-        Layout::Dummer | Layout::Quad => "red",
-    };
     Ok(Grid {
         size: file.map.size,
         values,
-        form: match layout {
-            Layout::Full => "EXR, cone map".into(),
-            _ => format!(
+        form: match layout.is_exr() {
+            true => "EXR, cone map".into(),
+            false => format!(
                 "PNG, cone map, layout {name}, {} bit",
                 file.format.bits.count()
             ),
         },
         note: Some(format!(
-            "is a cone map of the layout `{name}`: its heights are taken, from {channel}"
+            "is a cone map of the layout `{name}`: its heights are taken, from {}",
+            layout.facts().heights
         )),
     })
 }

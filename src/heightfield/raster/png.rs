@@ -18,8 +18,8 @@ const MOST_TEXT: usize = 1 << 16;
 pub struct Pixels {
     /// Columns and rows.
     pub size: [u32; 2],
-    /// Channels kept, the first ones of the file.
-    pub kept: usize,
+    /// How many channels are kept, the first ones of the file.
+    pub kept_channels: usize,
     /// Channels of the file: 1 grey, 2 with alpha, 3 colour, 4 with alpha.
     pub channels: usize,
     /// The largest number: 255 or 65535.
@@ -39,7 +39,7 @@ impl Pixels {
     pub fn new(size: [u32; 2], channels: usize, most: u16, numbers: Vec<u16>) -> Self {
         Self {
             size,
-            kept: channels,
+            kept_channels: channels,
             channels,
             most,
             numbers,
@@ -51,7 +51,11 @@ impl Pixels {
 
     /// One of the kept channels.
     pub fn channel(&self, i: usize) -> impl Iterator<Item = u16> + '_ {
-        self.numbers.iter().skip(i).step_by(self.kept).copied()
+        self.numbers
+            .iter()
+            .skip(i)
+            .step_by(self.kept_channels)
+            .copied()
     }
 }
 
@@ -68,11 +72,11 @@ pub fn read(from: impl BufRead + Seek, most_kept: usize, keyword: &str) -> Resul
     let (color, depth) = reader.output_color_type();
     let bytes = usize::from(depth as u8).div_ceil(8);
     let channels = color.samples();
-    let kept = channels.min(most_kept);
+    let kept_channels = channels.min(most_kept);
     let most = if bytes == 2 { u16::MAX } else { 255 };
-    let numbers = Vec::with_capacity(size[0] as usize * size[1] as usize * kept);
+    let numbers = Vec::with_capacity(size[0] as usize * size[1] as usize * kept_channels);
     let mut pixels = Pixels {
-        kept,
+        kept_channels,
         text: text(&reader, keyword),
         ..Pixels::new(size, channels, most, numbers)
     };
@@ -85,7 +89,7 @@ pub fn read(from: impl BufRead + Seek, most_kept: usize, keyword: &str) -> Resul
         };
         for pixel in row.chunks_exact(bytes * channels) {
             let part = |i: usize| number(&pixel[i * bytes..(i + 1) * bytes]);
-            pixels.numbers.extend((0..kept).map(part));
+            pixels.numbers.extend((0..kept_channels).map(part));
             if channels >= 3 {
                 pixels.is_grey &= part(0) == part(1) && part(1) == part(2);
             }
@@ -158,7 +162,7 @@ fn text<R: BufRead + Seek>(reader: &Reader<R>, keyword: &str) -> Option<String> 
 /// In words: what the encoder or the writer said.
 pub fn write(to: impl Write, pixels: &Pixels, keyword: &str) -> Result<(), String> {
     let mut encoder = Encoder::new(to, pixels.size[0], pixels.size[1]);
-    encoder.set_color(match pixels.kept {
+    encoder.set_color(match pixels.kept_channels {
         1 => ColorType::Grayscale,
         2 => ColorType::GrayscaleAlpha,
         3 => ColorType::Rgb,

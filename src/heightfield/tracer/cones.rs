@@ -17,12 +17,12 @@
 
 use glam::DVec3;
 
-use crate::base::{named::named_enum, shader::Module, work::Work};
+use crate::base::{named::named_enum, shader::Module, work::Counts};
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{
     GridRay, LocalRay, Method, Step, Trace, Tracer, cone::cone_way, settings::TracerSettings,
 };
-use crate::heightfield::{MapKind, Patches, height_surface::TracerParameters, heights::bilinear};
+use crate::heightfield::{Patches, height_surface::TracerParameters, heights::bilinear};
 use crate::wgsl;
 
 named_enum! {
@@ -123,7 +123,7 @@ fn ratio(tracer: &Tracer, axis: DVec3, i: i64, j: i64) -> f64 {
     let heights = tracer.surface.heights();
     let (i, j) = (heights.index(0, i), heights.index(1, j));
     let at = (j * tracer.map.size[0] + i) as usize;
-    if tracer.map.kind != MapKind::Quad {
+    if tracer.map.kind.channels() == 1 {
         return tracer.map.ratios[at];
     }
     let side = if axis.x.abs() >= axis.y.abs() {
@@ -169,7 +169,7 @@ impl Method for Cones {
         };
     }
 
-    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Work) -> Step {
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Counts) -> Step {
         let Trace { s, end, .. } = *grid.trace;
         let node = grid.surface.node(grid.trace.cell, 0);
         let over = grid.over(&node);
@@ -201,10 +201,9 @@ impl Method for Cones {
         vec![
             wgsl!("heightfield/tracer/cone.wgsl"),
             wgsl!("heightfield/tracer/refine.wgsl"),
-            if tracer.map.kind == MapKind::Quad {
-                wgsl!("heightfield/tracer/cones_four.wgsl")
-            } else {
-                wgsl!("heightfield/tracer/cones_one.wgsl")
+            match tracer.map.kind.channels() {
+                1 => wgsl!("heightfield/tracer/cones_one.wgsl"),
+                _ => wgsl!("heightfield/tracer/cones_four.wgsl"),
             },
             wgsl!(
                 "heightfield/tracer/cones.wgsl",

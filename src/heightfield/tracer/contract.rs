@@ -13,12 +13,12 @@ use thiserror::Error;
 
 use crate::base::array::SceneArray;
 pub use crate::base::work::Step;
-use crate::base::{shader::Module, work::Work};
+use crate::base::{shader::Module, work::Counts};
 use crate::heightfield::conemap::generate::mips::stored;
 use crate::heightfield::height_surface::{HeightmapUniform, TracerParameters};
 use crate::heightfield::tracer::{
-    GridRay, cones::Lookup, grid::grid_begin, reference::Reference, settings::TracerSettings,
-    walk_mip::NodeCones,
+    GridRay, cones::Lookup, grid::grid_begin, reference::Reference, settings::Supply,
+    settings::TracerSettings, walk_mip::NodeCones,
 };
 use crate::heightfield::{ConeMap, HeightSurface, MapKind};
 
@@ -146,11 +146,16 @@ pub trait Method: Debug + Sync {
         TracerParameters::default()
     }
 
+    /// The cones of nodes, if it reads those: the supplied ones, or new ones.
+    fn nodes(&self, _: &HeightSurface, _: &Supply) -> Option<NodeCones> {
+        None
+    }
+
     /// Completes the state of a ray that starts.
     fn begin(&self, _: &Tracer, _: &LocalRay, _: &mut Trace) {}
 
     /// What a step does with a ray that is moving.
-    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Work) -> Step;
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Counts) -> Step;
 
     /// The WGSL modules of its own.
     fn modules(&self, tracer: &Tracer) -> Vec<Module>;
@@ -187,7 +192,7 @@ impl Tracer {
 
     /// One step of bounded work; a ray that has ended stays as it is. `work` gains one
     /// evaluation, and an iteration for each round of refinement.
-    pub fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Work) -> Step {
+    pub fn step(&self, ray: &LocalRay, trace: &mut Trace, work: &mut Counts) -> Step {
         if trace.state != Step::Moving {
             return trace.state;
         }

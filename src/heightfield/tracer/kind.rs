@@ -6,10 +6,9 @@ use crate::base::named::named_enum;
 use crate::heightfield::HeightSurface;
 use crate::heightfield::conemap::MapKind::{self, Relaxed, Samples};
 use crate::heightfield::tracer::settings::{Supply, TracerSettings};
-use crate::heightfield::tracer::walk_mip::{WalkMip, node_cones};
 use crate::heightfield::tracer::{
     Method, TraceError, Tracer, cone::check_map, cones, linear::LinearBinary,
-    max_mip::MaxMipTracer, relaxed::WalkRelaxed, walk::Walk,
+    max_mip::MaxMipTracer, relaxed::WalkRelaxed, walk::Walk, walk_mip,
 };
 
 /// How well a tracer finds the first hit.
@@ -48,7 +47,8 @@ pub struct TracerFacts {
     pub kinds: &'static [MapKind],
     /// What limits its steps.
     pub steps: Steps,
-    method: &'static dyn Method,
+    /// How it finds the first hit.
+    pub method: &'static dyn Method,
 }
 
 fn facts(
@@ -67,15 +67,17 @@ fn facts(
 
 named_enum! {
     /// A way to find where a ray first meets a height surface.
+    #[derive(Default)]
     pub enum TracerKind: TracerFacts {
         /// The cone walk.
+        #[default]
         Walk = "walk" => facts(Exact, &[MapKind::Walk], Cells, &Walk),
         /// The cone walk with relaxed cones.
         WalkRelaxed = "walk-relaxed" => facts(Exact, &[MapKind::WalkRelaxed], Cells, &WalkRelaxed),
         /// The cone walk over nodes as wide as a pixel, with the cones of cells.
-        WalkMip = "walk-mip" => facts(Pixel, &[MapKind::Walk], Cells, &WalkMip),
+        WalkMip = "walk-mip" => facts(Pixel, &[MapKind::Walk], Cells, &walk_mip::WALK_MIP),
         /// The cone walk over nodes as wide as a pixel, with the cones of nodes.
-        ConeMip = "cone-mip" => facts(Pixel, &[MapKind::Walk], Cells, &WalkMip),
+        ConeMip = "cone-mip" => facts(Pixel, &[MapKind::Walk], Cells, &walk_mip::CONE_MIP),
         /// Descent of the pyramid of maxima.
         MaxMip = "max-mip" => facts(Exact, &[], Pyramid, &MaxMipTracer),
         /// Equal steps, then bisection (Policarpo, Oliveira, Comba 2005).
@@ -103,6 +105,16 @@ impl TracerKind {
         !self.facts().kinds.is_empty()
     }
 
+    /// The first tracer of the list that finds every first hit and needs no cone map.
+    ///
+    /// # Panics
+    /// Never: the list has one.
+    pub fn exact_without_map() -> Self {
+        let exact = |kind: &Self| kind.facts().accuracy == Exact && !kind.needs_map();
+        let found = Self::ALL.into_iter().find(exact);
+        found.expect("an exact tracer without a map")
+    }
+
     /// Makes the tracer of a surface. `settings` gives its numbers; `pixel` is the distance from
     /// the eye at which a texel is as wide as a pixel.
     ///
@@ -115,21 +127,18 @@ impl TracerKind {
         settings: &TracerSettings,
         pixel: f64,
     ) -> Result<Arc<Tracer>, TraceError> {
-        let TracerFacts { kinds, method, .. } = self.facts();
+        let method = self.facts().method;
         let mut tracer = Tracer {
             lookup: settings.lookup,
             numbers: method.numbers(settings, pixel),
             method,
             ..Tracer::reference(surface.clone())
         };
-        if !kinds.is_empty() {
+        if self.needs_map() {
             let cones = cones.ok_or(TraceError::Missing(self.name()))?;
             check_map(self, surface, &cones.map)?;
             tracer.map = cones.map.clone();
-            if self == Self::ConeMip {
-                let nodes = cones.nodes.clone();
-                tracer.nodes = nodes.or_else(|| Some(node_cones(surface, &cones.map)));
-            }
+            tracer.nodes = method.nodes(surface, cones);
         }
         Ok(Arc::new(tracer))
     }

@@ -4,7 +4,7 @@
 //! The steps divide the part of the ray inside the block, so that they always reach its end.
 //! The tracer misses what is thinner than a step, and needs no map.
 
-use crate::base::{shader::Module, work::Work};
+use crate::base::{shader::Module, work::Counts};
 use crate::heightfield::height_surface::TracerParameters;
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{
@@ -32,7 +32,7 @@ impl Method for LinearBinary {
         trace.left = tracer.numbers.steps;
     }
 
-    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Work) -> Step {
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Counts) -> Step {
         let TracerParameters { steps, rounds, .. } = tracer.numbers;
         let Trace { s, end, left, .. } = *grid.trace;
         // Only the first step can begin under the surface.

@@ -7,7 +7,7 @@
 //! it goes on to where it comes down to the maximum, and looks at the child there. In a cell it
 //! solves the patch. The pyramid may have any size, and each tile begins one of its own.
 
-use crate::base::{shader::Module, work::Work};
+use crate::base::{shader::Module, work::Counts};
 use crate::heightfield::height_surface::Node;
 use crate::heightfield::tracer::{
     GridRay, LocalRay, Method, Step, Trace, Tracer, cone::WALK_TRUST,
@@ -30,7 +30,7 @@ impl Method for MaxMipTracer {
         trace.level = tracer.surface.maxima().coarsest();
     }
 
-    fn advance(&self, _: &Tracer, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+    fn advance(&self, _: &Tracer, grid: &mut GridRay<'_>, _work: &mut Counts) -> Step {
         let node = grid.surface.node(grid.trace.cell, grid.trace.level);
         let over = grid.over(&node);
         if over.gap <= 0.0 {

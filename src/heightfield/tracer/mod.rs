@@ -1,4 +1,14 @@
-//! Tracers: they find where a ray first meets a height surface. [`kind`] lists them.
+//! Tracers: they find where a ray first meets a height surface.
+//!
+//! - [`kind`]: the list of tracers, and what is known of each before it is made
+//! - `contract`: [`Tracer`] and [`Method`], what a scene asks, and the state of a ray
+//! - [`settings`]: which tracer a preset chooses, its cones, and its numbers
+//! - [`walk`], [`relaxed`]: the cone walk, and with relaxed cones; [`walk_mip`]: over distant nodes
+//! - [`max_mip`]: descent of the pyramid of maxima
+//! - [`cones`]: cone steps over samples; [`linear`]: equal steps
+//! - [`mod@reference`]: solves every cell; all others are measured against it
+//! - [`grid`]: a ray's way from cell to cell; [`cone`]: how far a cone lets it go on
+//! - [`mod@refine`]: from a bracket to a hit
 
 pub mod cone;
 pub mod cones;

@@ -4,7 +4,7 @@
 //! measured against it, and it is tested against closed forms. It has no shader of its own: on
 //! a GPU the cone walk with ratios of 0 visits the same cells.
 
-use crate::base::{shader::Module, work::Work};
+use crate::base::{shader::Module, work::Counts};
 use crate::heightfield::tracer::{GridRay, Method, Step, Tracer};
 
 /// Solves cell by cell.
@@ -12,7 +12,7 @@ use crate::heightfield::tracer::{GridRay, Method, Step, Tracer};
 pub struct Reference;
 
 impl Method for Reference {
-    fn advance(&self, _: &Tracer, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+    fn advance(&self, _: &Tracer, grid: &mut GridRay<'_>, _work: &mut Counts) -> Step {
         let node = grid.surface.node(grid.trace.cell, 0);
         let over = grid.over(&node);
         if grid.solve(over.to) {

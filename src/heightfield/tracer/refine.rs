@@ -8,7 +8,7 @@
 //! left, and solves these exactly. Over boxes every bracket is settled after its rounds: a
 //! point near a box does not tell whether the ray meets its top or its side.
 
-use crate::base::work::{Step, Work};
+use crate::base::work::{Counts, Step};
 use crate::heightfield::Patches;
 use crate::heightfield::tracer::GridRay;
 
@@ -43,7 +43,7 @@ pub fn refine(
     bracket: [f64; 2],
     how: Refine,
     rounds: u32,
-    work: &mut Work,
+    work: &mut Counts,
 ) -> Step {
     let (left, at) = match how {
         Refine::Settle => (bracket, bracket[1]),
@@ -66,7 +66,7 @@ fn refine_mark(grid: &mut GridRay<'_>, s: f64) -> Step {
 }
 
 /// The half of a bracket that is a bracket.
-fn halved(grid: &GridRay<'_>, [low, high]: [f64; 2], work: &mut Work) -> [f64; 2] {
+fn halved(grid: &GridRay<'_>, [low, high]: [f64; 2], work: &mut Counts) -> [f64; 2] {
     work.iterations += 1;
     let middle = 0.5 * (low + high);
     if refine_over(grid, middle) <= 0.0 {
@@ -76,12 +76,12 @@ fn halved(grid: &GridRay<'_>, [low, high]: [f64; 2], work: &mut Work) -> [f64; 2
     }
 }
 
-fn refine_binary(grid: &GridRay<'_>, from: [f64; 2], rounds: u32, work: &mut Work) -> Refined {
+fn refine_binary(grid: &GridRay<'_>, from: [f64; 2], rounds: u32, work: &mut Counts) -> Refined {
     let left = (0..rounds).fold(from, |left, _| halved(grid, left, work));
     (left, 0.5 * (left[0] + left[1]))
 }
 
-fn refine_secant(grid: &GridRay<'_>, from: [f64; 2], rounds: u32, work: &mut Work) -> Refined {
+fn refine_secant(grid: &GridRay<'_>, from: [f64; 2], rounds: u32, work: &mut Counts) -> Refined {
     let [mut low, mut high] = from;
     let mut above = refine_over(grid, low).max(0.0);
     let mut under = refine_over(grid, high).min(0.0);
@@ -105,7 +105,7 @@ fn refine_secant(grid: &GridRay<'_>, from: [f64; 2], rounds: u32, work: &mut Wor
     ([low, high], at)
 }
 
-fn refine_settle(grid: &mut GridRay<'_>, bracket: [f64; 2], work: &mut Work) -> Step {
+fn refine_settle(grid: &mut GridRay<'_>, bracket: [f64; 2], work: &mut Counts) -> Step {
     let [mut low, mut high] = bracket;
     for _ in 0..SETTLE_ROUNDS {
         if grid.cell(low) == grid.cell(high) {

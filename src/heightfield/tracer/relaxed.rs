@@ -9,7 +9,7 @@
 //! offset of the walk.) A rising ray may come out again anywhere. It goes from cell to cell, and
 //! over nodes of the pyramid of maxima that lie under it.
 
-use crate::base::{shader::Module, work::Work};
+use crate::base::{shader::Module, work::Counts};
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{GridRay, Method, Step, Tracer, cone::cone_end};
 use crate::wgsl;
@@ -34,7 +34,7 @@ fn relaxed_rise(grid: &mut GridRay<'_>) -> Step {
 }
 
 impl Method for WalkRelaxed {
-    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Work) -> Step {
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, work: &mut Counts) -> Step {
         let node = grid.surface.node(grid.trace.cell, 0);
         let over = grid.over(&node);
         if over.gap <= 0.0 && grid.solve(over.to) {

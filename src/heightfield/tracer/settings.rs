@@ -9,7 +9,7 @@ use crate::base::key::{Fault, Key, auto_count, auto_number, number, text, word};
 use crate::heightfield::conemap::file::{MapUse, read_map};
 use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
 use crate::heightfield::conemap::generate::{GenerateError, Generator, Options, cpu::generate};
-use crate::heightfield::tracer::walk_mip::{NodeCones, node_cones};
+use crate::heightfield::tracer::walk_mip::NodeCones;
 use crate::heightfield::tracer::{Accuracy, Steps, Tracer, TracerKind, cones::Lookup};
 use crate::heightfield::{
     ConeMap, HeightSurface, Heights, MapKind, Patches, height_surface::MOST_LEVELS,
@@ -80,7 +80,7 @@ impl From<Fault> for PrepareError {
 pub struct Supply {
     /// The map.
     pub map: Arc<ConeMap>,
-    /// The cones of nodes, for `cone-mip`.
+    /// The cones of nodes, for a tracer that reads those.
     pub nodes: Option<NodeCones>,
     /// What a file does not tell and is assumed, with the file's name.
     pub note: Option<String>,
@@ -135,7 +135,7 @@ pub struct TracerSettings {
 impl Default for TracerSettings {
     fn default() -> Self {
         Self {
-            tracer: TracerKind::Walk,
+            tracer: TracerKind::default(),
             map: "auto".into(),
             lookup: Lookup::Bilinear,
             steps: None,
@@ -211,15 +211,7 @@ impl TracerSettings {
         if self.map != "auto" {
             return Generator::named(&self.map);
         }
-        let defaults = [
-            Generator::Walk,
-            Generator::WalkRelaxed,
-            Generator::Exact,
-            Generator::Quad,
-            Generator::RelaxedExact,
-        ];
-        let first = self.kinds().first()?;
-        defaults.into_iter().find(|g| g.kind() == *first)
+        self.kinds().first().map(|kind| kind.facts().generator)
     }
 
     /// Checks that the tracer can use the cones, as far as names tell. Files are checked when
@@ -264,9 +256,7 @@ impl TracerSettings {
             Some(generator) => Supply::from(self.made(generator, surface, make)?),
             None => self.read(folder, surface)?,
         };
-        if self.tracer == TracerKind::ConeMip {
-            supply.nodes = Some(node_cones(surface, &supply.map));
-        }
+        supply.nodes = self.tracer.facts().method.nodes(surface, &supply);
         Ok(Some(supply))
     }
 

@@ -15,7 +15,7 @@
 //! that is farther. The patch of a cell is solved if the ray comes down to A in it. The offset
 //! makes cones wider: it uses that a step always reaches the exit.
 
-use crate::base::{shader::Module, work::Work};
+use crate::base::{shader::Module, work::Counts};
 use crate::heightfield::tracer::{GridRay, Method, Step, Tracer, cone::cone_end};
 use crate::wgsl;
 
@@ -24,7 +24,7 @@ use crate::wgsl;
 pub struct Walk;
 
 impl Method for Walk {
-    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, _work: &mut Counts) -> Step {
         let node = grid.surface.node(grid.trace.cell, 0);
         let over = grid.over(&node);
         if over.gap <= 0.0 && grid.solve(over.to) {

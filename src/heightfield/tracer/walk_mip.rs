@@ -20,11 +20,12 @@
 use std::sync::Arc;
 
 use crate::base::array::SceneArray;
-use crate::base::{shader::Module, work::Work};
+use crate::base::{shader::Module, work::Counts};
 use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, stored};
 use crate::heightfield::height_surface::{Node, TracerParameters};
 use crate::heightfield::tracer::cone::{WALK_TRUST, cone_end};
-use crate::heightfield::tracer::{GridRay, Method, Over, Step, Tracer, settings::TracerSettings};
+use crate::heightfield::tracer::settings::{Supply, TracerSettings};
+use crate::heightfield::tracer::{GridRay, Method, Over, Step, Tracer};
 use crate::heightfield::{ConeMap, HeightSurface};
 use crate::wgsl;
 
@@ -33,14 +34,22 @@ pub type NodeCones = Arc<Vec<ConeLevel>>;
 
 /// Makes the cones of nodes from a cone map of the walk. There are none for a map that was made
 /// for another surface.
-pub fn node_cones(surface: &HeightSurface, map: &ConeMap) -> NodeCones {
+fn node_cones(surface: &HeightSurface, map: &ConeMap) -> NodeCones {
     let levels = mips(&surface.maxima().levels[0].max, map);
     Arc::new(levels.unwrap_or_default())
 }
 
 /// The cone walk over nodes.
 #[derive(Debug)]
-pub struct WalkMip;
+pub struct WalkMip {
+    /// Whether it takes the cones of nodes instead of those of cells.
+    of_nodes: bool,
+}
+
+/// The walk with the cones of cells.
+pub const WALK_MIP: WalkMip = WalkMip { of_nodes: false };
+/// The walk with the cones of nodes.
+pub const CONE_MIP: WalkMip = WalkMip { of_nodes: true };
 
 /// The level whose nodes are as wide as a pixel at a parameter, or narrower by less than half.
 /// `lod` is the parameter at which a texel is as wide as a pixel; 0 for never.
@@ -86,7 +95,13 @@ impl Method for WalkMip {
         }
     }
 
-    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, _work: &mut Work) -> Step {
+    fn nodes(&self, surface: &HeightSurface, supply: &Supply) -> Option<NodeCones> {
+        let made = || node_cones(surface, &supply.map);
+        self.of_nodes
+            .then(|| supply.nodes.clone().unwrap_or_else(made))
+    }
+
+    fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, _work: &mut Counts) -> Step {
         grid.trace.level = walk_mip_level(grid.surface, tracer.numbers.lod, grid.trace.s);
         let node = grid.surface.node(grid.trace.cell, grid.trace.level);
         let over = grid.over(&node);

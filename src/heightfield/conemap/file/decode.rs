@@ -8,7 +8,7 @@ use std::path::Path;
 
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
 use crate::heightfield::conemap::file::{
-    Bits, Label, Layout, MapFile, MapFormat, RatioScale, Ratios, ShadingChannel, Slopes,
+    Bits, Channel, Label, Layout, MapFile, MapFormat, RatioScale, Ratios, ShadingChannel, Slopes,
     encode::SIDES, map_file::scale,
 };
 use crate::heightfield::raster::open::{Format, format_of, open};
@@ -101,15 +101,16 @@ fn from_png(file: impl BufRead + Seek, foreign: Option<&ForeignFormat>) -> Resul
         (None, None) => return Err(unlabelled(true)),
     };
     let layout = map_file.format.layout;
-    if layout == Layout::Full {
+    if layout.is_exr() {
         return Err("is a PNG, and its label says EXR; make the map again".into());
     }
     let channels = layout.facts().channels;
-    if pixels.channels != channels {
+    if pixels.channels != channels.len() {
         return Err(format!(
-            "has {} channels, and the layout `{}` has {channels}; was it saved again without alpha?",
+            "has {} channels, and the layout `{}` has {}; was it saved again without alpha?",
             pixels.channels,
-            layout.name()
+            layout.name(),
+            channels.len()
         ));
     }
     check_places(&map_file, pixels.size)?;
@@ -124,33 +125,25 @@ fn from_png(file: impl BufRead + Seek, foreign: Option<&ForeignFormat>) -> Resul
         scale: map_file.label.scale,
         reread: true,
     };
-    let ratios = |channel: usize| pixels.channel(channel).map(|n| numbers.ratio(n)).collect();
-    let heights = |channel: usize| pixels.channel(channel).map(|n| bits.height(n)).collect();
-    let shading = |channel: usize, name| ShadingChannel {
-        name,
-        shares: heights(channel),
-    };
-    map_file.map.ratios = match layout {
-        Layout::Relief => ratios(2),
-        Layout::Quad => pixels.numbers.iter().map(|n| numbers.ratio(*n)).collect(),
-        _ => ratios(1),
-    };
-    map_file.heights = match layout {
-        Layout::Quad => None,
-        // Turned as whole numbers, so that heights come back exactly.
-        Layout::Relief => Some(
-            pixels
-                .channel(3)
-                .map(|n| bits.height(bits.most() - n))
-                .collect(),
-        ),
-        _ => Some(heights(0)),
-    };
-    map_file.shading = match layout {
-        Layout::Dummer => vec![shading(2, "slope x"), shading(3, "slope y")],
-        Layout::Relief => vec![shading(0, "normal x"), shading(1, "normal y")],
-        _ => Vec::new(),
-    };
+    let held = pixels.numbers.iter().zip(channels.iter().cycle());
+    let ratios = held.filter(|(_, channel)| **channel == Channel::Ratio);
+    map_file.map.ratios = ratios.map(|(n, _)| numbers.ratio(*n)).collect();
+    for (i, channel) in channels.iter().enumerate() {
+        let shares = pixels.channel(i);
+        match channel {
+            Channel::Ratio => {}
+            Channel::Height => map_file.heights = Some(shares.map(|n| bits.height(n)).collect()),
+            // Turned as whole numbers, so that heights come back exactly.
+            Channel::Depth => {
+                let heights = shares.map(|n| bits.height(bits.most() - n));
+                map_file.heights = Some(heights.collect());
+            }
+            _ => map_file.shading.push(ShadingChannel {
+                name: channel.name(),
+                shares: shares.map(|n| bits.height(n)).collect(),
+            }),
+        }
+    }
     map_file.origin = Some(ratio);
     map_file.format.bits = bits;
     Ok(map_file)
@@ -191,7 +184,7 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
     let head = exr::head(&mut file, KEYWORD)?;
     let text = head.text.as_ref().ok_or_else(|| unlabelled(false))?;
     let mut map_file = label::read(text)?;
-    if map_file.format.layout != Layout::Full {
+    if !map_file.format.layout.is_exr() {
         return Err("is an EXR, and its label says PNG; make the map again".into());
     }
     check_places(&map_file, head.size)?;
@@ -228,7 +221,7 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
     map_file.map.ratios = ratios.collect();
     // Four ratios may come from a PNG, which has no room for heights beside them.
     map_file.heights = match kind {
-        MapKind::Quad if !head.channels.iter().any(|c| c == "height") => None,
+        _ if kind.channels() > 1 && !head.channels.iter().any(|c| c == "height") => None,
         _ => Some(channel("height")?),
     };
     if map_file.heights.iter().flatten().any(|z| *z > 1.0) {

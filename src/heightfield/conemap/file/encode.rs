@@ -3,7 +3,7 @@
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
 use crate::heightfield::conemap::file::shading::{half, normal_shares, whole};
 use crate::heightfield::conemap::file::{
-    Bits, Layout, MapFile, MapFormat, RatioScale, Ratios, Slopes, narrowed, rounding::share_down,
+    Bits, Channel, MapFile, MapFormat, RatioScale, Ratios, Slopes, narrowed, rounding::share_down,
 };
 use crate::heightfield::conemap::generate::slopes::slopes;
 use crate::heightfield::raster::{exr, png};
@@ -22,17 +22,17 @@ pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, FileError> 
     let fail = |why: String| layout.error(&why);
     layout.check(file.map.kind)?;
     let mut format = *format;
-    if layout == Layout::Full {
+    if layout.is_exr() {
         // Small numbers in f32 are as exact as large ones.
         format.ratio = RatioScale::Linear;
     }
     let text = label::write(file, &format).map_err(fail)?;
     let mut bytes = Vec::new();
-    let written = if layout == Layout::Full {
+    let written = if layout.is_exr() {
         exr::write(&mut bytes, file.map.size, floats(file), [KEYWORD, &text])
     } else {
         let numbers = numbers(file, &format).map_err(fail)?;
-        let channels = layout.facts().channels;
+        let channels = layout.facts().channels.len();
         let pixels = png::Pixels {
             text: Some(text),
             ..png::Pixels::new(file.map.size, channels, format.bits.most(), numbers)
@@ -73,7 +73,8 @@ fn numbers(file: &MapFile, format: &MapFormat) -> Result<Vec<u16>, String> {
         reread: file.origin == Some(format.ratio),
     };
     let map = &file.map;
-    if format.layout == Layout::Quad {
+    let layout = format.layout;
+    if !layout.has(Channel::Height) && !layout.has(Channel::Depth) {
         // No heights are in the file, so nothing rises.
         let numbers = map.ratios.iter().map(|r| ratios.ratio_down(*r));
         return Ok(numbers.collect());
@@ -89,31 +90,33 @@ fn numbers(file: &MapFile, format: &MapFormat) -> Result<Vec<u16>, String> {
         let reread = ratios.reread && r == *read;
         Ratios { reread, ..ratios }.ratio_down(r)
     });
-    let both = up.iter().copied().zip(cones);
     let slopes = || {
         // Of the heights themselves, not of their rounding.
         let surface = Heights::new(map.size, map.wrap, heights.to_vec());
         surface.map(|s| slopes(&s)).map_err(|e| e.to_string())
     };
-    Ok(match format.layout {
-        Layout::Dummer => {
-            let shares = match format.slopes {
-                Slopes::Half => half(&up, map.size, bits),
-                Slopes::Whole => slopes()?.into_iter().map(|s| whole(s, bits)).collect(),
-            };
-            let all = both.zip(shares);
-            all.flat_map(|((z, r), [x, y])| [z, r, x, y]).collect()
-        }
-        Layout::Relief => {
-            let depth = format.depth * file.label.scale;
-            let pixel = |((z, r), slope): ((u16, u16), [f32; 2])| {
-                let [x, y] = normal_shares(slope, depth).map(|n| bits.nearest(n));
-                [x, y, r, bits.most() - z]
-            };
-            both.zip(slopes()?).flat_map(pixel).collect()
-        }
-        _ => both.flat_map(|(z, r)| [z, r]).collect(),
-    })
+    let shading: Vec<[u16; 2]> = if layout.has(Channel::NormalX) {
+        let depth = format.depth * file.label.scale;
+        let normal = |slope| normal_shares(slope, depth).map(|n| bits.nearest(n));
+        slopes()?.into_iter().map(normal).collect()
+    } else if !layout.has(Channel::SlopeX) {
+        vec![[0; 2]; up.len()]
+    } else if format.slopes == Slopes::Half {
+        half(&up, map.size, bits)
+    } else {
+        slopes()?.into_iter().map(|s| whole(s, bits)).collect()
+    };
+    let pixels = up.iter().zip(cones).zip(shading);
+    let numbers = pixels.flat_map(|((z, ratio), [x, y])| {
+        layout.facts().channels.iter().map(move |held| match held {
+            Channel::Height => *z,
+            Channel::Depth => bits.most() - z,
+            Channel::Ratio => ratio,
+            Channel::SlopeX | Channel::NormalX => x,
+            Channel::SlopeY | Channel::NormalY => y,
+        })
+    });
+    Ok(numbers.collect())
 }
 
 /// Ratios of cones that stay empty when heights rise to their numbers.

@@ -19,14 +19,54 @@
 use crate::base::named::named_enum;
 use crate::heightfield::{FileError, MapKind};
 
+named_enum! {
+    /// What a channel of a PNG holds. Slopes and normals are only used for shading.
+    pub enum Channel {
+        /// A height.
+        Height = "height",
+        /// 1 less the height.
+        Depth = "depth",
+        /// A ratio.
+        Ratio = "ratio",
+        /// The slope along x.
+        SlopeX = "slope x",
+        /// The slope along y.
+        SlopeY = "slope y",
+        /// The normal's x.
+        NormalX = "normal x",
+        /// The normal's y.
+        NormalY = "normal y",
+    }
+}
+
 /// What is particular to a layout.
 #[derive(Clone, Copy, Debug)]
 pub struct LayoutFacts {
     /// What its channels hold, in words.
     pub about: &'static str,
-    /// Channels of a PNG, or 0 for an EXR.
-    pub channels: usize,
+    /// What each channel of a PNG holds; none for an EXR.
+    pub channels: &'static [Channel],
+    /// The channel with the heights, in words.
+    pub heights: &'static str,
+    /// What the cones of other programs promise in this layout.
+    pub foreign: MapKind,
+    /// Bits by default.
+    pub bits: Bits,
+    /// How numbers stand for ratios by default.
+    pub ratio: RatioScale,
 }
+
+use Channel::{Depth, Height, NormalX, NormalY, Ratio, SlopeX, SlopeY};
+
+/// As in most papers: 8 bits and a square root.
+const USUAL: LayoutFacts = LayoutFacts {
+    about: "",
+    channels: &[],
+    heights: "red",
+    foreign: MapKind::Samples,
+    bits: Bits::Eight,
+    ratio: RatioScale::Sqrt,
+};
 
 named_enum! {
     /// Which channels a file has, and what they mean.
@@ -34,31 +74,53 @@ named_enum! {
         /// Height, ratio and slopes (Dummer 2006).
         Dummer = "dummer" => LayoutFacts {
             about: "RGBA: height, ratio, slope x, slope y",
-            channels: 4,
+            channels: &[Height, Ratio, SlopeX, SlopeY],
+            ..USUAL
         },
-        /// Normal, ratio and depth (Policarpo and Oliveira 2007).
+        /// Normal, ratio and depth (Policarpo and Oliveira 2007), whose shader takes the ratio
+        /// as it is.
         Relief = "relief" => LayoutFacts {
             about: "RGBA: normal x, normal y, ratio, depth",
-            channels: 4,
+            channels: &[NormalX, NormalY, Ratio, Depth],
+            heights: "alpha, which holds depths",
+            foreign: MapKind::Relaxed,
+            ratio: RatioScale::Linear,
+            ..USUAL
         },
-        /// Height and ratio.
-        Pair = "pair" => LayoutFacts { about: "grey and alpha: height, ratio", channels: 2 },
+        /// Height and ratio: in no paper, and with 16 bits.
+        Pair = "pair" => LayoutFacts {
+            about: "grey and alpha: height, ratio",
+            channels: &[Height, Ratio],
+            heights: "grey",
+            bits: Bits::Sixteen,
+            ..USUAL
+        },
         /// Four ratios.
-        Quad = "quad" => LayoutFacts { about: "RGBA: ratios to +x, -x, +y, -y", channels: 4 },
+        Quad = "quad" => LayoutFacts {
+            about: "RGBA: ratios to +x, -x, +y, -y",
+            channels: &[Ratio; 4],
+            foreign: MapKind::Quad,
+            ..USUAL
+        },
         /// Everything in f32.
-        Full = "full" => LayoutFacts { about: "EXR: everything", channels: 0 },
+        Full = "full" => LayoutFacts {
+            about: "EXR: everything",
+            heights: "the channel height",
+            ratio: RatioScale::Linear,
+            ..USUAL
+        },
     }
 }
 
 impl Layout {
-    /// The PNG layout that a kind of map has by default.
-    pub fn usual(kind: MapKind) -> Self {
-        match kind {
-            MapKind::Samples => Self::Dummer,
-            MapKind::Relaxed => Self::Relief,
-            MapKind::Quad => Self::Quad,
-            MapKind::Walk | MapKind::WalkRelaxed => Self::Pair,
-        }
+    /// Whether it is that of an EXR.
+    pub fn is_exr(self) -> bool {
+        self.facts().channels.is_empty()
+    }
+
+    /// Whether a PNG has a channel.
+    pub fn has(self, channel: Channel) -> bool {
+        self.facts().channels.contains(&channel)
     }
 
     /// Checks that the layout can hold a kind of map.
@@ -75,12 +137,12 @@ impl Layout {
 
     /// Why the layout cannot hold a kind of map, if it cannot.
     pub fn lacks(self, kind: MapKind) -> Option<&'static str> {
-        let quad = kind == MapKind::Quad;
-        match self {
-            Self::Full => None,
-            Self::Quad => (!quad).then_some("holds four ratios, and the map has one"),
-            _ if quad => Some("holds one ratio, and the map has four; take quad or full"),
-            Self::Dummer | Self::Relief if kind.over_cells() => Some(
+        let ratios = self.facts().channels.iter().filter(|c| **c == Ratio);
+        match (ratios.count(), kind.channels()) {
+            (0, _) => None,
+            (4, 1) => Some("holds four ratios, and the map has one"),
+            (1, 4) => Some("holds one ratio, and the map has four; take quad or full"),
+            _ if kind.over_cells() && (self.has(SlopeX) || self.has(NormalX)) => Some(
                 "holds what belongs to samples, and a walk's map is of cells; take pair or full",
             ),
             _ => None,
@@ -108,14 +170,14 @@ impl Bits {
 }
 
 named_enum! {
-    /// What the slopes of [`Layout::Dummer`] mean.
-    pub enum Slopes {
+    /// What slopes mean.
+    pub enum Slopes: &'static str {
         /// As Dummer's text and shader take them: 0.5 is flat, and 0 and 1 are half
         /// the height down or up over one texel.
-        Whole = "whole",
+        Whole = "whole" => "slopes, as Dummer's shader takes them",
         /// As his program stores them (appendix B): half of the differences of the file's own
         /// heights, and half of that at borders, which never wrap; 127 of 255 is flat.
-        Half = "half",
+        Half = "half" => "half slopes, as Dummer's program stores them",
     }
 }
 
@@ -145,19 +207,12 @@ pub struct MapFormat {
 }
 
 impl MapFormat {
-    /// A layout as in the papers: 8 bits and a square root, but for `relief`, whose
-    /// shader takes the ratio as it is. `pair` is in no paper and has 16 bits.
+    /// A layout with its defaults.
     pub fn new(layout: Layout) -> Self {
         Self {
             layout,
-            bits: match layout {
-                Layout::Pair => Bits::Sixteen,
-                _ => Bits::Eight,
-            },
-            ratio: match layout {
-                Layout::Relief | Layout::Full => RatioScale::Linear,
-                _ => RatioScale::Sqrt,
-            },
+            bits: layout.facts().bits,
+            ratio: layout.facts().ratio,
             // The surface is a quarter as deep as it is wide; deeper ones are rare.
             depth: 0.25,
             slopes: Slopes::Whole,

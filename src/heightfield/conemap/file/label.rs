@@ -5,7 +5,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::heightfield::conemap::file::map_file::scale;
-use crate::heightfield::conemap::file::{Label, Layout, MapFile, MapFormat, RatioScale, Slopes};
+use crate::heightfield::conemap::file::{
+    Channel, Label, Layout, MapFile, MapFormat, RatioScale, Slopes,
+};
 use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
 use crate::heightfield::heights::{MOST_SAMPLES, wrap_name, wrap_named};
 use crate::heightfield::{ConeMap, MapKind, Patches};
@@ -50,7 +52,8 @@ pub(crate) fn write(file: &MapFile, format: &MapFormat) -> Result<String, String
     let map = &file.map;
     let label = &file.label;
     // The numbers of a PNG are their own origin.
-    let origin = file.origin.filter(|_| format.layout == Layout::Full);
+    let origin = file.origin.filter(|_| format.layout.is_exr());
+    let has_slopes = format.layout.has(Channel::SlopeX);
     let text = Text {
         version: VERSION,
         kind: map.kind.name().into(),
@@ -62,7 +65,7 @@ pub(crate) fn write(file: &MapFile, format: &MapFormat) -> Result<String, String
         samples: label.samples,
         surface: label.patches.name().into(),
         from_ratio: origin.map(|origin| origin.name().into()),
-        slopes: (format.layout == Layout::Dummer).then(|| format.slopes.name().into()),
+        slopes: has_slopes.then(|| format.slopes.name().into()),
         heights_sha256: label.digest.clone(),
         generator: label.generator.clone(),
     };
@@ -116,10 +119,10 @@ pub(crate) fn read(text: &str) -> Result<MapFile, String> {
     if !room {
         return Err(wrong("offset", &text.offset.to_string()));
     }
-    if text.slopes.is_some() && layout != Layout::Dummer {
+    if text.slopes.is_some() && !layout.has(Channel::SlopeX) {
         return Err(wrong("slopes", "for a layout without"));
     }
-    if origin.is_some() && layout != Layout::Full {
+    if origin.is_some() && !layout.is_exr() {
         return Err(wrong("from_ratio", "for a layout of numbers"));
     }
     if text.samples.iter().any(|n| !(1..=MOST_SAMPLES).contains(n)) {

@@ -7,13 +7,13 @@
 //! code leaves out the corners beyond two borders.
 
 use crate::base::shader::Module;
-use crate::heightfield::conemap::generate::{Apex, Best, Cost, MapTask, Method, rings};
+use crate::heightfield::conemap::generate::{Apex, Best, ConeSearch, Cost, MapTask, rings};
 use crate::wgsl;
 
 /// The search in rings.
 pub struct BruteForce;
 
-impl Method for BruteForce {
+impl ConeSearch for BruteForce {
     fn modules(&self, task: &MapTask<'_>) -> Vec<Module> {
         vec![
             task.cost().module(1.0),

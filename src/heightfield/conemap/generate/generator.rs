@@ -5,7 +5,7 @@ use thiserror::Error;
 use crate::base::named::named_enum;
 use crate::heightfield::conemap::MapKind::{self, Relaxed, Samples};
 use crate::heightfield::conemap::generate::{
-    Method, brute::BruteForce, quick::Quick, relaxed::RaySearch, search,
+    ConeSearch, brute::BruteForce, quick::Quick, relaxed::RaySearch, search,
 };
 
 /// How the cones of a generator compare with the widest that their kind allows.
@@ -28,11 +28,11 @@ pub struct GeneratorFacts {
     /// How wide its cones are.
     pub quality: Quality,
     /// How it searches.
-    pub method: &'static dyn Method,
+    pub method: &'static dyn ConeSearch,
 }
 
 impl GeneratorFacts {
-    fn new(kind: MapKind, quality: Quality, method: &'static dyn Method) -> Self {
+    fn new(kind: MapKind, quality: Quality, method: &'static dyn ConeSearch) -> Self {
         Self {
             kind,
             quality,
@@ -89,6 +89,11 @@ impl Generator {
     pub fn channels(self) -> usize {
         self.kind().channels()
     }
+
+    /// Whether it follows rays in [`Options::search_steps`] steps.
+    pub fn counts_steps(self) -> bool {
+        self.facts().method.counts_steps()
+    }
 }
 
 /// Most steps of a search along a ray: several to each texel of the longest axis.
@@ -102,7 +107,7 @@ pub const MOST_OFFSET: f64 = 1e3;
 /// Options of the generators.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Steps along each ray of `RelaxedSearch`, 1 to [`MOST_SEARCH_STEPS`].
+    /// Steps along each ray that a generator follows, 1 to [`MOST_SEARCH_STEPS`].
     pub search_steps: u32,
     /// Room that the cones of a walk leave, in texels, [`LEAST_OFFSET`] to [`MOST_OFFSET`].
     pub offset: f64,

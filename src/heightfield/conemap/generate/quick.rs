@@ -19,7 +19,7 @@
 
 use crate::base::shader::Module;
 use crate::heightfield::conemap::generate::grid_distance::{Interval, Neighbour, neighbours, node};
-use crate::heightfield::conemap::generate::{Apex, Best, Cost, MapTask, Method, SearchState};
+use crate::heightfield::conemap::generate::{Apex, Best, ConeSearch, Cost, MapTask, SearchState};
 use crate::heightfield::{Heights, Patches, heights::Axis};
 use crate::wgsl;
 
@@ -102,7 +102,7 @@ fn cost(quarters: u32, rise: f64) -> f64 {
     Cost::Cone.of(quarters, UNITS * rise)
 }
 
-impl Method for Quick {
+impl ConeSearch for Quick {
     fn pyramids(&self, _: &Heights, _: Option<Patches>, values: &[f32]) -> Vec<Vec<f32>> {
         vec![values.to_vec()]
     }

@@ -15,7 +15,7 @@
 use crate::base::shader::Module;
 use crate::heightfield::Patches;
 use crate::heightfield::conemap::generate::{
-    Apex, Best, Cost, MapTask, Method, SearchState, brute::beside, rings,
+    Apex, Best, ConeSearch, Cost, MapTask, SearchState, brute::beside, rings,
 };
 use crate::wgsl;
 use glam::DVec2;
@@ -26,7 +26,7 @@ pub const START: f64 = 1.001;
 /// The search along rays.
 pub struct RaySearch;
 
-impl Method for RaySearch {
+impl ConeSearch for RaySearch {
     fn modules(&self, task: &MapTask<'_>) -> Vec<Module> {
         vec![
             task.cost().module(1.0),
@@ -36,6 +36,10 @@ impl Method for RaySearch {
                 "RELAXED_START" = START
             ),
         ]
+    }
+
+    fn counts_steps(&self) -> bool {
+        true
     }
 
     fn search(&self, task: &MapTask<'_>, _: usize, from: Apex, best: &mut Best) {

@@ -12,7 +12,9 @@
 
 use crate::base::shader::Module;
 use crate::heightfield::conemap::generate::grid_distance::{GridDistance, Sector, neighbours};
-use crate::heightfield::conemap::generate::{Apex, Cost, MapTask, Method, falling, planes::Planes};
+use crate::heightfield::conemap::generate::{
+    Apex, ConeSearch, Cost, MapTask, falling, planes::Planes,
+};
 use crate::heightfield::{Heights, MaxMip, Patches};
 use crate::wgsl;
 
@@ -50,7 +52,7 @@ impl BranchAndBound {
     }
 }
 
-impl Method for BranchAndBound {
+impl ConeSearch for BranchAndBound {
     fn sectors(&self) -> &'static [Sector] {
         self.sectors
     }

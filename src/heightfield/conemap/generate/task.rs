@@ -3,7 +3,7 @@
 
 use crate::base::shader::Program;
 use crate::heightfield::conemap::generate::{
-    Apex, Best, Cost, GenerateError, Generator, Method, Options, planes::Planes,
+    Apex, Best, ConeSearch, Cost, GenerateError, Generator, Options, planes::Planes,
 };
 use crate::heightfield::{ConeMap, Heights, MaxMip, Patches, heights::Axis};
 use crate::wgsl;
@@ -13,7 +13,7 @@ pub struct MapTask<'a> {
     /// Which generator.
     pub generator: Generator,
     /// How it searches.
-    pub method: &'static dyn Method,
+    pub method: &'static dyn ConeSearch,
     /// Its options.
     pub options: Options,
     /// The height map.

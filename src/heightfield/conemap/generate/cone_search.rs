@@ -13,8 +13,8 @@ pub struct Apex {
     pub height: f64,
 }
 
-/// A method of search: on the CPU in f64, and on a device by the WGSL of [`Method::modules`].
-pub trait Method: Sync {
+/// A method of search: on the CPU in f64, and on a device by the WGSL of [`ConeSearch::modules`].
+pub trait ConeSearch: Sync {
     /// The searches of a place: which places each of them looks at. Their number is that of
     /// the cones of a place, or a multiple of it; then several searches narrow one cone.
     fn sectors(&self) -> &'static [Sector] {
@@ -28,13 +28,18 @@ pub trait Method: Sync {
         Vec::new()
     }
 
+    /// Whether it follows rays in [`search_steps`](super::Options::search_steps) steps.
+    fn counts_steps(&self) -> bool {
+        false
+    }
+
     /// Whether planes above the heights speed it up.
     fn uses_planes(&self) -> bool {
         false
     }
 
     /// Searches from an apex and lowers the best to the least cost that is found. `search`
-    /// counts the [`Method::sectors`].
+    /// counts the [`ConeSearch::sectors`].
     fn search(&self, task: &MapTask<'_>, search: usize, from: Apex, best: &mut Best);
 
     /// The WGSL modules of the search.
