@@ -59,6 +59,23 @@ impl<T, W: Fn(&T) -> Value, R: Fn(&Value) -> Option<T>> Slot for Place<'_, T, W,
     }
 }
 
+/// The most that a new value of a key makes again. Each includes those before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Redo {
+    /// Nothing in the picture.
+    Nothing,
+    /// The bytes of the colours.
+    Tone,
+    /// The colours of the hits.
+    Color,
+    /// Cones and rays.
+    March,
+    /// Programs are compiled, if they are new.
+    Program,
+    /// Heights, cone maps or textures are loaded or made.
+    Assets,
+}
+
 /// One setting of a part of a Plan.
 pub struct Key<'a> {
     /// Its name in presets and `--set`.
@@ -67,6 +84,8 @@ pub struct Key<'a> {
     pub help: &'static str,
     /// Where its value is stored.
     pub slot: Box<dyn Slot + 'a>,
+    /// What a new value makes again, if it is not what most keys of the section do.
+    pub redo: Option<Redo>,
 }
 
 impl<'a> Key<'a> {
@@ -76,28 +95,42 @@ impl<'a> Key<'a> {
             name,
             help,
             slot: Box::new(slot),
+            redo: None,
+        }
+    }
+
+    /// The key with what a new value makes again.
+    pub fn redoing(self, redo: Redo) -> Self {
+        Self {
+            redo: Some(redo),
+            ..self
         }
     }
 }
 
-/// Makes a list of [`Key`]s from lines of the form `"name" = slot, "help";`.
+/// Makes a list of [`Key`]s from lines of the form `"name" = slot, "help";` or
+/// `"name" = slot, "help" => Redo;`.
 #[macro_export]
 macro_rules! keys {
-    ($($name:literal = $slot:expr, $help:expr;)*) => {
-        vec![$($crate::base::key::Key::new($name, $slot, $help)),*]
+    ($($name:literal = $slot:expr, $help:expr $(=> $redo:ident)?;)*) => {
+        vec![$(
+            $crate::base::key::Key::new($name, $slot, $help)
+                $(.redoing($crate::base::key::Redo::$redo))?
+        ),*]
     };
 }
 
 /// Declares one part of a Plan: the struct, its defaults and its keys.
 ///
-/// A line has the form `field: Type = default, slot(limits), "help";`. The key is called like
-/// the field, and the help text also documents the field.
+/// A line has the form `field: Type = default, slot(limits), "help";` or ends with
+/// `"help" => Redo;` ([`Redo`](crate::base::key::Redo)). The key is called like the field, and
+/// the help text also documents the field.
 #[macro_export]
 macro_rules! settings {
     (
         $(#[$doc:meta])*
         pub struct $part:ident {
-            $($name:ident: $type:ty = $default:expr, $slot:ident($($limit:expr),*), $help:literal;)*
+            $($name:ident: $type:ty = $default:expr, $slot:ident($($limit:expr),*), $help:literal $(=> $redo:ident)?;)*
         }
     ) => {
         $(#[$doc])*
@@ -119,7 +152,7 @@ macro_rules! settings {
                     stringify!($name),
                     $slot(&mut self.$name $(, $limit)*),
                     $help,
-                )),*]
+                )$(.redoing($crate::base::key::Redo::$redo))?),*]
             }
         }
     };

@@ -68,10 +68,10 @@ settings! {
         fixed_radius: f64 = 1.0, number(1e-6, 1e3), "outer radius of the ball fold";
         fold_limit: f64 = 1.0, number(1e-3, 1e3), "half edge of the box at whose sides the box fold mirrors points";
         rotation: DVec3 = DVec3::ZERO, triple(-360.0, 360.0),
-            "rotation about x, then y, then z in degrees, between the folds and the scale";
-        julia: bool = false, switch(), "whether each iteration adds julia_constant instead of the starting point";
+            "rotation about x, then y, then z in degrees, between the folds and the scale" => Program;
+        julia: bool = false, switch(), "whether each iteration adds julia_constant instead of the starting point" => Program;
         julia_constant: DVec3 = DVec3::ZERO, triple(-1e3, 1e3), "the constant that each iteration adds if julia is true";
-        estimate: Estimate = Estimate::Proven, word(&Estimate::WORDS), "the distance estimate: the proven one, or for comparison the classic one of other programs";
+        estimate: Estimate = Estimate::Proven, word(&Estimate::WORDS), "the distance estimate: the proven one, or for comparison the classic one of other programs" => Program;
         lipschitz: Option<f64> = None, auto_number(0.05, 100.0),
             "Lipschitz constant, the largest change of the estimate per unit of distance; steps are divided by it; auto is the formula's own";
     }

@@ -67,9 +67,9 @@ impl HeightfieldSettings {
         let mut keys = self.source.keys();
         keys.extend(keys![
             "surface" = word(&mut self.patches, &Patches::WORDS),
-                "the surface between the samples: a bilinear patch over each cell, or each sample as a flat box";
+                "the surface between the samples: a bilinear patch over each cell, or each sample as a flat box" => Assets;
             "tiles" = counts(&mut self.tiles, 1, 256),
-                "number of copies of the map along x and y";
+                "number of copies of the map along x and y" => Assets;
             "width" = number(&mut self.width, 1e-6, 1e6),
                 "world length of the block's longer side";
             "depth" = number(&mut self.depth, 1e-6, 1e6),
@@ -79,9 +79,9 @@ impl HeightfieldSettings {
             "turn" = triple(&mut self.turn, -360.0, 360.0),
                 "rotation in degrees about x, then y, then z";
             "paint" = word(&mut self.paint, PAINTS),
-                "what picks the colour from the palette: the height, or the width of the cones that this generator makes";
+                "what picks the colour from the palette: the height, or the width of the cones that this generator makes" => Assets;
             "texture" = text(&mut self.texture),
-                "a PNG, JPEG or WebP that colours each tile in place of the palette; \"none\" for none";
+                "a PNG, JPEG or WebP that colours each tile in place of the palette; \"none\" for none" => Assets;
         ]);
         keys.extend(self.tracing.keys());
         keys

@@ -42,13 +42,13 @@ impl Source {
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
             "field" = text(&mut self.field),
-                "a built-in pattern like fbm:512x512,seed=7,power=2.6, or the file of a height map";
+                "a built-in pattern like fbm:512x512,seed=7,power=2.6, or the file of a height map" => Assets;
             "invert" = switch(&mut self.options.invert),
-                "whether the numbers of the map are depths instead of heights";
+                "whether the numbers of the map are depths instead of heights" => Assets;
             "normalize" = switch(&mut self.options.normalize),
-                "whether to stretch the heights to the range from 0 to 1";
+                "whether to stretch the heights to the range from 0 to 1" => Assets;
             "wrap" = word(&mut self.options.wrap, &WRAPS),
-                "axes along which the map repeats";
+                "axes along which the map repeats" => Assets;
         ]
     }
 

@@ -19,15 +19,15 @@ settings! {
         light_color: DVec3 = DVec3::new(1.0, 0.90, 0.76), triple(0.0, 1.0), "colour of the light, sRGB";
         key: f64 = 1.7, number(0.0, 100.0), "strength of the light";
         fill: f64 = 1.6, number(0.0, 100.0), "strength of the light from the sky";
-        shadow: bool = true, switch(), "whether the light casts shadows";
+        shadow: bool = true, switch(), "whether the light casts shadows" => Program;
         light_size: f64 = 2.0, number(0.05, 45.0), "angular radius of the light in degrees; a larger one makes softer shadows";
         shadow_steps: Option<u32> = None, auto_count(1, MOST_SHADOW_STEPS),
             "step limit of a shadow ray, which goes from a hit to the light; auto is 96 for a formula, and over a heightfield as many as a ray can need, from 96 to 2048; a formula allows at most 512";
-        occlusion: f64 = 1.0, number(0.0, 2.0), "strength of ambient occlusion, which darkens hollows; 0 for none";
+        occlusion: f64 = 1.0, number(0.0, 2.0), "strength of ambient occlusion, which darkens hollows; 0 for none" => Program;
         occlusion_reach: f64 = 0.05, number(1e-4, 1.0),
             "how far ambient occlusion looks for neighbours, as a share of the distance from eye to target";
         fog: f64 = 0.0, number(0.0, 20.0),
-            "density of the fog: at the distance from eye to target, the share exp(-fog) of a colour is left; 0 for none";
+            "density of the fog: at the distance from eye to target, the share exp(-fog) of a colour is left; 0 for none" => Program;
         gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights, 0 for none";
         sky_high: DVec3 = DVec3::new(0.30, 0.42, 0.58), triple(0.0, 1.0), "colour of the sky overhead, sRGB";
         sky_low: DVec3 = DVec3::new(0.80, 0.77, 0.73), triple(0.0, 1.0), "colour of the sky below, sRGB";
@@ -39,7 +39,7 @@ settings! {
             DVec3::new(0.44, 0.55, 0.54),
         ], triples(MOST_STOPS, 0.0, 1.0), "colours of the surface, sRGB; the height picks one, or the orbit trap of a formula: how near the iterated point comes to given shapes";
         palette_cycles: f64 = 1.7, number(0.01, 100.0), "how many times the palette is passed through, in turns forwards and backwards";
-        exposure: f64 = 0.0, number(-20.0, 20.0), "brightness in stops; each stop doubles the light";
+        exposure: f64 = 0.0, number(-20.0, 20.0), "brightness in stops; each stop doubles the light" => Tone;
         flag_unconverged: bool = false, switch(),
             "whether pixels are magenta if their ray or their shadow ray reached its step limit; the default is true for heightfields";
     }

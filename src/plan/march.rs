@@ -78,7 +78,7 @@ const STEPS: u32 = 256;
 settings! {
     /// How a picture is marched.
     pub struct Marching {
-        mode: Mode = Mode::Safe, word(&Mode::WORDS), "the method; benchmarks.md explains and compares the modes";
+        mode: Mode = Mode::Safe, word(&Mode::WORDS), "the method; benchmarks.md explains and compares the modes" => Program;
         coarsest: u32 = 16, divisor(), "side in pixels of the blocks of the first cone pass";
         detail: f64 = 1.0, number(1e-3, 1e3),
             "hit threshold in footprints: a ray hits where the estimate is at most this";

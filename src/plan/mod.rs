@@ -14,7 +14,7 @@ pub mod pyramid;
 
 use std::borrow::Cow;
 
-use crate::base::key::{Fault, Key, size, text};
+use crate::base::key::{Fault, Key, Redo, size, text};
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::keys;
@@ -66,7 +66,12 @@ impl Plan {
     /// no such section. `scene.kind` and `scene.formula` are not among them: they choose the
     /// [`Scene`].
     pub fn keys(&mut self, section: &str) -> Option<Vec<Key<'_>>> {
-        Some(match section {
+        let most = match section {
+            "" => Redo::Nothing,
+            "look" => Redo::Color,
+            _ => Redo::March,
+        };
+        let mut keys = match section {
             "" => keys!["title" = text(&mut self.title), "a name of the picture, for people";],
             "scene" => self.scene.keys(),
             "camera" => self.camera.keys(),
@@ -76,7 +81,11 @@ impl Plan {
                 "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
             ],
             _ => return None,
-        })
+        };
+        for key in &mut keys {
+            key.redo.get_or_insert(most);
+        }
+        Some(keys)
     }
 
     /// Checks that all settings fit together. No file is read: [`Scene::load`] does that.

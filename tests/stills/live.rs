@@ -1,8 +1,10 @@
 //! What a window needs of a render: another plan in the middle, shader texts that change, a device
 //! that is lost, and what there is under the cursor.
 
+use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 
+use conemarch::base::key::Redo;
 use conemarch::base::work::State;
 use conemarch::gpu::RenderError;
 use conemarch::gpu::adapters::{Adapters, Choice, clock};
@@ -12,6 +14,7 @@ use conemarch::pass::pick::{At, Picked};
 use conemarch::plan::{Extras, Plan};
 use conemarch::scene::Assets;
 use glam::DVec3;
+use toml::Value;
 
 use super::common::plans::{preset, sized};
 use super::work::{bits, plans};
@@ -83,6 +86,82 @@ fn a_shader_text_changes_and_a_wrong_one_keeps_the_old() {
     assert!(bits(&frame) == old);
     let traffic = frame.traffic.unwrap();
     assert_eq!((traffic.compilations, traffic.drains), (0, 0));
+}
+
+/// Other values for a key: of a switch, a number, a word or a list.
+fn others(now: &Value, expects: &str) -> Vec<Value> {
+    let scaled = |x: &Value| match x {
+        Value::Integer(n) => Value::Integer(n * 7 / 8),
+        Value::Float(x) => Value::Float(0.9 * x + 0.01),
+        other => other.clone(),
+    };
+    let words = expects.split('"').skip(1).step_by(2);
+    let words = words.map(|word| Value::String(word.into()));
+    let own = match now {
+        Value::Boolean(b) => vec![Value::Boolean(!b)],
+        Value::Array(list) => vec![Value::Array(list.iter().map(scaled).collect())],
+        Value::String(_) => vec![
+            Value::String("other".into()),
+            Value::String("fbm:32x32,seed=3".into()),
+            Value::Integer(9),
+            Value::Float(0.9),
+        ],
+        number => vec![scaled(number), Value::Float(0.0)],
+    };
+    let all = own.into_iter().chain(words.take(3));
+    all.filter(|value| value != now).collect()
+}
+
+#[test]
+fn a_new_value_makes_no_more_again_than_its_key_says() {
+    let (mut renderer, assets) = (adapter::open(), Assets::default());
+    let extras = Extras {
+        time: true,
+        reuse: true,
+        shown: true,
+        ..Extras::default()
+    };
+    let mut render = |plan: &Plan| renderer.render(plan, &assets, extras, &mut |_| true);
+    let (mut seen, mut wrong) = (BTreeSet::new(), Vec::new());
+    for base in &plans()[1..] {
+        for section in ["", "scene", "camera", "march", "look", "image"] {
+            let list = |plan: &mut Plan| plan.keys(section).unwrap().len();
+            for index in 0..list(&mut base.clone()) {
+                let mut copy = base.clone();
+                let key = &copy.keys(section).unwrap()[index];
+                let (name, redo) = (key.name, key.redo.unwrap());
+                for value in others(&key.slot.get(), &key.slot.expects()) {
+                    let mut plan = base.clone();
+                    let fits = plan.keys(section).unwrap()[index].slot.set(&value).is_ok();
+                    if !fits || plan.check().is_err() {
+                        continue;
+                    }
+                    render(base).unwrap();
+                    let missing = !plan.scene.has_assets(&assets);
+                    let Ok(frame) = render(&plan) else { continue };
+                    let traffic = frame.traffic.unwrap();
+                    let ran = |pass: &str| {
+                        let mut all = frame.passes.iter();
+                        all.any(|p| p.pass.name() == pass && p.gpu_ms.is_some())
+                    };
+                    let found = match () {
+                        () if missing => Redo::Assets,
+                        () if traffic.compilations > 0 => Redo::Program,
+                        () if ran("trace") => Redo::March,
+                        () if ran("color") => Redo::Color,
+                        () if traffic.uploads > 0 => Redo::Tone,
+                        () => Redo::Nothing,
+                    };
+                    if found > redo {
+                        wrong.push(format!("{section}.{name} = {value}: {found:?}"));
+                    }
+                    seen.extend((found == redo).then_some(redo));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_eq!(seen.len(), 6, "{seen:?}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::gpu::collect::Parts;
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::{PAIRS, Pair};
-use crate::pass::turn::{ListsHead, MOST_STAGES, Turn};
+use crate::pass::turn::{ListsHead, MOST_STAGES, StageKind, Turn};
 use crate::picture::frame::Traffic;
 
 use super::run::{Flight, REPORT, Run};
@@ -94,6 +94,12 @@ impl Run {
         let last = *stages.end();
         for (nth, stage) in stages.enumerate() {
             let at = self.pass_at(self.place(stage).1);
+            let kind = StageKind::Pass(self.job.made.passes[at]);
+            let begins = self.job.kinds.iter().position(|k| *k == kind);
+            // A frame that keeps the colours only counts cells and tones.
+            if begins.is_some_and(|begins| begins < self.from as usize) {
+                continue;
+            }
             let figures = &mut self.frame.passes[at];
             if let Some(ms) = own.get(nth) {
                 *figures.gpu_ms.get_or_insert(0.0) += ms;

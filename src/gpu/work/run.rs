@@ -118,6 +118,8 @@ pub struct Run {
     pub(super) kept: Kept,
     pub(super) job: Job,
     pub(super) frame: Frame,
+    /// The first stage; later than 0 if the frame goes on from the one before.
+    pub(super) from: u32,
     /// The stage to encode next, and how many dispatches of it are to be encoded.
     pub(super) cursor: u32,
     pub(super) dispatches: u32,
@@ -189,6 +191,7 @@ impl Run {
             kept,
             job,
             frame,
+            from: 0,
             cursor: 0,
             dispatches: 0,
             reached: 0,
@@ -201,7 +204,8 @@ impl Run {
         };
         let last = run.kept.made.take().filter(|_| run.job.extras.reuse);
         let first = last.and_then(|last| run.job.made.resumes(&last, &run.job.kinds));
-        run.reached = first.unwrap_or(0);
+        run.from = first.unwrap_or(0);
+        run.reached = run.from;
         let blocks = run.job.made.blocks.len();
         let device = &run.shared.device;
         match (&mut run.kept.target, first) {

@@ -161,11 +161,11 @@ impl TracerSettings {
     /// The keys of the tracer in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
-            "tracer" = word(&mut self.tracer, &TracerKind::WORDS), &TRACER_HELP;
+            "tracer" = word(&mut self.tracer, &TracerKind::WORDS), &TRACER_HELP => Assets;
             "map" = text(&mut self.map),
-                "the cone map: auto makes one that fits the tracer; a generator's name makes its map; or the file of a map";
+                "the cone map: auto makes one that fits the tracer; a generator's name makes its map; or the file of a map" => Assets;
             "lookup" = word(&mut self.lookup, &Lookup::WORDS),
-                "how height and cone are read between samples: interpolated, or from the nearest sample; only for the csm tracers, quad, rcs-binary and secant";
+                "how height and cone are read between samples: interpolated, or from the nearest sample; only for the csm tracers, quad, rcs-binary and secant" => Assets;
             "tracer_steps" = auto_count(&mut self.steps, 1, MOST_STEPS),
                 "number of steps of linear-binary, and step limit of the csm tracers, quad, rcs-binary and secant; auto is the tracer's own, see heightfields.md";
             "tracer_rounds" = auto_count(&mut self.rounds, 1, MOST_ROUNDS),
@@ -175,7 +175,7 @@ impl TracerSettings {
             "lod" = auto_number(&mut self.lod, 0.0, 1e6),
                 "distance from which walk-mip and cone-mip take texels to be narrower than a pixel, and at which csm-loop has half of its steps; 0 for none; auto follows the camera for walk-mip and cone-mip, and is 0 for csm-loop";
             "offset" = number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
-                "texels that are added to each distance when the cones of the walk and its variants are made";
+                "texels that are added to each distance when the cones of the walk and its variants are made" => Assets;
         ]
     }
 
