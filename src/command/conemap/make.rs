@@ -137,15 +137,21 @@ fn check_memory(generator: Generator, [w, h]: [u32; 2]) -> Result<()> {
     memory::check_map(u64::from(w) * u64::from(h) * generator.channels() as u64)
 }
 
+/// Whether an option applies to a generator.
+type Fact = fn(Generator) -> bool;
+
 /// The generator's options. An option that the generator does not have is wrong usage.
 fn options(args: &Make) -> Result<Options> {
     let generator = args.generator;
-    let (cells, steps): (fn(Generator) -> bool, fn(Generator) -> bool) =
-        (Generator::over_cells, Generator::counts_steps);
+    let cells: Fact = Generator::over_cells;
     for (given, option, applies) in [
         (args.offset.is_some(), "offset", cells),
         (args.boxes, "boxes", cells),
-        (args.search_steps.is_some(), "search-steps", steps),
+        (
+            args.search_steps.is_some(),
+            "search-steps",
+            Generator::counts_steps,
+        ),
     ] {
         if given && !applies(generator) {
             let owners = Generator::ALL.into_iter().filter(|g| applies(*g));
