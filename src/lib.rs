@@ -30,6 +30,7 @@
 //! | floor | room | what is in it |
 //! |---|---|---|
 //! | 1 | [`base`] | keys of presets, WGSL programs, rays and cones |
+//! | 1 | [`raster`] | image files as numbers: PNG, EXR, TIFF |
 //! | 2 | [`formula`] | shapes given by an estimate of the distance to them |
 //! | 2 | [`heightfield`] | height maps, cone maps, and the tracers that use them |
 //! | 3 | [`scene`] | what there is to see, and what passes ask about it |
@@ -56,4 +57,5 @@ pub mod pass;
 pub mod picture;
 pub mod plan;
 pub mod preset;
+pub mod raster;
 pub mod scene;

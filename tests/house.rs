@@ -19,7 +19,7 @@ use common::files::files_below;
 
 /// The rooms of `src/`, lowest first. Rooms on the same line do not import each other.
 const FLOORS: [&[&str]; 9] = [
-    &["base"],
+    &["base", "raster"],
     &["formula", "heightfield"],
     &["scene"],
     &["plan"],

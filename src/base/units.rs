@@ -1,4 +1,26 @@
-//! Amounts of memory for people to read.
+//! Whole numbers and sizes in words, and amounts of memory for people to read.
+
+/// A number of digits alone.
+pub fn whole(text: &str) -> Option<u32> {
+    // Numbers may have a sign where they are parsed.
+    let digits = text.bytes().all(|b| b.is_ascii_digit());
+    text.parse().ok().filter(|_| digits)
+}
+
+/// A size like `1280x720`, with sides from 1 to `most`.
+///
+/// ```
+/// # use conemarch::base::units::size;
+/// assert_eq!(size("1280x720", 1280), Some([1280, 720]));
+/// assert_eq!(size("1X1", 1), Some([1, 1]));
+/// let bad = ";x;5;0x5;5x0;abc;1281x1;-4x4;+4x4;4x4x4;4 x4;1e2x4;99999999999999999999x1";
+/// assert!(bad.split(';').all(|text| size(text, 1280).is_none()));
+/// ```
+pub fn size(text: &str, most: u32) -> Option<[u32; 2]> {
+    let side = |s: &str| whole(s).filter(|n| (1..=most).contains(n));
+    let (w, h) = text.split_once(['x', 'X'])?;
+    Some([side(w)?, side(h)?])
+}
 
 const UNITS: [(&str, f64); 3] = [
     ("GiB", (1_u64 << 30) as f64),

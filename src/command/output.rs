@@ -1,5 +1,6 @@
 //! Where a render writes its picture, and in which format.
 
+use std::ffi::OsStr;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +11,7 @@ use crate::command::render::Render;
 use crate::command::sink::{ending, is_stdout};
 use crate::picture::frame::Frame;
 use crate::picture::{Layer, OutputError, Shades, write_exr, write_jpeg, write_png, write_webp};
-use crate::plan::Plan;
+use crate::plan::{Extras, Plan};
 use crate::preset;
 
 /// The format of a picture.
@@ -76,12 +77,17 @@ impl Format {
     }
 
     /// Most memory that a render takes at once, per pixel.
-    pub fn bytes_per_pixel(self, cpu: bool) -> u64 {
-        // Measured on 8 million pixels, and rounded up. The CPU executor holds every
-        // pixel's hit in f64 on its way; an EXR its channels beside the frame.
-        let rendering = if cpu { 140 } else { 60 };
-        let writing = if self == Self::Exr { 125 } else { 60 };
-        rendering.max(writing)
+    pub fn bytes_per_pixel(self, layer: Layer, extras: Extras) -> u64 {
+        // Peaks of 8 million pixels, rounded up. Both executors take about as much: the CPU
+        // 51 bytes for colours and 102 for an EXR, which holds its channels beside the frame,
+        // and a software device 54 and 132. The truth is a second frame, on the CPU.
+        let with = |asked: bool, more: u64| if asked { more } else { 0 };
+        let truth = with(layer == Layer::Error, 20);
+        let picture = match self {
+            Self::Exr => 135,
+            _ => 60 + with(extras.normals, 15) + truth,
+        };
+        picture + with(extras.count, 25)
     }
 
     /// The picture as the bytes of a file. `errors` are those of the layer that shows them.
@@ -121,8 +127,10 @@ const MOST_SETTINGS: usize = 120;
 ///
 /// # Errors
 /// The file exists and holds another preset than the one with `--set`.
-pub fn default_name(name: &str, args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<PathBuf> {
-    let mut file = name.to_string();
+pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<PathBuf> {
+    // The bytes of the name are kept, which need not be UTF-8.
+    let name = args.preset.file_stem();
+    let mut file = name.unwrap_or(OsStr::new("preset")).to_os_string();
     let settings = args
         .set
         .iter()
@@ -132,14 +140,16 @@ pub fn default_name(name: &str, args: &Render, plan: &Plan, own_size: [u32; 2]) 
         c if c.is_ascii_alphanumeric() || "-.=".contains(c) => c,
         _ => '_',
     };
-    file.extend(settings.chars().map(plain).take(MOST_SETTINGS));
+    let settings: String = settings.chars().map(plain).take(MOST_SETTINGS).collect();
+    file.push(settings);
     if plan.size != own_size {
-        file += &format!("-{}x{}", plan.size[0], plan.size[1]);
+        file.push(format!("-{}x{}", plan.size[0], plan.size[1]));
     }
     if args.layer != Layer::Color {
-        file += &format!(".{}", args.layer.name());
+        file.push(format!(".{}", args.layer.name()));
     }
-    let file = PathBuf::from(file + ".png");
+    file.push(".png");
+    let file = PathBuf::from(file);
     let same = || preset::find(&file).is_ok_and(|found| found.text == preset::write(plan));
     if !args.set.is_empty() && file.exists() && !same() {
         return Err(usage(format!(

@@ -8,7 +8,7 @@ use clap::Args;
 
 use crate::command::completions::presets;
 use crate::command::print::print;
-use crate::preset::{BUILTIN, find, read};
+use crate::preset::{BUILTIN, load, read};
 
 /// What `presets` takes.
 #[derive(Args, Debug)]
@@ -22,10 +22,10 @@ pub struct Presets {
 /// Lists the built-in presets, or prints one.
 ///
 /// # Errors
-/// The preset cannot be found or read, or standard output cannot be written.
+/// The preset cannot be found or is wrong, or standard output cannot be written.
 pub fn run(args: &Presets) -> Result<()> {
     match &args.preset {
-        Some(argument) => print(find(argument)?.text.as_bytes()),
+        Some(argument) => print(load(argument, &[])?.text().as_bytes()),
         None => print(list()?.as_bytes()),
     }
 }

@@ -13,7 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::command::interrupt;
 use crate::command::print::say;
-use crate::pass::progress;
+use crate::pass::progress::Progress;
 
 /// Work that ends sooner writes no line.
 const FIRST_LINE: Duration = Duration::from_secs(2);
@@ -24,7 +24,7 @@ const BAR_STEPS: f64 = 1000.0;
 
 /// Reports one work from its start until it is dropped.
 #[derive(Debug)]
-pub struct Progress {
+pub struct Reporter {
     now: Arc<Mutex<Now>>,
     shown: Shown,
 }
@@ -33,8 +33,8 @@ pub struct Progress {
 #[derive(Debug)]
 struct Now {
     what: String,
-    /// When the share was last 0.
-    round: Instant,
+    /// When the share last fell, and to what.
+    since: (Instant, f64),
     share: f64,
     detail: String,
 }
@@ -49,12 +49,12 @@ enum Shown {
     Lines(Option<(Sender<()>, JoinHandle<()>)>),
 }
 
-impl Progress {
+impl Reporter {
     /// Begins to report a work; `what` names it, like "rendering".
     pub fn start(what: &str) -> Self {
         let now = Arc::new(Mutex::new(Now {
             what: what.into(),
-            round: Instant::now(),
+            since: (Instant::now(), 0.0),
             share: 0.0,
             detail: String::new(),
         }));
@@ -66,7 +66,7 @@ impl Progress {
     }
 
     /// What an executor calls while it renders.
-    pub fn watch(&mut self) -> impl FnMut(&progress::Progress) -> bool + '_ {
+    pub fn watch(&mut self) -> impl FnMut(&Progress) -> bool + '_ {
         |now| self.report(now.done, &now.pass)
     }
 
@@ -78,10 +78,10 @@ impl Progress {
             bar.set_message(detail.to_string());
         }
         let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
-        // Some work is done again in finer steps. What the round before took says nothing
-        // about the time that is left.
+        // A cone map comes before a picture, and a truth is done again in finer steps. What
+        // the work before took says nothing about the time that is left.
         if share < now.share {
-            now.round = Instant::now();
+            now.since = (Instant::now(), share);
         }
         now.share = share;
         now.detail = detail.into();
@@ -89,7 +89,7 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for Reporter {
     fn drop(&mut self) {
         match &mut self.shown {
             Shown::Bar(bar) => bar.finish_and_clear(),
@@ -120,32 +120,30 @@ fn lines(now: Arc<Mutex<Now>>) -> (Sender<()>, JoinHandle<()>) {
         let mut patience = FIRST_LINE;
         while ended.recv_timeout(patience) == Err(RecvTimeoutError::Timeout) {
             let now = now.lock().unwrap_or_else(PoisonError::into_inner);
-            say(&line(
-                &now.what,
-                now.share,
-                &now.detail,
-                now.round.elapsed(),
-            ));
+            say(&now.line(now.since.0.elapsed()));
             patience = BETWEEN_LINES;
         }
     };
     (sender, std::thread::spawn(write))
 }
 
-/// `rendering: 43 % (trace), about 12 s left`.
-fn line(what: &str, share: f64, detail: &str, elapsed: Duration) -> String {
-    let mut line = format!("{what}: {:.0} %", 100.0 * share);
-    if !detail.is_empty() {
-        line += &format!(" ({detail})");
+impl Now {
+    /// `rendering: 43 % (trace), about 12 s left`, so long after the share last fell.
+    fn line(&self, elapsed: Duration) -> String {
+        let mut line = format!("{}: {:.0} %", self.what, 100.0 * self.share);
+        if !self.detail.is_empty() {
+            line += &format!(" ({})", self.detail);
+        }
+        let done = self.share - self.since.1;
+        if done > 0.0 {
+            let left = elapsed.as_secs_f64() * (1.0 - self.share) / done;
+            line += &match left {
+                s if s < 100.0 => format!(", about {s:.0} s left"),
+                s => format!(", about {:.0} min left", s / 60.0),
+            };
+        }
+        line
     }
-    if share > 0.0 {
-        let left = elapsed.as_secs_f64() * (1.0 - share) / share;
-        line += &match left {
-            s if s < 100.0 => format!(", about {s:.0} s left"),
-            s => format!(", about {:.0} min left", s / 60.0),
-        };
-    }
-    line
 }
 
 #[cfg(test)]
@@ -154,9 +152,23 @@ mod tests {
 
     #[test]
     fn a_line_says_what_is_done_and_what_is_left() {
-        let of = |share, detail, s| line("making", share, detail, Duration::from_secs(s));
-        assert_eq!(of(0.25, "", 4), "making: 25 %, about 12 s left");
-        assert_eq!(of(0.5, "a", 600), "making: 50 % (a), about 10 min left");
-        assert_eq!(of(0.0, "cones 43 %", 9), "making: 0 % (cones 43 %)");
+        let of = |from, share, detail: &str, s| {
+            let (what, detail) = ("making".into(), detail.into());
+            let since = (Instant::now(), from);
+            let now = Now {
+                what,
+                since,
+                share,
+                detail,
+            };
+            now.line(Duration::from_secs(s))
+        };
+        assert_eq!(of(0.0, 0.25, "", 4), "making: 25 %, about 12 s left");
+        assert_eq!(
+            of(0.0, 0.5, "a", 600),
+            "making: 50 % (a), about 10 min left"
+        );
+        assert_eq!(of(0.5, 0.75, "", 4), "making: 75 %, about 4 s left");
+        assert_eq!(of(0.5, 0.5, "b", 9), "making: 50 % (b)");
     }
 }

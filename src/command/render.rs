@@ -7,15 +7,17 @@ use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint, value_parser};
 
 use crate::command::arguments::{size, words};
+use crate::command::bench::common::of_how_many;
+use crate::command::bench::runner::{Runner, TIMED};
 use crate::command::executor::{Executor, device};
 use crate::command::output::{Format, default_name};
 use crate::command::print::{print, say};
-use crate::command::progress::Progress;
+use crate::command::progress::Reporter;
 use crate::command::sink::{Parcel, Sink, apart, spared};
 use crate::command::stats::{Stats, summary};
 use crate::command::{completions, interrupt, memory};
 use crate::gpu::adapters::Choice;
-use crate::measure::truth::{self, Cache};
+use crate::measure::truth::{Cache, MOST_ROUNDS, cached};
 use crate::pass;
 use crate::picture::frame::{Frame, errors};
 use crate::picture::{BitDepth, Layer};
@@ -28,7 +30,7 @@ use crate::scene::Assets;
 pub struct Render {
     /// A built-in preset, a .toml file, or a .png that this program wrote
     #[arg(value_name = "PRESET", add = completions::presets())]
-    preset: PathBuf,
+    pub(crate) preset: PathBuf,
 
     /// Where to write: a .png, .jpg, .webp or .exr file, or - for PNG on standard output
     ///
@@ -105,7 +107,7 @@ pub fn run(args: &Render) -> Result<()> {
     plan.size = args.size.unwrap_or(own_size);
     let output = match &args.output {
         Some(path) => path.clone(),
-        None => default_name(&name, args, &plan, own_size)?,
+        None => default_name(args, &plan, own_size)?,
     };
     let format = Format::of(&output, args, plan.size)?;
     let stats = args.stats.as_deref();
@@ -116,7 +118,7 @@ pub fn run(args: &Render) -> Result<()> {
     let preset = preset::file(&args.preset).map(|file| ("the preset", file));
     spared(&outputs[1..], preset.as_slice())?;
     let extras = extras(args, format);
-    let per_pixel = format.bytes_per_pixel(args.device == Choice::Cpu);
+    let per_pixel = format.bytes_per_pixel(args.layer, extras);
     memory::check(&plan.lean(extras), per_pixel, &assets)?;
     for note in plan.scene.notes(&assets) {
         say(&format!("note: {note}"));
@@ -130,37 +132,41 @@ pub fn run(args: &Render) -> Result<()> {
     let (mut executor, who) = Executor::open(&args.device)?;
     say(&format!("rendering on {who}"));
     if args.layer == Layer::Error {
-        say(
-            "the truth, a slow reference in f64 on the CPU, is rendered too: that takes much longer than the picture",
-        );
+        say(&format!(
+            "the truth to compare with is rendered too, unless it is kept from before: in f64 on the CPU, in up to {MOST_ROUNDS} rounds of ever finer steps, which takes much longer than the picture"
+        ));
     }
     if let Some(warning) = executor.precision_warning(&plan) {
         say(&format!("warning: {warning}"));
     }
-    let mut progress = Progress::start("rendering");
-    let frame = executor.render(&plan, &assets, extras, &mut progress.watch())?;
+    let mut progress = Reporter::start("rendering");
+    let mut frame = executor.render(&plan, &assets, extras, &mut progress.watch())?;
     drop(progress);
     let errors = match args.layer {
         Layer::Error => {
-            let mut progress = Progress::start("rendering the truth");
+            let mut progress = Reporter::start("rendering the truth");
             let watch = &mut progress.watch();
-            let (truth, _) = truth::cached(Cache::user().as_ref(), &plan, &assets, watch)?;
+            let (truth, _) = cached(Cache::user().as_ref(), &plan, &assets, watch)?;
             errors(&frame, &truth.frame, &plan.view())
         }
         _ => Vec::new(),
     };
     let mut parcel = Parcel::default();
+    let mut progress = Reporter::start("writing the picture");
+    progress.report(0.0, "encoding");
     parcel.put(picture, &format.encode(args, &plan, &frame, errors)?)?;
+    drop(progress);
+    let summary = summary(&output, &frame);
+    let is_inside = ends_at_the_eye(&frame, &plan);
     if let Some(figures) = figures {
-        let mut frame = frame.clone();
         warm_times(&mut executor, &plan, &assets, &mut frame)?;
         let stats = Stats::new(&name, &plan, &executor, &frame);
         parcel.put_json(figures, &stats)?;
     }
     interrupt::check()?;
     parcel.hand_over()?;
-    say(&summary(&output, &frame));
-    if ends_at_the_eye(&frame, &plan) {
+    say(&summary);
+    if is_inside {
         say(
             "warning: every ray ends at the eye, so the picture shows nothing: camera.eye lies inside the solid, or touches it; move it away",
         );
@@ -217,13 +223,8 @@ fn warm_times(
     if frame.march_ms > MOST_AGAIN {
         return Ok(());
     }
-    let extras = Extras {
-        depth_only: true,
-        time: true,
-        ..Extras::default()
-    };
-    let watch = &mut |_: &_| !interrupt::asked();
-    let runs = (0..AGAIN).map(|_| executor.render(plan, assets, extras, watch));
+    let mut runner = Runner::new(executor, assets, "warm runs", AGAIN);
+    let runs = (0..AGAIN).map(|i| runner.render(plan, TIMED, &of_how_many("run", i, AGAIN)));
     let mut runs: Vec<Frame> = runs.collect::<Result<_, _>>()?;
     runs.sort_by(|a, b| a.march_ms.total_cmp(&b.march_ms));
     let middle = &runs[AGAIN / 2];

@@ -9,6 +9,7 @@ use glam::DVec2;
 use thiserror::Error;
 
 use crate::base::named::named_enum;
+use crate::raster::open::MOST_SIDE;
 
 /// Why numbers are not a height map.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -38,7 +39,7 @@ pub enum HeightsError {
 
 /// Longest axis of a height map: all positions and squared distances between samples
 /// are exact in f64, and positions in f32 keep a thousandth of a texel.
-pub const MOST_SAMPLES: u32 = 8192;
+pub const MOST_SAMPLES: u32 = MOST_SIDE;
 
 named_enum! {
     /// What lies between the samples.

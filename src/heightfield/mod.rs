@@ -3,7 +3,6 @@
 //! - [`settings`], [`source`]: the keys of a heightfield, and where its heights come from
 //! - [`assets`]: loads and makes what the settings name, and keeps it
 //! - [`pattern`]: heights made from numbers; [`load`]: heights read from files
-//! - [`raster`]: numbers of PNG, EXR, TIFF and other files
 //! - [`file_error`]: why a file of heights or cones cannot be used
 //! - [`heights`], [`patch`]: samples, and the surface between them
 //! - [`height_surface`]: heights with their pyramid of maxima ([`max_mip`]); [`region_max`]:
@@ -24,7 +23,6 @@ pub mod paint;
 pub mod patch;
 pub mod pattern;
 pub mod placement;
-pub mod raster;
 pub mod region_max;
 pub mod settings;
 pub mod source;

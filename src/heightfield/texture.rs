@@ -13,9 +13,9 @@ use glam::DVec3;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 
 use crate::base::{shader::Module, srgb::linear};
-use crate::heightfield::heights::{MOST_SAMPLES, brought_in};
-use crate::heightfield::raster::open::{check_size, open};
+use crate::heightfield::heights::brought_in;
 use crate::heightfield::{HeightSurface, Patches};
+use crate::raster::open::{check_size, open};
 use crate::wgsl;
 
 /// A picture over a height surface.
@@ -116,6 +116,6 @@ fn decode(path: &Path) -> Result<DynamicImage, String> {
     };
     let decoder = reader.into_decoder().map_err(broken)?;
     let (width, height) = decoder.dimensions();
-    check_size(width.into(), height.into(), MOST_SAMPLES)?;
+    check_size(width.into(), height.into())?;
     DynamicImage::from_decoder(decoder).map_err(broken)
 }

@@ -45,8 +45,9 @@ pub struct TruthNote {
 const CONVERGED: f64 = 5e-5;
 /// One in so many pixels is sampled.
 const SAMPLE: usize = 16;
-/// The stride is not halved below this. The result then tells how many pixels still move.
-const LEAST_STRIDE: f64 = 1.0 / 160.0;
+/// So often the truth is rendered, with half the stride each time. The result then tells how
+/// many pixels still move.
+pub const MOST_ROUNDS: u32 = 5;
 
 /// The plan of a plan's truth. Settings that only say how work is spent get fixed values, so
 /// that all modes share one truth.
@@ -77,8 +78,12 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
     let sampled = (0..width * height).step_by(SAMPLE);
     let sampled = sampled.map(|i| [(i % width) as u32, (i / width) as u32]);
     let pixels: Vec<_> = sampled.collect();
-    let mut stride = 0.1;
+    let (mut stride, mut round) = (0.1, 1);
     loop {
+        let watch = &mut |now: &Progress| {
+            let pass = format!("round {round} of at most {MOST_ROUNDS}, {}", now.pass);
+            watch(&Progress { pass, ..*now })
+        };
         plan.march.stride = Some(stride);
         let frame = cpu::render(&plan, assets, Extras::default(), watch)?;
         let mut finer = plan.clone();
@@ -100,11 +105,11 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
         };
         let moved = sample.iter().enumerate().filter(|s| changed(*s)).count();
         let moved = moved as f64 / sample.len().max(1) as f64;
-        if moved < CONVERGED || stride <= LEAST_STRIDE {
+        if moved < CONVERGED || round == MOST_ROUNDS {
             let note = TruthNote { stride, moved };
             return Ok(Truth { frame, note });
         }
-        stride *= 0.5;
+        (stride, round) = (0.5 * stride, round + 1);
     }
 }
 

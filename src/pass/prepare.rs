@@ -56,9 +56,12 @@ pub fn prepare(
     let mut taken = Vec::new();
     let make = &mut |generator, heights: &Heights, patches, options: &Options| {
         let start = Instant::now();
-        let mut told = |share: f64| {
-            let pass = format!("cones {:.0} %", 100.0 * share);
-            watch(&Progress { pass, done: 0.0 })
+        let pass = format!("cone map by {}", Generator::name(generator));
+        let mut told = |done| {
+            watch(&Progress {
+                pass: pass.clone(),
+                done,
+            })
         };
         let made = maker(generator, heights, patches, options, &mut told);
         taken.push((generator, start.elapsed().as_secs_f64() * 1e3));

@@ -9,16 +9,15 @@
 
 use std::io::{Seek, Write};
 
-use exr::meta::attribute::{AttributeValue, Chromaticities, Text};
-use exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image, LayerAttributes, LineOrder,
-    SmallVec, Vec2, WritableImage,
-};
+use exr::meta::attribute::Chromaticities;
+use exr::prelude::{Vec2, WritableImage};
 
 use crate::picture::SOFTWARE;
 use crate::picture::error::OutputError;
 use crate::picture::frame::Frame;
 use crate::plan::Plan;
+use crate::preset::PNG_KEYWORD;
+use crate::raster::exr::{image, text_of};
 
 /// Depth of the sky: farther than any scene, and finite, as compositors compute with it.
 /// Blender writes the same number.
@@ -42,10 +41,8 @@ pub fn write_exr(
     plan: &Plan,
     preset: &str,
 ) -> Result<(), OutputError> {
-    let mut list = SmallVec::new();
-    let mut channel = |name: &str, values: Vec<f32>| {
-        list.push(AnyChannel::new(name, FlatSamples::F32(values)));
-    };
+    let mut list = Vec::new();
+    let mut channel = |name: &str, values| list.push((name.to_string(), values));
     let one = |of: &[[f32; 3]], i: usize| of.iter().map(|v| v[i]).collect::<Vec<f32>>();
     let view = plan.view();
     let position = frame.positions(&view);
@@ -69,26 +66,12 @@ pub fn write_exr(
     if !frame.work.is_empty() {
         channel("steps.Y", frame.steps());
     }
-    let size = (frame.size[0] as usize, frame.size[1] as usize);
-    // Lines in their order, so that threads that end in any order give the same bytes.
-    let encoding = Encoding {
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-        ..Encoding::SMALL_FAST_LOSSLESS
-    };
-    let text = |text: &str| AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes()));
-    // The maps of further attributes are written in no certain order: one in each.
-    let mut attributes = LayerAttributes {
-        software_name: Some(SOFTWARE.into()),
-        ..LayerAttributes::default()
-    };
-    let other = &mut attributes.other;
-    other.insert("conemarch preset".into(), text(preset));
-    let layer = exr::prelude::Layer::new(size, attributes, encoding, AnyChannels::sort(list));
-    let mut image = Image::from_layer(layer);
+    let mut image = image(frame.size, list, [PNG_KEYWORD, preset]);
+    image.layer_data.attributes.software_name = Some(SOFTWARE.into());
     image.attributes.chromaticities = Some(SRGB);
+    // The maps of further attributes are written in no certain order: one in each.
     let other = &mut image.attributes.other;
-    other.insert("conemarch camera".into(), text(&camera(plan)));
+    other.insert("conemarch camera".into(), text_of(&camera(plan)));
     let written = image.write().to_buffered(to);
     written.map_err(|e| OutputError::encode("EXR", e))
 }

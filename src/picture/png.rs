@@ -2,12 +2,11 @@
 
 use std::io::Write;
 
-use png::{ColorType, Encoder, EncodingError, SrgbRenderingIntent};
-
 use crate::picture::SOFTWARE;
 use crate::picture::error::OutputError;
 use crate::picture::layer::Shades;
 use crate::preset::PNG_KEYWORD;
+use crate::raster::png;
 
 /// Bits of one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,44 +29,17 @@ pub fn write_png(
     title: &str,
     preset: &str,
 ) -> Result<(), OutputError> {
-    let encode = || -> Result<(), EncodingError> {
-        let [width, height] = shades.size();
-        let mut encoder = Encoder::new(to, width, height);
-        encoder.set_color(if shades.is_grey() {
-            ColorType::Grayscale
-        } else {
-            ColorType::Rgb
-        });
-        if shades.is_color() {
-            encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
-        }
-        let texts = [
-            ("Title", title),
-            ("Software", SOFTWARE),
-            (PNG_KEYWORD, preset),
-        ];
-        for (keyword, text) in texts.into_iter().filter(|(_, text)| !text.is_empty()) {
-            // More programs know tEXt than iTXt, but it has no other letters.
-            if text.is_ascii() {
-                encoder.add_text_chunk(keyword.into(), text.into())?;
-            } else {
-                encoder.add_itxt_chunk(keyword.into(), text.into())?;
-            }
-        }
-        let bytes: Vec<u8> = match depth {
-            BitDepth::Eight => {
-                encoder.set_depth(png::BitDepth::Eight);
-                shades.bytes()
-            }
-            BitDepth::Sixteen => {
-                encoder.set_depth(png::BitDepth::Sixteen);
-                let samples = shades.samples(u16::MAX);
-                samples.into_iter().flat_map(u16::to_be_bytes).collect()
-            }
-        };
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&bytes)?;
-        writer.finish()
+    let most = match depth {
+        BitDepth::Eight => u16::from(u8::MAX),
+        BitDepth::Sixteen => u16::MAX,
     };
-    encode().map_err(|e| OutputError::encode("PNG", e))
+    let texts = [
+        ("Title", title),
+        ("Software", SOFTWARE),
+        (PNG_KEYWORD, preset),
+    ];
+    let there = texts.into_iter().filter(|(_, text)| !text.is_empty());
+    let (texts, numbers): (Vec<_>, _) = (there.collect(), shades.samples(most));
+    let written = png::write(to, shades.size(), most, &numbers, shades.is_color(), &texts);
+    written.map_err(|e| OutputError::encode("PNG", e))
 }

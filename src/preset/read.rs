@@ -60,6 +60,11 @@ impl Preset {
         source.read(overrides)
     }
 
+    /// Its text, without overrides.
+    pub fn text(&self) -> &str {
+        &self.source.text
+    }
+
     /// Reads the files that the preset names, and keeps them in the assets.
     ///
     /// # Errors

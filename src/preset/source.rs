@@ -2,16 +2,15 @@
 //! file, or a picture that carries its preset.
 
 use std::fs::{self, File};
-use std::io::{BufReader, Cursor, Read};
+use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
-
-use png::DecodingError;
 
 use crate::preset::builtin::{BUILTIN, builtin};
 use crate::preset::document::{Override, brief};
 use crate::preset::error::PresetError;
 use crate::preset::nearest::nearest;
 use crate::preset::read::Preset;
+use crate::raster::text_chunk::{self, SIGNATURE};
 
 /// Largest preset that is read: far more than any preset needs, so that a wrong file is
 /// rejected at once.
@@ -20,11 +19,8 @@ const MOST_BYTES: u64 = 1 << 20;
 /// Keyword of the text chunk in which a PNG carries its preset.
 pub const PNG_KEYWORD: &str = "conemarch preset";
 
-/// The first bytes of every PNG file.
-const PNG_SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
-
-/// How the settings files of another renderer begin. They are no presets.
-const MANDELBULBER: &str = "# Mandelbulber settings file";
+/// Lines in the settings files of another renderer, which are no presets.
+const MANDELBULBER: [&str; 2] = ["# Mandelbulber settings file", "[main_parameters]"];
 
 const UNREADABLE: &str = "check its path and rights, or name a built-in preset";
 
@@ -126,54 +122,27 @@ fn file_text(path: &Path) -> Result<String, String> {
     if !kind.is_file() && !is_own_stream(path) {
         return Err("is no regular file but a pipe, a socket or a device; name a .toml or .png file, or send the preset to /dev/stdin".into());
     }
-    let mut file = File::open(path).map_err(unreadable)?;
+    let mut file = BufReader::new(File::open(path).map_err(unreadable)?);
     let mut bytes = Vec::new();
-    let mut start = (&mut file).take(PNG_SIGNATURE.len() as u64);
+    let mut start = file.by_ref().take(SIGNATURE.len() as u64);
     start.read_to_end(&mut bytes).map_err(unreadable)?;
-    let picture = bytes == PNG_SIGNATURE;
-    // Text chunks stand before the pixels: the head of a picture holds them.
-    let most = if picture { 4 * MOST_BYTES } else { MOST_BYTES };
-    let mut rest = BufReader::new(file).take(most + 1);
-    rest.read_to_end(&mut bytes).map_err(unreadable)?;
-    if picture {
-        return picture_text(bytes);
+    if bytes == SIGNATURE {
+        let none = "carries no preset; only a PNG that this program wrote does";
+        return text_chunk::text(&mut file, PNG_KEYWORD)?.ok_or_else(|| none.into());
     }
+    let mut rest = file.take(MOST_BYTES + 1);
+    rest.read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MOST_BYTES {
         return Err("is larger than 1 MiB, which no preset is; is it the right file?".into());
     }
     let text = String::from_utf8(bytes).map_err(
         |_| "is not text in UTF-8; a preset is a TOML file, or a PNG that this program wrote",
     )?;
-    if text.starts_with(MANDELBULBER) {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let is_of = |line: &str| MANDELBULBER.contains(&line.trim());
+    let extension = path.extension().unwrap_or_default();
+    if extension.eq_ignore_ascii_case("fract") || text.lines().any(is_of) {
         return Err("is a settings file of Mandelbulber; only presets of conemarch are read, and `conemarch presets NAME` prints one to start from".into());
     }
-    Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_string())
-}
-
-/// The preset in the text chunks of a PNG, of whose file this is the head. Other programs
-/// may have saved the chunk as another kind.
-fn picture_text(head: Vec<u8>) -> Result<String, String> {
-    let reader = png::Decoder::new(Cursor::new(head)).read_info();
-    let reader =
-        reader.map_err(|e| format!("is a broken PNG: {e}; render it again from its preset"))?;
-    let info = reader.info();
-    let latin = info.uncompressed_latin1_text.iter();
-    let latin = latin.map(|c| (&c.keyword, Ok(c.text.clone())));
-    let compressed = info.compressed_latin1_text.iter().map(|c| {
-        let mut c2 = c.clone();
-        let text = c2.decompress_text_with_limit(MOST_BYTES as usize);
-        (&c.keyword, text.and_then(|()| c2.get_text()))
-    });
-    let unicode = info.utf8_text.iter().map(|c| {
-        let mut c2 = c.clone();
-        let text = c2.decompress_text_with_limit(MOST_BYTES as usize);
-        (&c.keyword, text.and_then(|()| c2.get_text()))
-    });
-    let mut texts = latin.chain(compressed).chain(unicode);
-    match texts.find(|(keyword, _)| *keyword == PNG_KEYWORD) {
-        Some((_, text)) => {
-            text.map_err(|e: DecodingError| format!("carries a preset that cannot be read: {e}"))
-        }
-        None => Err("carries no preset; only a PNG that this program wrote does".into()),
-    }
+    Ok(text.to_string())
 }

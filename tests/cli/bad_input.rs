@@ -52,6 +52,8 @@ large.toml ; 1 ; large.toml: is larger than 1 MiB
 broken.toml ; 1 ; broken.toml:5: camera.fov = 400: must be a number from 1 to 170
 syntax.toml ; 1 ; syntax.toml:2: this is not TOML
 box.fract ; 1 ; box.fract: is a settings file of Mandelbulber|presets of conemarch
+comment.txt ; 1 ; comment.txt: is a settings file of Mandelbulber
+section.txt ; 1 ; section.txt: is a settings file of Mandelbulber
 folder.toml ; 1 ; folder.toml: is a folder
 missing.toml ; 1 ; missing.toml: cannot be read
 "#;
@@ -66,10 +68,9 @@ fn folder() -> Folder {
         "[scene]\nkind = \"slab\"\n\n[camera]\nfov = 400\n",
     );
     folder.write("syntax.toml", "[scene]\nkind = \n");
-    folder.write(
-        "box.fract",
-        "# Mandelbulber settings file\n# version 2.26\n[main]\n",
-    );
+    folder.write("box.fract", "x 1;\n");
+    folder.write("comment.txt", "\u{feff}# Mandelbulber settings file\n");
+    folder.write("section.txt", "\n[main_parameters]\nx 1;\n");
     for name in ["folder.toml", "folder.png"] {
         fs::create_dir(folder.0.join(name)).expect("a folder");
     }

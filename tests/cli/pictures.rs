@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Layer};
+use png::text_metadata::{ITXtChunk, TEXtChunk, ZTXtChunk};
 
 use crate::folder::Folder;
 use crate::images::pixels;
@@ -66,14 +67,16 @@ fn a_png_tells_its_title_program_and_preset_in_chunks_that_all_programs_read() {
     folder.done("render l.png --explain");
 }
 
-/// A picture of another program, with one text chunk.
-fn foreign(fill: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>)) -> Vec<u8> {
+/// A picture of another program, with chunks behind the pixels and much else.
+fn foreign(fill: impl FnOnce(&mut png::Writer<&mut Vec<u8>>)) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
     encoder.set_color(png::ColorType::Grayscale);
-    fill(&mut encoder);
     let mut writer = encoder.write_header().expect("a header");
     writer.write_image_data(&[7]).expect("a pixel");
+    let other = png::chunk::ChunkType(*b"miNe");
+    writer.write_chunk(other, &vec![0; 5 << 20]).expect("zeros");
+    fill(&mut writer);
     writer.finish().expect("an end");
     bytes
 }
@@ -82,15 +85,21 @@ fn foreign(fill: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>)) -> Vec<u8> {
 fn a_preset_is_read_from_any_kind_of_text_chunk() {
     let folder = Folder::new();
     let key = || "conemarch preset".to_string();
-    let text = || "[scene]\nkind = \"slab\"\n".to_string();
+    let text = "[scene]\nkind = \"slab\"\n";
+    let plain = |text: &str| {
+        let chunk = TEXtChunk::new(key(), text);
+        foreign(|w| w.write_text_chunk(&chunk).unwrap())
+    };
     for bytes in [
-        foreign(|e| e.add_text_chunk(key(), text()).unwrap()),
-        foreign(|e| e.add_ztxt_chunk(key(), text()).unwrap()),
-        foreign(|e| e.add_itxt_chunk(key(), text()).unwrap()),
+        plain(text),
+        foreign(|w| w.write_text_chunk(&ZTXtChunk::new(key(), text)).unwrap()),
+        foreign(|w| w.write_text_chunk(&ITXtChunk::new(key(), text)).unwrap()),
     ] {
         folder.write("a.png", bytes);
         folder.done("render a.png --explain");
     }
+    folder.write("bad.png", plain("[scene]\nkind = 3\n"));
+    folder.fails("presets bad.png", 1, "bad.png:2: scene.kind = 3: must be");
     folder.write("none.png", foreign(|_| {}));
     folder.write("not.png", b"\x89PNG\r\n\x1a\nnonsense");
     folder.fails(&tiny("none.png", ""), 1, "none.png: carries no preset");

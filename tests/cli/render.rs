@@ -94,15 +94,15 @@ fn names_need_not_be_utf_8() {
     let steps = "bench steps --device cpu --mode ray --size 8x8";
     let named_picture = "render mandelbox --device cpu --size 24x16 -o";
     for output in [
-        run("render --device cpu --size 24x16 -o a.png", b"b\xffx.toml"),
+        run("render --device cpu --size 24x16", b"b\xffx.toml"),
         run(steps, b"b\xffx.toml"),
         run(named_picture, b"c\xff.png"),
         run("presets", b"c\xff.png"),
     ] {
         assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     }
-    let files = ["a.png", "b\u{fffd}x.toml", "c\u{fffd}.png"];
-    assert_eq!(folder.files(), files);
+    assert_eq!(folder.files().len(), 3);
+    assert!(folder.0.join(named(b"b\xffx-24x16.png")).exists());
     // Elsewhere text is needed, and the error says where.
     let output = run("render mandelbox --set", b"title=\xff");
     assert_eq!(output.status.code(), Some(2));

@@ -364,7 +364,7 @@ fn names_need_not_be_utf_8() {
         assert!(output.status.success(), "{verb}: {}", said(&output));
     };
     run("make", ".png", "--device cpu", None);
-    assert_eq!(folder.files().len(), 2);
+    assert!(folder.0.join(name("-cones.exr")).exists());
     run("make", ".png", "--device cpu", Some(".exr"));
     run("convert", ".exr", "", Some("-b.png"));
     run("inspect", "-b.png", "", Some("-c.png"));

@@ -10,7 +10,7 @@ use conemarch::heightfield::conemap::file::{
 };
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::pattern::Pattern;
-use png::{BitDepth, ColorType};
+use png::{BitDepth, ColorType, text_metadata::TEXtChunk};
 
 use crate::folder::Folder;
 use crate::map_files::{eight, encoded, field, made, through};
@@ -182,7 +182,7 @@ fn a_map_that_was_cut_or_contradicts_itself_is_refused() {
     assert!(why.contains("a.txt") && why.contains("PNG or EXR"), "{why}");
 }
 
-/// A PNG with another text in its label.
+/// A PNG with another text in its label, which stands behind the pixels.
 fn relabelled(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     let (info, pixels) = pixels(bytes);
     let label = &info.uncompressed_latin1_text[0];
@@ -191,11 +191,10 @@ fn relabelled(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     let mut encoder = png::Encoder::new(&mut bytes, info.width, info.height);
     encoder.set_color(info.color_type);
     encoder.set_depth(info.bit_depth);
-    let text = label.text.replace(from, to);
-    let added = encoder.add_text_chunk(label.keyword.clone(), text);
-    added.expect("a text");
+    let text = TEXtChunk::new(&label.keyword, label.text.replace(from, to));
     let mut writer = encoder.write_header().expect("a head");
     writer.write_image_data(&pixels).expect("pixels");
+    writer.write_text_chunk(&text).expect("a text");
     writer.finish().expect("an end");
     bytes
 }

@@ -11,7 +11,7 @@ use crate::command::bench::runner::{COUNTED, Runner, TIMED};
 use crate::command::bench::table;
 use crate::command::executor::Executor;
 use crate::command::interrupt;
-use crate::command::progress::Progress;
+use crate::command::progress::Reporter;
 use crate::gpu::RenderError;
 use crate::measure::calibrate::{Calibration, calibrate};
 use crate::plan::Plan;
@@ -67,7 +67,7 @@ pub fn run(args: &CalibrateBench) -> Result<()> {
     let mut all = args.common.begin(None)?;
     let mut rows = Vec::new();
     for subject in &all.subjects {
-        let mut progress = Progress::start(&format!("calibrating {}", subject.what));
+        let mut progress = Reporter::start(&format!("calibrating {}", subject.what));
         let watch = &mut |share| progress.report(share, "");
         let rays = args.rays as usize;
         let found = calibrate(&subject.plan, &all.assets, args.budget, rays, watch)?;

@@ -17,7 +17,7 @@ use crate::command::conemap::maker::MapMaker;
 use crate::command::executor::{Executor, device};
 use crate::command::interrupt;
 use crate::command::print::say;
-use crate::command::progress::Progress;
+use crate::command::progress::Reporter;
 use crate::gpu::adapters::Choice;
 use crate::heightfield::conemap::generate::generator::{
     GenerateError, Generator, Options, Quality,
@@ -175,7 +175,7 @@ impl Measured<'_> {
         let (heights, patches) = (self.surface.heights(), self.surface.patches());
         let mut maker = MapMaker::new(self.executor);
         let (mut rows, mut maps) = (Vec::new(), Maps::new());
-        let mut progress = Progress::start(&format!("making maps of {}", self.note.field));
+        let mut progress = Reporter::start(&format!("making maps of {}", self.note.field));
         for (i, generator) in Generator::ALL.into_iter().enumerate() {
             let mut row = self.row(generator.name());
             let (start, mut done) = (Instant::now(), 0.0);
@@ -214,7 +214,7 @@ impl Measured<'_> {
     fn trace(&self, maps: &Maps) -> Result<Vec<TracerRow>> {
         let reference = Tracer::reference(self.surface.clone());
         let (mut rows, pairs) = (Vec::new(), pairs());
-        let mut progress = Progress::start(&format!("tracing {}", self.note.field));
+        let mut progress = Reporter::start(&format!("tracing {}", self.note.field));
         for (i, view_deg) in VIEWS.into_iter().enumerate() {
             let rays = view_rays(&self.surface, f64::from(view_deg), RAYS);
             let truths = first_hits(&reference, &rays);

@@ -19,7 +19,7 @@ use crate::command::executor::Executor;
 use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
-use crate::command::progress::Progress;
+use crate::command::progress::Reporter;
 use crate::command::sink::{ending, is_stdout};
 use crate::gpu::RenderError;
 use crate::measure::compare::compare;
@@ -102,7 +102,7 @@ fn truths(
         if found.contains_key(&truth_key(plan)) {
             continue;
         }
-        let mut progress = Progress::start(&format!("rendering the truth of {what}"));
+        let mut progress = Reporter::start(&format!("rendering the truth of {what}"));
         let (truth, is_cached) = cached(cache, plan, assets, &mut progress.watch())?;
         drop(progress);
         let kept = if is_cached { ", kept from before," } else { "" };

@@ -1,9 +1,9 @@
 //! The renders of a measurement, with progress.
 
 use crate::command::executor::Executor;
-use crate::command::progress::Progress;
+use crate::command::progress::Reporter;
 use crate::gpu::RenderError;
-use crate::pass::progress::Progress as Now;
+use crate::pass::progress::Progress;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
 use crate::scene::Assets;
@@ -33,7 +33,7 @@ pub const TIMED: Extras = Extras {
 pub struct Runner<'a> {
     executor: &'a mut Executor,
     assets: &'a Assets,
-    progress: Progress,
+    progress: Reporter,
     done: usize,
     all: usize,
 }
@@ -44,7 +44,7 @@ impl<'a> Runner<'a> {
         Self {
             executor,
             assets,
-            progress: Progress::start(&format!("measuring {what}")),
+            progress: Reporter::start(&format!("measuring {what}")),
             done: 0,
             all,
         }
@@ -61,7 +61,7 @@ impl<'a> Runner<'a> {
         detail: &str,
     ) -> Result<Frame, RenderError> {
         let (progress, done, all) = (&mut self.progress, self.done as f64, self.all as f64);
-        let watch = &mut |now: &Now| progress.report((done + now.done) / all, detail);
+        let watch = &mut |now: &Progress| progress.report((done + now.done) / all, detail);
         let frame = self.executor.render(plan, self.assets, extras, watch)?;
         self.done += 1;
         Ok(frame)

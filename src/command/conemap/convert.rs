@@ -9,6 +9,7 @@ use crate::command::conemap::options::{Foreign, Output, Writing, wraps, write};
 use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
+use crate::command::progress::Reporter;
 use crate::command::sink::{Sink, shown, spared};
 
 /// What `convert` takes.
@@ -46,10 +47,17 @@ pub fn run(args: &Convert) -> Result<()> {
         &[("the new map", Some(output))],
         &[("the one that is read", args.map.clone())],
     )?;
+    interrupt::listen();
+    let mut progress = Reporter::start("converting");
+    progress.report(0.0, "reading");
     let file = args.foreign.decode(&args.map, args.wrap)?;
     let format = args.writing.format(output, file.map.kind)?;
-    interrupt::listen();
-    let what_is_kept = write(&file, &format, Sink::prepare(output)?)?;
+    let sink = Sink::prepare(output)?;
+    interrupt::check()?;
+    // The new map is written and read back, which takes about as long each.
+    progress.report(1.0 / 3.0, "writing");
+    let what_is_kept = write(&file, &format, sink)?;
+    drop(progress);
     let [w, h] = file.map.size;
     say(&format!(
         "{}  {w} x {h}  {}, layout {}  {what_is_kept}",

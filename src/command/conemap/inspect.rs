@@ -11,7 +11,9 @@ use crate::command::conemap::options::{Foreign, Reading};
 use crate::command::conemap::panels::{heights_panels, map_panels};
 use crate::command::conemap::sheet::png;
 use crate::command::failure::usage;
+use crate::command::interrupt;
 use crate::command::print::{print, say};
+use crate::command::progress::Reporter;
 use crate::command::sink::{Sink, ending, shown, spared};
 use crate::heightfield::conemap::file::{MapFile, MapUse, has_map};
 
@@ -37,6 +39,9 @@ pub struct Inspect {
     foreign: Foreign,
 }
 
+/// Share of the work that is reading a file or making a field, by the clock.
+const READ: f64 = 0.9;
+
 /// Tells what is in a file, and draws it.
 ///
 /// # Errors
@@ -47,11 +52,14 @@ pub fn run(args: &Inspect) -> Result<()> {
     let mut inputs = vec![("what it shows", path.to_path_buf())];
     inputs.extend(args.heights.iter().map(|h| ("the heights", h.into())));
     spared(&[("the picture", args.output.as_deref())], &inputs)?;
+    interrupt::listen();
     let picture = args.output.as_deref().map(picture_sink).transpose()?;
+    let mut progress = Reporter::start("inspecting");
+    progress.report(0.0, "reading");
     // Fields have no file. The reader of heights reports a file that is neither.
     let is_map = args.foreign.is_given() || has_map(path).unwrap_or(false);
     let name = path.display().to_string();
-    let panels = if is_map {
+    let (text, panels) = if is_map {
         let needless = args.reading.given(args.foreign.is_given());
         if let (None, Some(option)) = (&args.heights, needless) {
             return Err(usage(format!(
@@ -62,8 +70,9 @@ pub fn run(args: &Inspect) -> Result<()> {
         if let Some(heights) = &args.heights {
             check_heights(args, &file, path, heights)?;
         }
-        print(describe_map(&name, &file).as_bytes())?;
-        picture.is_some().then(|| map_panels(&file))
+        progress.report(READ, "describing");
+        let text = describe_map(&name, &file);
+        (text, picture.is_some().then(|| map_panels(&file)))
     } else {
         if args.heights.is_some() {
             return Err(usage(format!(
@@ -71,9 +80,14 @@ pub fn run(args: &Inspect) -> Result<()> {
             )));
         }
         let loaded = args.reading.load(&args.file)?;
-        print(describe_heights(&name, &loaded).as_bytes())?;
-        picture.is_some().then(|| heights_panels(&loaded.heights))
+        progress.report(READ, "describing");
+        let text = describe_heights(&name, &loaded);
+        let panels = picture.is_some().then(|| heights_panels(&loaded.heights));
+        (text, panels)
     };
+    drop(progress);
+    interrupt::check()?;
+    print(text.as_bytes())?;
     if let (Some((path, sink)), Some(panels)) = (picture, panels) {
         let (bytes, [w, h]) = png(&panels)?;
         sink.finish(&bytes)?;

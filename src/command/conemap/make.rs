@@ -1,7 +1,7 @@
 //! `conemarch conemap make HEIGHTS [-o MAP]`
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use anyhow::Result;
@@ -14,7 +14,7 @@ use crate::command::conemap::options::{Output, Reading, Writing, write};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::print::say;
-use crate::command::progress::Progress;
+use crate::command::progress::Reporter;
 use crate::command::sink::{Sink, shown, spared};
 use crate::command::{interrupt, memory};
 use crate::gpu::adapters::Choice;
@@ -89,14 +89,15 @@ pub fn run(args: &Make) -> Result<()> {
     if let Some(Ok(field)) = field {
         check_memory(generator, field.size)?;
     }
-    let mut progress = Progress::start("making cones");
+    let mut progress = Reporter::start("making cones");
     progress.report(0.0, "heights");
     let loaded = args.reading.load(&args.heights)?;
     let heights = &loaded.heights;
     check_memory(generator, heights.size())?;
     // The default name is never that of the heights, and its format keeps everything.
-    let default = || PathBuf::from(format!("{}-cones.exr", loaded.name));
-    let output = args.output.output.clone().unwrap_or_else(default);
+    let mut default = loaded.name.clone();
+    default.push("-cones.exr");
+    let output = args.output.output.clone().unwrap_or(default.into());
     spared(
         &[("the map", Some(&output))],
         &[("its heights", Path::new(&args.heights).into())],

@@ -5,7 +5,9 @@ use crate::gpu::RenderError;
 use crate::gpu::conemap::generate::Maker;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::cpu;
-use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options, Watch};
+use crate::heightfield::conemap::generate::generator::{
+    GenerateError, Generator, Options, ShareWatch,
+};
 use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::max_mip::MaxMip;
 
@@ -28,7 +30,7 @@ impl<'a> MapMaker<'a> {
         heights: &Heights,
         patches: Patches,
         options: &Options,
-        watch: Watch<'_>,
+        watch: ShareWatch<'_>,
     ) -> Result<ConeMap, GenerateError> {
         match &mut self.0 {
             Some(maker) => maker.generate(generator, heights, patches, options, watch),

@@ -17,7 +17,9 @@ use crate::gpu::device::Device;
 use crate::gpu::error::{RenderError, check_room};
 use crate::gpu::kernel::{Kernel, Kernels};
 use crate::heightfield::conemap::ConeMap;
-use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options, Watch};
+use crate::heightfield::conemap::generate::generator::{
+    GenerateError, Generator, Options, ShareWatch,
+};
 use crate::heightfield::conemap::generate::pyramid::{self, Tiles};
 use crate::heightfield::conemap::generate::refine_f64::{is_ambiguous, refined};
 use crate::heightfield::conemap::generate::task::MapTask;
@@ -127,7 +129,7 @@ impl<'a> Maker<'a> {
         heights: &Heights,
         patches: Patches,
         options: &Options,
-        watch: Watch<'_>,
+        watch: ShareWatch<'_>,
     ) -> Result<ConeMap, GenerateError> {
         let task = MapTask::new(generator, heights, patches, options)?;
         (self.refined, self.device_ms) = (0, 0.0);
@@ -138,7 +140,11 @@ impl<'a> Maker<'a> {
         Ok(map)
     }
 
-    fn ratios(&mut self, task: &MapTask<'_>, watch: Watch<'_>) -> Result<Vec<f64>, RenderError> {
+    fn ratios(
+        &mut self,
+        task: &MapTask<'_>,
+        watch: ShareWatch<'_>,
+    ) -> Result<Vec<f64>, RenderError> {
         let kernel = self.kernels.get(self.device, &task.program())?;
         let size = task.size;
         let layout = Tiles::new(size);
@@ -181,13 +187,14 @@ impl<'a> Maker<'a> {
         first: u32,
         rows: u32,
         ratios: &mut Vec<f64>,
-        watch: Watch<'_>,
+        watch: ShareWatch<'_>,
     ) -> Result<(), RenderError> {
         let task = bands.task;
         let (searches, per_cone) = (task.method.sectors().len(), task.searches_per_cone());
         // What was found for each cone of a place, over all places of the band.
         let mut found: Vec<Vec<SearchState>> = Vec::new();
         for search in 0..searches {
+            let watch = &mut |part| watch((search as f64 + part) / searches as f64);
             let mut parameters = bands.parameters(first, rows, search);
             parameters.rounds = (self.division.rounds / task.method.rounds()).max(1);
             parameters.keeps = u32::from(search % per_cone > 0);
@@ -218,7 +225,7 @@ impl<'a> Maker<'a> {
         bands: &Bands<'_>,
         search: usize,
         mut parameters: GenerateUniform,
-        watch: Watch<'_>,
+        watch: ShareWatch<'_>,
     ) -> Result<Vec<SearchState>, RenderError> {
         let device = self.device;
         let buffer = uniform(device, "generate", bytes_of(&parameters));

@@ -17,8 +17,8 @@ use std::path::Path;
 use crate::heightfield::Patches;
 use crate::heightfield::conemap::file::{decode_as, has_map};
 use crate::heightfield::load::pattern_spec::read_size;
-use crate::heightfield::raster::open::{Format, Opened, open};
-use crate::heightfield::raster::{exr, png, tiff};
+use crate::raster::open::{Format, Opened, open};
+use crate::raster::{exr, png, tiff};
 
 /// Numbers of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,7 +89,7 @@ fn of_map(opened: Opened) -> Result<Grid, String> {
 }
 
 fn read_png(opened: Opened) -> Result<Grid, String> {
-    let pixels = png::read(opened.file, 1, "")?;
+    let pixels = png::read(opened.file, 1)?;
     let most = f64::from(pixels.most);
     let share = |n: &u16| (f64::from(*n) / most) as f32;
     let colors = ["grey", "grey and alpha", "colour", "colour and alpha"];

@@ -5,6 +5,7 @@
 
 use std::fmt;
 
+use crate::base::units::{size, whole};
 use crate::heightfield::{heights::MOST_SAMPLES, pattern::Pattern};
 
 /// A pattern with everything that decides its heights.
@@ -85,23 +86,14 @@ impl fmt::Display for PatternSpec {
     }
 }
 
-/// A number of digits alone.
-fn whole(text: &str) -> Option<u32> {
-    let digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    text.parse().ok().filter(|_| digits)
-}
-
 /// Reads `512x256` as samples along each axis.
 ///
 /// # Errors
 /// In words: the text has another form, or a side is out of range.
 pub(crate) fn read_size(text: &str) -> Result<[u32; 2], String> {
-    let side = |s: &str| whole(s).filter(|n| (1..=MOST_SAMPLES).contains(n));
-    let (w, h) = text.split_once(['x', 'X']).unwrap_or_default();
-    match (side(w), side(h)) {
-        (Some(w), Some(h)) => Ok([w, h]),
-        _ => Err(format!(
+    size(text, MOST_SAMPLES).ok_or_else(|| {
+        format!(
             "`{text}` is not a size: width x height, each from 1 to {MOST_SAMPLES}, like 512x256"
-        )),
-    }
+        )
+    })
 }

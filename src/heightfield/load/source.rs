@@ -6,7 +6,7 @@
 //! landscape would not fit together any more, and a dent that uses half of the range would
 //! become twice as deep. `invert` turns depths into heights, as the last step.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 use crate::heightfield::load::file::read;
@@ -30,7 +30,7 @@ pub struct LoadOptions {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     /// The file's name without its ending, or the pattern's name.
-    pub name: String,
+    pub name: OsString,
     /// The heights.
     pub heights: Heights,
     /// Where they come from, in words.
@@ -87,9 +87,8 @@ fn generated(named: Result<PatternSpec, String>, options: &LoadOptions) -> Resul
 fn in_file(path: &Path, options: &LoadOptions) -> Result<Loaded, String> {
     let mut grid = read(path, options.size)?;
     into_range(&mut grid.values, grid.size[0] as usize, options.normalize)?;
-    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
     Ok(Loaded {
-        name: stem.unwrap_or_else(|| "heights".into()),
+        name: path.file_stem().unwrap_or(OsStr::new("heights")).into(),
         heights: finished(grid.size, grid.values, options)?,
         form: grid.form,
         note: grid.note.map(|note| format!("{} {note}", path.display())),

@@ -3,7 +3,7 @@
 //! A file of another program has no label. The caller must say what it is
 //! ([`ForeignFormat`]), and is believed. The other program may have rounded ratios up.
 
-use std::io::{BufRead, Cursor, Seek};
+use std::io::{BufRead, Cursor, Seek, SeekFrom};
 use std::path::Path;
 
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
@@ -11,9 +11,10 @@ use crate::heightfield::conemap::file::{
     Bits, Channel, Label, Layout, MapFile, MapFormat, RatioScale, Ratios, ShadingChannel, Slopes,
     encode::SIDES, map_file::scale,
 };
-use crate::heightfield::raster::open::{Format, format_of, open};
-use crate::heightfield::raster::{exr, png};
 use crate::heightfield::{ConeMap, FileError, MapKind, Patches, conemap::WIDEST};
+use crate::raster::open::{Format, format_of, open};
+use crate::raster::text_chunk::{self, SIGNATURE};
+use crate::raster::{exr, png};
 
 /// What a file without a label contains.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +38,7 @@ pub fn has_map(path: &Path) -> Result<bool, FileError> {
     let mut opened = open(path).map_err(fail)?;
     Ok(match opened.format {
         // A broken file is not a map; reading it as heights reports what is broken.
-        Format::Png => png::text_in(opened.file, KEYWORD).is_some(),
+        Format::Png => text_of(&mut opened.file).is_ok_and(|text| text.is_some()),
         Format::Exr => exr::head(&mut opened.file, KEYWORD).is_ok_and(|h| h.text.is_some()),
         _ => false,
     })
@@ -93,10 +94,25 @@ fn unlabelled(is_png: bool) -> String {
     format!("has no label of a cone map; `conemarch conemap make` makes a map from heights{more}")
 }
 
-fn from_png(file: impl BufRead + Seek, foreign: Option<&ForeignFormat>) -> Result<MapFile, String> {
-    let pixels = png::read(file, 4, KEYWORD)?;
-    let mut map_file = match (&pixels.text, foreign) {
-        (Some(text), _) => label::read(text)?,
+/// The text of the label in a PNG; puts the reader back to its start.
+fn text_of(file: &mut (impl BufRead + Seek)) -> Result<Option<String>, String> {
+    let unreadable = |e| format!("cannot be read: {e}");
+    let behind = SeekFrom::Start(SIGNATURE.len() as u64);
+    file.seek(behind).map_err(unreadable)?;
+    let text = text_chunk::text(file, KEYWORD);
+    file.rewind().map_err(unreadable)?;
+    text
+}
+
+fn from_png(
+    mut file: impl BufRead + Seek,
+    foreign: Option<&ForeignFormat>,
+) -> Result<MapFile, String> {
+    let text = text_of(&mut file);
+    // What is wrong with the whole file comes first.
+    let pixels = png::read(file, 4)?;
+    let mut map_file = match (text?, foreign) {
+        (Some(text), _) => label::read(&text)?,
         (None, Some(foreign)) => assumed(foreign, pixels.size)?,
         (None, None) => return Err(unlabelled(true)),
     };

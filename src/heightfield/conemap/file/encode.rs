@@ -1,13 +1,17 @@
 //! A cone map to the bytes of a file.
 
+use std::io::Cursor;
+
+use ::exr::prelude::WritableImage;
+
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
 use crate::heightfield::conemap::file::shading::{half, normal_shares, whole};
 use crate::heightfield::conemap::file::{
     Bits, Channel, MapFile, MapFormat, RatioScale, Ratios, Slopes, narrowed, rounding::share_down,
 };
 use crate::heightfield::conemap::generate::slopes::slopes;
-use crate::heightfield::raster::{exr, png};
 use crate::heightfield::{FileError, Heights};
+use crate::raster::{exr, png};
 
 /// Names of the ratios of the four sides in an EXR: east is +x, south +y, as rows go
 /// down.
@@ -27,20 +31,20 @@ pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, FileError> 
         format.ratio = RatioScale::Linear;
     }
     let text = label::write(file, &format).map_err(fail)?;
-    let mut bytes = Vec::new();
+    let mut bytes = Cursor::new(Vec::new());
     let written = if layout.is_exr() {
-        exr::write(&mut bytes, file.map.size, floats(file), [KEYWORD, &text])
+        let image = exr::image(file.map.size, floats(file), [KEYWORD, &text]);
+        let written = image.write().to_buffered(&mut bytes);
+        written.map_err(|e| e.to_string())
     } else {
         let numbers = numbers(file, &format).map_err(fail)?;
-        let channels = layout.facts().channels.len();
-        let pixels = png::Pixels {
-            text: Some(text),
-            ..png::Pixels::new(file.map.size, channels, format.bits.most(), numbers)
-        };
-        png::write(&mut bytes, &pixels, KEYWORD)
+        let (size, most) = (file.map.size, format.bits.most());
+        let label = [(KEYWORD, text.as_str())];
+        let written = png::write(&mut bytes, size, most, &numbers, false, &label);
+        written.map_err(|e| e.to_string())
     };
     written.map_err(|e| fail(format!("could not be encoded: {e}")))?;
-    Ok(bytes)
+    Ok(bytes.into_inner())
 }
 
 /// The channels of an EXR. Heights are kept bit for bit. Ratios are shares of the scale,

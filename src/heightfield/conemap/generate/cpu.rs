@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::heightfield::conemap::generate::generator::{NodeCount, Watch};
+use crate::heightfield::conemap::generate::generator::{NodeCount, ShareWatch};
 use crate::heightfield::conemap::generate::{
     GenerateError, Generator, MapTask, Options, min3x3::min3x3, task::Found,
 };
@@ -29,7 +29,7 @@ pub fn generate(
     heights: &Heights,
     patches: Patches,
     options: &Options,
-    watch: Watch<'_>,
+    watch: ShareWatch<'_>,
 ) -> Result<ConeMap, GenerateError> {
     generate_counted(generator, heights, patches, options, watch).map(|(map, _)| map)
 }
@@ -43,7 +43,7 @@ pub fn generate_counted(
     heights: &Heights,
     patches: Patches,
     options: &Options,
-    watch: Watch<'_>,
+    watch: ShareWatch<'_>,
 ) -> Result<(ConeMap, NodeCount), GenerateError> {
     let task = MapTask::new(generator, heights, patches, options)?;
     let places = task.values.len();

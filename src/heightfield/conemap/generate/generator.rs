@@ -163,7 +163,7 @@ pub enum GenerateError {
 }
 
 /// Receives the share of places that are done, now and then; `false` cancels.
-pub type Watch<'a> = &'a mut dyn FnMut(f64) -> bool;
+pub type ShareWatch<'a> = &'a mut dyn FnMut(f64) -> bool;
 
 /// How many nodes the searches of a map looked up. Nodes are samples, or maxima of any level.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

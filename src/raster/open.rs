@@ -7,6 +7,8 @@ use std::fs::{self, File};
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
+use crate::raster::text_chunk::SIGNATURE;
+
 /// What the first bytes of a file tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -35,7 +37,7 @@ pub struct Opened {
 
 /// First bytes and the formats that they belong to.
 const MARKS: [(&[u8], Format); 7] = [
-    (b"\x89PNG\r\n\x1a\n", Format::Png),
+    (SIGNATURE, Format::Png),
     (b"\x76\x2f\x31\x01", Format::Exr),
     (b"II*\0", Format::Tiff),
     (b"MM\0*", Format::Tiff),
@@ -80,17 +82,21 @@ pub fn format_of(start: &[u8]) -> Format {
     found.map_or(Format::Other, |(_, format)| *format)
 }
 
-/// A size that a height map may have.
+/// Longest side of what is read.
+pub const MOST_SIDE: u32 = 8192;
+
+/// A size that may be read.
 ///
 /// # Errors
 /// In words: an axis has no samples or too many. This is checked before memory is allocated
 /// for what a header claims.
-pub fn check_size(width: u64, height: u64, most: u32) -> Result<[u32; 2], String> {
-    let side = |n: u64| u32::try_from(n).ok().filter(|n| (1..=most).contains(n));
+pub fn check_size(width: u64, height: u64) -> Result<[u32; 2], String> {
+    let sane = |n: &u32| (1..=MOST_SIDE).contains(n);
+    let side = |n: u64| u32::try_from(n).ok().filter(sane);
     match (side(width), side(height)) {
         (Some(w), Some(h)) => Ok([w, h]),
         _ => Err(format!(
-            "is {width} x {height}, and each axis may have 1 to {most}; cut or scale it"
+            "is {width} x {height}, and each axis may have 1 to {MOST_SIDE}; cut or scale it"
         )),
     }
 }

@@ -5,13 +5,12 @@
 
 use std::io::{BufRead, Seek, Write};
 
-use png::{ColorType, Decoder, DecodingError, Encoder, Reader, Transformations};
+use png::{
+    BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, SrgbRenderingIntent,
+    Transformations,
+};
 
-use crate::heightfield::heights::MOST_SAMPLES;
-use crate::heightfield::raster::open::check_size;
-
-/// Longest text that is read from a file: far more than any description needs.
-const MOST_TEXT: usize = 1 << 16;
+use crate::raster::open::check_size;
 
 /// The pixels of a file, and what is known of the channels that were left out.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,25 +29,9 @@ pub struct Pixels {
     pub is_grey: bool,
     /// Whether alpha is full everywhere.
     pub is_opaque: bool,
-    /// The text under the keyword that was asked for.
-    pub text: Option<String>,
 }
 
 impl Pixels {
-    /// Pixels that keep all their channels, with no text.
-    pub fn new(size: [u32; 2], channels: usize, most: u16, numbers: Vec<u16>) -> Self {
-        Self {
-            size,
-            kept_channels: channels,
-            channels,
-            most,
-            numbers,
-            is_grey: true,
-            is_opaque: true,
-            text: None,
-        }
-    }
-
     /// One of the kept channels.
     pub fn channel(&self, i: usize) -> impl Iterator<Item = u16> + '_ {
         self.numbers
@@ -63,22 +46,25 @@ impl Pixels {
 ///
 /// # Errors
 /// In words: broken, cut short, or too large.
-pub fn read(from: impl BufRead + Seek, most_kept: usize, keyword: &str) -> Result<Pixels, String> {
+pub fn read(from: impl BufRead + Seek, most_kept: usize) -> Result<Pixels, String> {
     let mut decoder = Decoder::new(from);
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(|e| broken(&e))?;
     let (width, height) = reader.info().size();
-    let size = check_size(width.into(), height.into(), MOST_SAMPLES)?;
+    let size = check_size(width.into(), height.into())?;
     let (color, depth) = reader.output_color_type();
     let bytes = usize::from(depth as u8).div_ceil(8);
     let channels = color.samples();
     let kept_channels = channels.min(most_kept);
     let most = if bytes == 2 { u16::MAX } else { 255 };
-    let numbers = Vec::with_capacity(size[0] as usize * size[1] as usize * kept_channels);
     let mut pixels = Pixels {
+        size,
         kept_channels,
-        text: text(&reader, keyword),
-        ..Pixels::new(size, channels, most, numbers)
+        channels,
+        most,
+        numbers: Vec::with_capacity(size[0] as usize * size[1] as usize * kept_channels),
+        is_grey: true,
+        is_opaque: true,
     };
     let has_alpha = matches!(color, ColorType::GrayscaleAlpha | ColorType::Rgba);
     let mut take = |row: &[u8]| {
@@ -122,13 +108,6 @@ pub fn read(from: impl BufRead + Seek, most_kept: usize, keyword: &str) -> Resul
     Ok(pixels)
 }
 
-/// The text under a keyword, from the head of a file alone; `None` if there is none, or
-/// no head.
-pub fn text_in(from: impl BufRead + Seek, keyword: &str) -> Option<String> {
-    let reader = Decoder::new(from).read_info().ok()?;
-    text(&reader, keyword)
-}
-
 fn broken(e: &DecodingError) -> String {
     match e {
         DecodingError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
@@ -138,54 +117,46 @@ fn broken(e: &DecodingError) -> String {
     }
 }
 
-/// The text under a keyword; another program may have saved it compressed.
-fn text<R: BufRead + Seek>(reader: &Reader<R>, keyword: &str) -> Option<String> {
-    let info = reader.info();
-    let plain = info.uncompressed_latin1_text.iter();
-    if let Some(chunk) = plain.clone().find(|c| c.keyword == keyword) {
-        return Some(chunk.text.clone());
-    }
-    let packed = &mut info.compressed_latin1_text.clone();
-    if let Some(chunk) = packed.iter_mut().find(|c| c.keyword == keyword) {
-        chunk.decompress_text_with_limit(MOST_TEXT).ok()?;
-        return chunk.get_text().ok();
-    }
-    let unicode = &mut info.utf8_text.clone();
-    let chunk = unicode.iter_mut().find(|c| c.keyword == keyword)?;
-    chunk.decompress_text_with_limit(MOST_TEXT).ok()?;
-    chunk.get_text().ok()
-}
-
-/// Writes pixels that keep all their channels, with the text under a keyword.
+/// Writes whole numbers up to 255 or 65535 with texts by their keywords. `is_light` says that
+/// they are sRGB.
 ///
 /// # Errors
-/// In words: what the encoder or the writer said.
-pub fn write(to: impl Write, pixels: &Pixels, keyword: &str) -> Result<(), String> {
-    let mut encoder = Encoder::new(to, pixels.size[0], pixels.size[1]);
-    encoder.set_color(match pixels.kept_channels {
+/// What the encoder or the writer said.
+pub fn write(
+    to: impl Write,
+    [width, height]: [u32; 2],
+    most: u16,
+    numbers: &[u16],
+    is_light: bool,
+    texts: &[(&str, &str)],
+) -> Result<(), EncodingError> {
+    let mut encoder = Encoder::new(to, width, height);
+    let places = width as usize * height as usize;
+    encoder.set_color(match numbers.len() / places.max(1) {
         1 => ColorType::Grayscale,
         2 => ColorType::GrayscaleAlpha,
         3 => ColorType::Rgb,
         _ => ColorType::Rgba,
     });
-    let wide = pixels.most > 255;
-    encoder.set_depth(if wide {
-        png::BitDepth::Sixteen
-    } else {
-        png::BitDepth::Eight
-    });
-    let numbers = pixels.numbers.iter();
-    let bytes: Vec<u8> = match wide {
-        true => numbers.flat_map(|n| n.to_be_bytes()).collect(),
-        false => numbers.map(|n| *n as u8).collect(),
-    };
-    if let Some(text) = &pixels.text {
-        let added = encoder.add_text_chunk(keyword.into(), text.clone());
-        added.map_err(|e| e.to_string())?;
+    if is_light {
+        encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     }
-    let written = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(&bytes)?;
-        writer.finish()
-    });
-    written.map_err(|e| e.to_string())
+    for (keyword, text) in texts {
+        // More programs know tEXt than iTXt, but it has no other letters.
+        if text.is_ascii() {
+            encoder.add_text_chunk((*keyword).into(), (*text).into())?;
+        } else {
+            encoder.add_itxt_chunk((*keyword).into(), (*text).into())?;
+        }
+    }
+    let bytes: Vec<u8> = match most > 255 {
+        true => {
+            encoder.set_depth(BitDepth::Sixteen);
+            numbers.iter().flat_map(|n| n.to_be_bytes()).collect()
+        }
+        false => numbers.iter().map(|n| *n as u8).collect(),
+    };
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&bytes)?;
+    writer.finish()
 }

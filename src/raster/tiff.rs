@@ -9,8 +9,7 @@ use tiff::ColorType;
 use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult};
 
-use crate::heightfield::heights::MOST_SAMPLES;
-use crate::heightfield::raster::open::check_size;
+use crate::raster::open::check_size;
 
 /// The first channel of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +30,7 @@ pub struct Channel {
 pub fn read(from: impl Read + Seek) -> Result<Channel, String> {
     let mut decoder = Decoder::new(from).map_err(|e| broken(&e))?;
     let (width, height) = decoder.dimensions().map_err(|e| broken(&e))?;
-    let size = check_size(width.into(), height.into(), MOST_SAMPLES)?;
+    let size = check_size(width.into(), height.into())?;
     let color = decoder.colortype().map_err(|e| broken(&e))?;
     if matches!(
         color,

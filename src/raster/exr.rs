@@ -3,17 +3,16 @@
 //! Reads parts without deep data, in scan lines or tiles, at the finest level. Halves and
 //! whole numbers become f32. A size is checked before memory is allocated for it.
 
-use std::io::{BufRead, Cursor, Read, Seek, Write};
+use std::io::{BufRead, Read, Seek};
 
 use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image, LayerAttributes, LineOrder,
-    ReadChannels, ReadLayers, ReadSpecificChannel, SmallVec, WritableImage,
+    AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image, Layer, LayerAttributes,
+    LineOrder, ReadChannels, ReadLayers, ReadSpecificChannel,
 };
 
-use crate::heightfield::heights::MOST_SAMPLES;
-use crate::heightfield::raster::open::check_size;
+use crate::raster::open::check_size;
 
 /// Longest text of an attribute that is read.
 const MOST_TEXT: usize = 1 << 16;
@@ -40,7 +39,7 @@ pub fn head(from: &mut (impl Read + Seek), attribute: &str) -> Result<Head, Stri
     for header in &meta.headers {
         // Memory is taken for every part, so every part must be sane.
         let (w, h) = (header.layer_size.width(), header.layer_size.height());
-        let found = check_size(w as u64, h as u64, MOST_SAMPLES)?;
+        let found = check_size(w as u64, h as u64)?;
         size.get_or_insert(found);
     }
     let (Some(size), Some(first)) = (size, meta.headers.first()) else {
@@ -91,37 +90,34 @@ fn broken(e: &exr::error::Error) -> String {
     format!("is an EXR that cannot be read: {e}; fetch or save it again")
 }
 
-/// Writes one part of named f32 channels with a text attribute, losslessly.
-///
-/// # Errors
-/// In words: what the encoder or the writer said.
-pub fn write(
-    to: &mut impl Write,
+/// One part of named f32 channels.
+pub type Channels = Image<Layer<AnyChannels<FlatSamples>>>;
+
+/// Named f32 channels of a size with a text attribute, which are written losslessly and have
+/// the same bytes every time.
+pub fn image(
     size: [u32; 2],
     channels: Vec<(String, Vec<f32>)>,
     [attribute, text]: [&str; 2],
-) -> Result<(), String> {
-    let list: SmallVec<_> = channels
-        .into_iter()
+) -> Channels {
+    let channels = channels.into_iter();
+    let list = channels
         .map(|(name, values)| AnyChannel::new(name.as_str(), FlatSamples::F32(values)))
         .collect();
     let mut attributes = LayerAttributes::default();
-    let latin = |text: &str| Text::new_or_none(text).ok_or("its text is not Latin");
-    let value = AttributeValue::Text(latin(text)?);
-    attributes.other.insert(latin(attribute)?, value);
-    let layer = exr::prelude::Layer::new(
-        (size[0] as usize, size[1] as usize),
-        attributes,
-        // Lines in their order, so that threads that end in any order give the same bytes.
-        Encoding {
-            blocks: Blocks::ScanLines,
-            line_order: LineOrder::Increasing,
-            ..Encoding::SMALL_FAST_LOSSLESS
-        },
-        AnyChannels::sort(list),
-    );
-    let mut bytes = Cursor::new(Vec::new());
-    let written = Image::from_layer(layer).write().to_buffered(&mut bytes);
-    written.map_err(|e| e.to_string())?;
-    to.write_all(&bytes.into_inner()).map_err(|e| e.to_string())
+    attributes.other.insert(attribute.into(), text_of(text));
+    // Lines in their order, so that threads that end in any order give the same bytes.
+    let encoding = Encoding {
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+        ..Encoding::SMALL_FAST_LOSSLESS
+    };
+    let size = (size[0] as usize, size[1] as usize);
+    let channels = AnyChannels::sort(list);
+    Image::from_layer(Layer::new(size, attributes, encoding, channels))
+}
+
+/// A text as an attribute.
+pub fn text_of(text: &str) -> AttributeValue {
+    AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes()))
 }

@@ -1,0 +1,10 @@
+//! Image files as numbers, for pictures, height maps and cone maps.
+//!
+//! - [`open`]: a file and its format; [`png`], [`exr`], [`tiff`]: their numbers
+//! - [`text_chunk`]: the texts in a PNG
+
+pub mod exr;
+pub mod open;
+pub mod png;
+pub mod text_chunk;
+pub mod tiff;
