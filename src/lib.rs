@@ -47,11 +47,14 @@
 //! in f64 and in f32. `docs/method.md` explains the mathematics.
 
 pub mod base;
+#[cfg(feature = "cli")]
 pub mod command;
+#[cfg(feature = "cli")]
 pub mod cpu;
 pub mod formula;
 pub mod gpu;
 pub mod heightfield;
+#[cfg(feature = "cli")]
 pub mod measure;
 pub mod pass;
 pub mod picture;

@@ -103,6 +103,83 @@ fn upward_paths(path: &str, text: &str) -> Vec<String> {
         .collect()
 }
 
+/// The item that `#[cfg(feature = "cli")]` stands before, and what is left of a text without it.
+fn without_next_item(text: &str) -> (&str, &str) {
+    let mut depth = 0;
+    let end = text.char_indices().find(|(i, c)| {
+        depth += i32::from("{([".contains(*c)) - i32::from("})]".contains(*c));
+        // A field ends with a comma, and a function's head may contain one.
+        let ends = ";}".contains(*c) || *c == ',' && !text[..*i].contains("fn ");
+        depth == 0 && ends
+    });
+    text.split_at(end.map_or(text.len(), |(i, _)| i + 1))
+}
+
+/// A text without what only the feature `cli` compiles, and the modules that are left out.
+fn core(text: &str) -> (String, Vec<String>) {
+    let (mut rest, mut kept, mut modules) = (text, String::new(), Vec::new());
+    while let Some((before, after)) = rest.split_once("#[cfg(feature = \"cli\")]") {
+        kept += before;
+        let (item, left) = without_next_item(after);
+        let name = item.split("mod ").nth(1);
+        modules.extend(name.map(|name| name.trim_end_matches(';').to_string()));
+        rest = left;
+    }
+    (kept + rest, modules)
+}
+
+/// What a browser lacks, or forbids.
+const NOT_IN_CORE: [&str; 8] = [
+    "std::fs",
+    "File::open",
+    "std::thread",
+    "Instant",
+    "std::env",
+    "block_on",
+    "PollType::Wait",
+    "rayon",
+];
+
+#[test]
+fn without_the_command_line_nothing_reads_files_waits_or_starts_threads() {
+    let files: Vec<(String, String)> = files_below("src").into_iter().collect();
+    let mut left_out = vec!["src/main".to_string()];
+    for (path, text) in &files {
+        let folder = path
+            .trim_end_matches(".rs")
+            .trim_end_matches("mod")
+            .trim_end_matches("lib");
+        let modules = core(&code(text)).1;
+        left_out.extend(
+            modules
+                .iter()
+                .map(|name| format!("{}/{name}", folder.trim_end_matches('/'))),
+        );
+    }
+    let is_core = |path: &str| {
+        let inside = |left: &String| {
+            path.strip_prefix(&**left)
+                .is_some_and(|p| p.starts_with(['/', '.']))
+        };
+        !left_out.iter().any(inside)
+    };
+    let found = |(path, text): &(String, String)| {
+        let text = core(&code(text)).0;
+        let words = NOT_IN_CORE.iter().filter(|word| text.contains(**word));
+        words
+            .map(|word| format!("{path}: {word}"))
+            .collect::<Vec<_>>()
+    };
+    let core_files: Vec<_> = files.iter().filter(|(path, _)| is_core(path)).collect();
+    let found: Vec<String> = core_files.iter().flat_map(|file| found(file)).collect();
+    assert!(found.is_empty(), "the core uses:\n{}", found.join("\n"));
+    // Enough of them are read, and each word is used elsewhere.
+    assert!(core_files.len() > 100 && left_out.len() > 8, "{left_out:?}");
+    for word in NOT_IN_CORE {
+        assert!(files.iter().any(|(_, text)| text.contains(word)), "{word}");
+    }
+}
+
 /// A Rust file that has a twin names the WGSL file at its own path, and that file exists.
 fn broken_twins(path: &str, text: &str) -> Vec<String> {
     let twin = path.replace("src/", "wgsl/").replace(".rs", ".wgsl");

@@ -8,12 +8,15 @@
 //! - [`work`]: what a pixel is, and what it cost
 //! - [`srgb`]: linear colours to and from sRGB
 //! - [`named`]: enums whose variants are chosen by a word
+//! - [`mod@clock`]: time; [`parallel`]: work over all cores
 //! - [`units`]: amounts of memory for people to read
 
 pub mod array;
+pub mod clock;
 pub mod cone;
 pub mod key;
 pub mod named;
+pub mod parallel;
 pub mod shader;
 pub mod srgb;
 pub mod units;

@@ -3,10 +3,9 @@
 //! It renders where a machine has no adapter, it makes the truths, and the GPU is compared
 //! with it.
 
-use std::time::Instant;
-
 use rayon::prelude::*;
 
+use crate::base::clock::clock;
 use crate::base::view::View;
 use crate::base::work::{Counts, State};
 use crate::heightfield::conemap::generate::cpu::generate;
@@ -48,7 +47,7 @@ pub fn render(
     watch: Watch<'_>,
 ) -> Result<Frame, FrameError> {
     let plan = &*plan.lean(extras);
-    let prepared = prepare(plan, assets, &mut generate, watch)?;
+    let prepared = prepare(plan, assets, &mut generate, clock, watch)?;
     let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
     let render = Render {
         plan,
@@ -85,7 +84,7 @@ impl Task for Render<'_> {
             hits: Vec::new(),
         };
         for (at, &pass) in passes.iter().enumerate() {
-            let start = Instant::now();
+            let start = clock();
             let mut bands = Bands {
                 pass: pass.name(),
                 before: at as f64 / passes.len() as f64,
@@ -100,7 +99,7 @@ impl Task for Render<'_> {
                 Pass::Prepare(_) => continue,
             };
             let figures = &mut run.frame.passes[at];
-            figures.wall_ms = start.elapsed().as_secs_f64() * 1e3;
+            figures.wall_ms = clock() - start;
             if extras.count && pass.marches() {
                 figures.evaluations = Some(work.0);
                 figures.iterations = Some(work.1);

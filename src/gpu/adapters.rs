@@ -1,10 +1,8 @@
 //! Adapters: how one is chosen and opened.
 
-use std::sync::OnceLock;
-use std::time::Instant;
-
 use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Features, Instance, Limits};
 
+use crate::base::clock::clock;
 use crate::gpu::device::{Device, DeviceError};
 
 /// The device to render on.
@@ -156,12 +154,6 @@ pub fn kind(info: &AdapterInfo) -> &'static str {
         DeviceType::Cpu => "software",
         DeviceType::Other => "other",
     }
-}
-
-/// Milliseconds since the first call.
-pub fn clock() -> f64 {
-    static START: OnceLock<Instant> = OnceLock::new();
-    START.get_or_init(Instant::now).elapsed().as_secs_f64() * 1e3
 }
 
 impl Device {

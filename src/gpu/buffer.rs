@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use bytemuck::Pod;
 use wgpu::BufferUsages;
 
-use crate::gpu::device::{Device, DeviceError};
+use crate::gpu::device::Device;
 
 /// A storage buffer of `len` values of `T` on a device.
 pub struct Buffer<T> {
@@ -48,36 +48,10 @@ impl<T: Pod> Buffer<T> {
         let bytes = bytemuck::cast_slice(values);
         device.queue.write_buffer(&self.raw, 0, bytes);
     }
-
-    /// Waits for the device and reads the first `count` values.
-    pub fn read(&self, device: &Device, count: usize) -> Result<Vec<T>, DeviceError> {
-        let size = bytes_for::<T>(count.min(self.len));
-        let staging = create(device, "staging", size, BufferUsages::MAP_READ);
-        let mut encoder = device.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(&self.raw, 0, &staging, 0, size);
-        device.queue.submit([encoder.finish()]);
-        let bytes = std::mem::size_of::<T>() * count.min(self.len);
-        map(device, &staging, bytes)
-    }
-}
-
-/// Waits for the device and reads the first bytes of a buffer that can be mapped. The buffer
-/// stays mapped.
-pub fn map<T: Pod>(
-    device: &Device,
-    staging: &wgpu::Buffer,
-    bytes: usize,
-) -> Result<Vec<T>, DeviceError> {
-    // If this fails, `wait` or the range below reports it.
-    staging.map_async(wgpu::MapMode::Read, .., |_| {});
-    device.wait()?;
-    let view = staging.get_mapped_range(..);
-    let view = view.map_err(|e| device.lost(e.to_string()))?;
-    Ok(bytemuck::pod_collect_to_vec(&view[..bytes]))
 }
 
 /// The size of a buffer in bytes, rounded up to the copy alignment.
-fn bytes_for<T>(len: usize) -> u64 {
+pub(super) fn bytes_for<T>(len: usize) -> u64 {
     let size = (std::mem::size_of::<T>() * len) as u64;
     size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)
 }

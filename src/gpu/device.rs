@@ -1,10 +1,11 @@
 //! A device, and how its loss is noticed.
 
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
 
 use thiserror::Error;
 use wgpu::{Adapter, AdapterInfo, Features};
+
+use crate::base::clock::Clock;
 
 /// What can go wrong with a device.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -47,9 +48,6 @@ pub enum DeviceError {
     },
 }
 
-/// Tells the time in milliseconds since any fixed moment.
-pub type Clock = fn() -> f64;
-
 /// An open device with its queue.
 pub struct Device {
     /// The wgpu device.
@@ -61,6 +59,7 @@ pub struct Device {
     /// Nanoseconds per timestamp tick, if the adapter has timestamps.
     pub tick_ns: Option<f32>,
     /// The adapter, if this program has opened the device.
+    #[cfg(feature = "cli")]
     pub(super) opened: Option<Adapter>,
     /// Milliseconds since any fixed time.
     pub(super) clock: Clock,
@@ -97,6 +96,7 @@ impl Device {
             device,
             queue,
             info,
+            #[cfg(feature = "cli")]
             opened: None,
             clock,
             trouble,
@@ -109,31 +109,6 @@ impl Device {
         limits
             .max_storage_buffer_binding_size
             .min(limits.max_buffer_size)
-    }
-
-    /// Waits until everything submitted has run.
-    ///
-    /// # Errors
-    /// The device was lost or reported an error.
-    pub fn wait(&self) -> Result<(), DeviceError> {
-        self.wait_for(None)
-    }
-
-    /// Waits until a submission has run, or the last one.
-    ///
-    /// # Errors
-    /// The device was lost or reported an error.
-    pub fn wait_for(
-        &self,
-        submission_index: Option<wgpu::SubmissionIndex>,
-    ) -> Result<(), DeviceError> {
-        let polled = self.device.poll(wgpu::PollType::Wait {
-            submission_index,
-            // A dispatch has a bounded number of steps. A device that needs longer hangs.
-            timeout: Some(Duration::from_secs(120)),
-        });
-        self.trouble()?;
-        polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
     }
 
     /// Takes in what the device reports, without waiting.
@@ -161,11 +136,12 @@ impl Device {
         let Some(error) = self.noted()? else {
             return Ok(());
         };
+        #[cfg(feature = "cli")]
         if matches!(error, DeviceError::Reported { .. }) {
             // A loss is noted once the device has nothing more to do.
             let _ = self.device.poll(wgpu::PollType::Wait {
                 submission_index: None,
-                timeout: Some(Duration::from_secs(1)),
+                timeout: Some(std::time::Duration::from_secs(1)),
             });
             if let Some(later) = self.noted()? {
                 return Err(later);

@@ -1,27 +1,12 @@
 //! Work on a thread of its own, which nobody waits for unasked.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use crate::gpu::told::{Panicked, Told};
 use crate::pass::progress::Progress;
-
-/// What a thread tells, and whether its answer is still wanted.
-#[derive(Debug)]
-pub struct Told {
-    unwanted: AtomicBool,
-    progress: Mutex<Progress>,
-}
-
-impl Told {
-    /// Tells what is under way. Returns whether the answer is still wanted.
-    pub fn tell(&self, progress: &Progress) -> bool {
-        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = progress.clone();
-        !self.unwanted.load(Ordering::Relaxed)
-    }
-}
 
 /// The threads of a renderer. Dropping it waits for them, as a driver may fail if a program ends
 /// while it compiles.
@@ -44,19 +29,13 @@ pub struct Later<T> {
 }
 
 impl<T: Send + 'static> Later<T> {
-    /// Starts a thread. `first` is the progress until it tells another.
+    /// Starts a thread. `first` is under way until it tells another.
     pub fn start(
         threads: &mut Threads,
         first: &str,
         work: impl FnOnce(&Told) -> T + Send + 'static,
     ) -> Self {
-        let told = Arc::new(Told {
-            unwanted: AtomicBool::new(false),
-            progress: Mutex::new(Progress {
-                pass: first.into(),
-                done: 0.0,
-            }),
-        });
+        let told = Arc::new(Told::new(first));
         let (send, answer) = channel();
         let own = told.clone();
         threads.0.retain(|thread| !thread.is_finished());
@@ -66,16 +45,13 @@ impl<T: Send + 'static> Later<T> {
         }));
         Self { told, answer }
     }
-}
 
-impl<T> Later<T> {
     /// What is under way.
     pub fn progress(&self) -> Progress {
-        let progress = self.told.progress.lock();
-        progress.unwrap_or_else(PoisonError::into_inner).clone()
+        self.told.progress()
     }
 
-    /// The answer, once it is there; an error if the thread has panicked.
+    /// The answer, once it is there.
     pub fn poll(&self) -> Result<Option<T>, Panicked> {
         match self.answer.try_recv() {
             Ok(answer) => Ok(Some(answer)),
@@ -96,10 +72,6 @@ impl<T> Later<T> {
 
 impl<T> Drop for Later<T> {
     fn drop(&mut self) {
-        self.told.unwanted.store(true, Ordering::Relaxed);
+        self.told.cancel();
     }
 }
-
-/// The thread has panicked.
-#[derive(Debug)]
-pub struct Panicked;

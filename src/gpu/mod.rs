@@ -8,24 +8,34 @@
 //! - `array`: arrays of the host on the device
 //! - `staging`: read-back without waiting; `collect`: results into the Frame
 //! - [`conemap`]: generators of cone maps on the device
-//! - `later`: work on a thread of its own
+//! - `later`: work on a thread of its own, or `deferred` without threads; `told`: what it tells
+//! - [`wait`]: what waits for a device
 //! - `error`: why a render failed
 
+#[cfg(feature = "cli")]
 pub mod adapters;
 mod array;
 pub mod buffer;
 mod collect;
+#[cfg(feature = "cli")]
 pub mod conemap;
 mod cost;
 pub mod device;
 mod error;
 pub mod kernel;
+#[cfg(feature = "cli")]
+mod later;
+#[cfg(not(feature = "cli"))]
+#[path = "deferred.rs"]
 mod later;
 pub mod pick;
 pub mod render;
 mod staging;
 mod stamps;
 mod target;
+mod told;
+#[cfg(feature = "cli")]
+pub mod wait;
 pub mod work;
 
 pub use error::RenderError;

@@ -15,7 +15,9 @@ use crate::gpu::pick::{Asked, Pick};
 use crate::gpu::target::Needs;
 use crate::gpu::work::{Order, Shared, Work};
 use crate::pass::pick::At;
+#[cfg(feature = "cli")]
 use crate::pass::progress::Watch;
+#[cfg(feature = "cli")]
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
 use crate::scene::Assets;
@@ -157,18 +159,20 @@ impl Renderer {
     }
 
     fn reopen_if_lost(&mut self) -> Result<(), RenderError> {
+        #[cfg(feature = "cli")]
         if self.device.check().is_err() {
             let fresh = Self::new(self.device.reopen()?);
             self.device = fresh.device;
             self.shared = fresh.shared;
         }
-        Ok(())
+        Ok(self.device.check()?)
     }
 
-    /// Renders a plan: [`Renderer::begin`] and [`Work::finish`].
+    /// Renders a plan: [`Renderer::begin`] and [`Work::finish`]. It waits.
     ///
     /// # Errors
     /// Those of both.
+    #[cfg(feature = "cli")]
     pub fn render(
         &mut self,
         plan: &Plan,

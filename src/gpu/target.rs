@@ -10,8 +10,8 @@ use wgpu::BufferUsages;
 
 use crate::base::shader::Program;
 use crate::gpu::array::{Array, KeptArray};
-use crate::gpu::buffer::{create, map, uniform};
-use crate::gpu::device::{Device, DeviceError};
+use crate::gpu::buffer::{create, uniform};
+use crate::gpu::device::Device;
 use crate::gpu::error::{RenderError, check_room};
 use crate::gpu::kernel::{Kernel, PICTURE};
 use crate::pass::turn::{Layout, ListsHead, Stage, Turn};
@@ -277,30 +277,4 @@ fn new_picture(device: &Device, [width, height]: [u32; 2]) -> wgpu::Texture {
         usage,
         view_formats: &[],
     })
-}
-
-/// Waits for the device and reads a picture, row by row, four bytes to a pixel.
-///
-/// # Errors
-/// The device failed.
-pub fn read_picture(device: &Device, picture: &wgpu::Texture) -> Result<Vec<u8>, DeviceError> {
-    let row = 4 * picture.width();
-    let pitch = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let bytes = u64::from(pitch) * u64::from(picture.height());
-    let staging = create(device, "picture", bytes, BufferUsages::MAP_READ);
-    let mut encoder = device.device.create_command_encoder(&Default::default());
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(pitch),
-        rows_per_image: None,
-    };
-    let to = wgpu::TexelCopyBufferInfo {
-        buffer: &staging,
-        layout,
-    };
-    encoder.copy_texture_to_buffer(picture.as_image_copy(), to, picture.size());
-    device.queue.submit([encoder.finish()]);
-    let padded: Vec<u8> = map(device, &staging, bytes as usize)?;
-    let rows = padded.chunks(pitch as usize);
-    Ok(rows.flat_map(|r| &r[..row as usize]).copied().collect())
 }

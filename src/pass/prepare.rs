@@ -1,10 +1,9 @@
 //! The pass before all others: it makes the cone maps that a scene needs.
 
-use std::time::Instant;
-
 use thiserror::Error;
 
 use super::progress::{Progress, Watch};
+use crate::base::clock::Clock;
 use crate::heightfield::assets::Preparation;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
@@ -43,7 +42,7 @@ pub type Maker<'a> = &'a mut dyn FnMut(
 ) -> Result<ConeMap, GenerateError>;
 
 /// Makes the cone maps of a plan by `maker` and keeps them in the assets. Returns the
-/// milliseconds that each map took; 0 for a map that was kept.
+/// milliseconds by `clock` that each map took; 0 for a map that was kept.
 ///
 /// # Errors
 /// A file does not fit, the maker fails, or `watch` returns `false`.
@@ -51,11 +50,12 @@ pub fn prepare(
     plan: &Plan,
     assets: &Assets,
     maker: Maker<'_>,
+    clock: Clock,
     watch: Watch<'_>,
 ) -> Result<Vec<(Preparation, f64)>, PrepareError> {
     let mut taken = Vec::new();
     let make = &mut |generator, heights: &Heights, patches, options: &Options| {
-        let start = Instant::now();
+        let start = clock();
         let pass = format!("cone map by {}", Generator::name(generator));
         let mut told = |done| {
             watch(&Progress {
@@ -64,7 +64,7 @@ pub fn prepare(
             })
         };
         let made = maker(generator, heights, patches, options, &mut told);
-        taken.push((generator, start.elapsed().as_secs_f64() * 1e3));
+        taken.push((generator, clock() - start));
         made
     };
     plan.scene.prepare(assets, make)?;

@@ -1,7 +1,10 @@
 //! Why a picture could not be written.
 
+#[cfg(feature = "cli")]
 use std::io;
-use std::path::{Path, PathBuf};
+#[cfg(feature = "cli")]
+use std::path::Path;
+use std::path::PathBuf;
 
 use thiserror::Error;
 
@@ -32,7 +35,11 @@ impl OutputError {
         let why = e.to_string();
         Self::Encode { format, why }
     }
+}
 
+/// Failures of files.
+#[cfg(feature = "cli")]
+impl OutputError {
     pub(crate) fn file(path: &Path, why: impl Into<String>) -> Self {
         Self::File {
             path: path.to_path_buf(),

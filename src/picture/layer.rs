@@ -4,9 +4,9 @@
 //! Values are encoded for display, 0..1, so that a file only has to round them.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::base::named::named_enum;
+use crate::base::parallel::for_each_part;
 use crate::base::srgb::srgb;
 use crate::base::work::State;
 use crate::pass::look::tone;
@@ -150,8 +150,8 @@ impl<'a> Shades<'a> {
         self.layer == Layer::Color
     }
 
-    /// All pixels in 8 bits, as [`Shades::samples`].
-    pub(crate) fn bytes(&self) -> Vec<u8> {
+    /// All pixels in 8 bits: red, green and blue, or one number where the layer is grey.
+    pub fn bytes(&self) -> Vec<u8> {
         let samples = self.samples(u16::from(u8::MAX));
         samples.into_iter().map(|s| s.to_le_bytes()[0]).collect()
     }
@@ -162,8 +162,7 @@ impl<'a> Shades<'a> {
         let channels = if self.is_grey() { 1 } else { 3 };
         let [width, height] = self.size.map(|n| n as usize);
         let mut out = vec![0; width * height * channels];
-        let rows = out.par_chunks_mut((width * channels).max(1)).enumerate();
-        rows.for_each(|(y, row)| {
+        for_each_part(&mut out, (width * channels).max(1), |y, row| {
             for (x, pixel) in row.chunks_mut(channels).enumerate() {
                 let shade = self.at(y * width + x).to_array();
                 for (to, value) in pixel.iter_mut().zip(shade) {
@@ -204,7 +203,7 @@ fn apart(e: f64) -> DVec3 {
 }
 
 /// The colour of a share of 0..=1 in a heat map.
-pub(crate) fn heat(x: f64) -> DVec3 {
+pub fn heat(x: f64) -> DVec3 {
     let at = x * (HEAT.len() - 1) as f64;
     let i = (at as usize).min(HEAT.len() - 2);
     HEAT[i].lerp(HEAT[i + 1], at - i as f64)

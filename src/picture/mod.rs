@@ -3,18 +3,21 @@
 
 mod error;
 mod exr;
+#[cfg(feature = "cli")]
 mod folder;
 pub mod frame;
 mod layer;
+#[cfg(feature = "cli")]
 mod place;
 mod png;
 mod web;
 
 pub use error::OutputError;
 pub use exr::{FAR, write_exr};
+#[cfg(feature = "cli")]
 pub use folder::Folder;
-pub(crate) use layer::heat;
-pub use layer::{Layer, Shades};
+pub use layer::{Layer, Shades, heat};
+#[cfg(feature = "cli")]
 pub use place::{Place, clear, commit};
 pub use png::{BitDepth, write_png};
 pub use web::{write_jpeg, write_webp};

@@ -3,6 +3,8 @@
 mod builtin;
 mod document;
 mod error;
+#[cfg(feature = "cli")]
+mod file_text;
 mod nearest;
 mod read;
 mod reference;

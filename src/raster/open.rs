@@ -3,7 +3,9 @@
 //! Pipes and devices are refused: the readers must seek, and a pipe without a writer
 //! would wait for ever.
 
+#[cfg(feature = "cli")]
 use std::fs::{self, File};
+#[cfg(feature = "cli")]
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
@@ -24,11 +26,18 @@ pub enum Format {
     Other,
 }
 
+/// What is read.
+#[cfg(feature = "cli")]
+pub type Stream = BufReader<File>;
+/// What is read where there are no files.
+#[cfg(not(feature = "cli"))]
+pub type Stream = std::io::Cursor<Vec<u8>>;
+
 /// An open file at its start.
 #[derive(Debug)]
 pub struct Opened {
     /// The file.
-    pub file: BufReader<File>,
+    pub file: Stream,
     /// Its length in bytes.
     pub bytes: u64,
     /// Its format.
@@ -51,6 +60,7 @@ const MARKS: [(&[u8], Format); 7] = [
 /// # Errors
 /// In words, without the file's name: it is not there, may not be read, is a folder, a
 /// pipe or a device, or is empty.
+#[cfg(feature = "cli")]
 pub fn open(path: &Path) -> Result<Opened, String> {
     let unreadable =
         |e: std::io::Error| format!("cannot be read: {e}; check its path and its rights");
@@ -74,6 +84,15 @@ pub fn open(path: &Path) -> Result<Opened, String> {
         bytes: known.len(),
         format: format_of(&start),
     })
+}
+
+/// Refuses to open a file where there are none.
+///
+/// # Errors
+/// Always.
+#[cfg(not(feature = "cli"))]
+pub fn open(_: &Path) -> Result<Opened, String> {
+    Err("cannot be read: this program was built without files".into())
 }
 
 /// What the first bytes of a file tell.

@@ -4,10 +4,11 @@
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 
+use conemarch::base::clock::clock;
 use conemarch::base::key::Redo;
 use conemarch::base::work::State;
 use conemarch::gpu::RenderError;
-use conemarch::gpu::adapters::{Adapters, Choice, clock};
+use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::{Device, DeviceError};
 use conemarch::gpu::render::Renderer;
 use conemarch::pass::pick::{At, Picked};

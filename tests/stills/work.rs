@@ -1,7 +1,8 @@
 //! A render in slices: whatever their sizes, and whatever was begun before, the picture is the
 //! same; and what a frame needs again stays on the device.
 
-use conemarch::gpu::adapters::{Adapters, Choice, clock};
+use conemarch::base::clock::clock;
+use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::render::{Cutting, Renderer};
 use conemarch::pass::tone::byte;

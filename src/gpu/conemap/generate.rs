@@ -10,8 +10,8 @@
 //! per place. The division never changes a map.
 
 use bytemuck::{Pod, bytes_of};
-use rayon::prelude::*;
 
+use crate::base::parallel::collect;
 use crate::gpu::buffer::{Buffer, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::error::{RenderError, check_room};
@@ -211,7 +211,7 @@ impl<'a> Maker<'a> {
             let again = is_ambiguous(task, &place);
             (refined(task, start + i, &place), again)
         };
-        let all: Vec<_> = (0..found[0].len()).into_par_iter().map(refine).collect();
+        let all: Vec<_> = collect(0..found[0].len(), 1, refine);
         for (cones, again) in &all {
             ratios.extend_from_slice(&cones[..found.len()]);
             self.refined += usize::from(*again);

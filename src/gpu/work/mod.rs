@@ -22,9 +22,14 @@ use crate::gpu::array::Arrays;
 use crate::gpu::device::Device;
 use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
-use crate::gpu::later::{Later, Panicked};
-use crate::gpu::target::{Needs, read_picture};
-use crate::pass::progress::{Progress, Watch};
+use crate::gpu::later::Later;
+use crate::gpu::target::Needs;
+use crate::gpu::told::Panicked;
+#[cfg(feature = "cli")]
+use crate::gpu::wait::read_picture;
+use crate::pass::progress::Progress;
+#[cfg(feature = "cli")]
+use crate::pass::progress::Watch;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::Extras;
 pub(super) use outset::{Order, Outset, most_steps, parameters, with_texts};
@@ -129,6 +134,7 @@ impl Work {
     ///
     /// # Errors
     /// The device failed.
+    #[cfg(feature = "cli")]
     pub fn pixels(&self) -> Result<Vec<u8>, RenderError> {
         let picture = self.picture();
         let read = picture.map(|picture| read_picture(&self.shared.device, picture));
@@ -173,6 +179,7 @@ impl Work {
     ///
     /// # Errors
     /// [`RenderError::Cancelled`] if `watch` returns `false`, and those of [`Work::poll`].
+    #[cfg(feature = "cli")]
     pub fn finish(mut self, watch: Watch<'_>) -> Result<Frame, RenderError> {
         while let Some(outset) = &self.outset {
             if !watch(&outset.progress()) {

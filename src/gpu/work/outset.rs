@@ -11,16 +11,20 @@ use super::Shared;
 use super::run::{Job, Made};
 use crate::base::shader::{Program, Sources};
 use crate::gpu::array::KeptArray;
+#[cfg(feature = "cli")]
 use crate::gpu::conemap::generate::Maker;
 use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernel;
-use crate::gpu::later::Told;
 use crate::gpu::render::Cutting;
 use crate::gpu::target::{Needs, Parameters};
+use crate::gpu::told::Told;
 use crate::heightfield::assets::Preparation;
+#[cfg(not(feature = "cli"))]
+use crate::heightfield::conemap::generate::cpu::generate;
+use crate::heightfield::tracer::settings::PrepareError;
 use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
-use crate::pass::progress::Progress;
+use crate::pass::progress::{Progress, Watch};
 use crate::pass::tone::tone_steps;
 use crate::pass::turn::{self, StageKind};
 use crate::picture::frame::{Frame, Traffic};
@@ -120,6 +124,13 @@ impl Order {
     /// shader text is wrong, or nobody waits any more. What was compiled and uploaded stays.
     pub fn prepare(&self, told: &Told) -> Result<Outset, RenderError> {
         let mut tell = |progress: &Progress| told.tell(progress);
+        let maps = self.maps(&mut tell)?;
+        self.complete(self.draft()?, maps, &mut tell)
+    }
+
+    /// Makes the cone maps on the device. This waits for it.
+    #[cfg(feature = "cli")]
+    fn maps(&self, tell: Watch<'_>) -> Result<Vec<(Preparation, f64)>, PrepareError> {
         let mut maker = Maker::new(&self.shared.device);
         maker.kernels = self.shared.kernels.clone();
         let make = &mut |generator,
@@ -129,8 +140,15 @@ impl Order {
                          share: &mut dyn FnMut(f64) -> bool| {
             maker.generate(generator, heights, patches, options, share)
         };
-        let maps = prepare(&self.plan, &self.assets, make, &mut tell)?;
-        self.complete(self.draft()?, maps, &mut tell)
+        let clock = self.shared.device.clock;
+        prepare(&self.plan, &self.assets, make, clock, tell)
+    }
+
+    /// Makes the cone maps where nobody may wait for the device.
+    #[cfg(not(feature = "cli"))]
+    fn maps(&self, tell: Watch<'_>) -> Result<Vec<(Preparation, f64)>, PrepareError> {
+        let clock = self.shared.device.clock;
+        prepare(&self.plan, &self.assets, &mut generate, clock, tell)
     }
 
     fn draft(&self) -> Result<Draft, RenderError> {
@@ -174,7 +192,7 @@ impl Order {
         &self,
         draft: Draft,
         prepared: Vec<(Preparation, f64)>,
-        tell: &mut dyn FnMut(&Progress) -> bool,
+        tell: Watch<'_>,
     ) -> Result<Outset, RenderError> {
         let Self { plan, extras, .. } = self;
         let (scene, needs) = (draft.scene, draft.needs);

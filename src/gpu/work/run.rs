@@ -99,6 +99,7 @@ impl Job {
 
 /// A submission that has not ended, as far as the host knows.
 pub(super) struct Flight {
+    #[cfg(feature = "cli")]
     pub index: wgpu::SubmissionIndex,
     pub report: Staging,
     /// Results of a block, if its last stage is in the submission.
@@ -344,6 +345,7 @@ impl Run {
     }
 
     /// What there is to tell of the stages that have ended from `told` on, or of the one under way.
+    #[cfg(feature = "cli")]
     pub fn news(&self, told: u32) -> Vec<Progress> {
         let is_pass = |stage: &u32| {
             let (_, index) = self.place(*stage);
@@ -366,6 +368,7 @@ impl Run {
     ///
     /// # Errors
     /// The device failed.
+    #[cfg(feature = "cli")]
     pub fn wait(&self) -> Result<(), RenderError> {
         if let Some(flight) = self.flights.front() {
             let index = Some(flight.index.clone());

@@ -88,14 +88,15 @@ impl Run {
             staging.copy(&mut encoder, &parts.ranges(target));
             (block, staging)
         });
-        let index = device.queue.submit([encoder.finish()]);
+        let _index = device.queue.submit([encoder.finish()]);
         report.map();
         if let Some((_, staging)) = &reading {
             staging.map();
         }
         self.traffic_mut().submissions += 1;
         self.flights.push_back(Flight {
-            index,
+            #[cfg(feature = "cli")]
+            index: _index,
             report,
             reading,
             stages: first..cursor,

@@ -1,9 +1,6 @@
 //! Cone maps in f64 on the CPU, places over threads.
 
-use std::time::Instant;
-
-use rayon::prelude::*;
-
+use crate::base::parallel::collect;
 use crate::heightfield::conemap::generate::generator::{NodeCount, ShareWatch};
 use crate::heightfield::conemap::generate::{
     GenerateError, Generator, MapTask, Options, min3x3::min3x3, task::Found,
@@ -13,9 +10,10 @@ use crate::heightfield::{ConeMap, Heights, Patches};
 /// Places before the first call of the watch: seconds at most for the slowest generators
 /// on large maps.
 const BAND: usize = 1 << 10;
-/// How long a band should take at least, in seconds. Bands grow until they do, because each
-/// ends with waiting for the last thread, which is long on a busy machine.
-const SHORT: f64 = 0.03;
+/// How many nodes the searches of a band should look up at least: some 30 ms on two cores. Bands
+/// grow until they do, because each ends with waiting for the last thread, which is long on a busy
+/// machine.
+const FEW_NODES: u64 = 1 << 22;
 /// Places that a thread takes at least: fewer cost more in handing out than they save.
 const TAKEN: usize = 64;
 
@@ -50,13 +48,11 @@ pub fn generate_counted(
     let channels = generator.channels();
     let mut ratios = Vec::with_capacity(places * channels);
     let mut count = NodeCount::default();
-    let mut band: Vec<Found> = Vec::new();
     let (mut start, mut length) = (0, BAND);
     while start < places {
-        let since = Instant::now();
-        let indices = (start..places.min(start + length)).into_par_iter();
-        let found = indices.with_min_len(TAKEN).map(|index| task.find(index));
-        found.collect_into_vec(&mut band);
+        let before = count.total;
+        let band = start..places.min(start + length);
+        let band: Vec<Found> = collect(band, TAKEN, |index| task.find(index));
         for found in &band {
             ratios.extend_from_slice(&found.ratios[..channels]);
             count.total += u64::from(found.nodes);
@@ -66,7 +62,7 @@ pub fn generate_counted(
         if !watch(start as f64 / places as f64) {
             return Err(GenerateError::Cancelled);
         }
-        if since.elapsed().as_secs_f64() < SHORT {
+        if count.total - before < FEW_NODES {
             length *= 2;
         }
     }

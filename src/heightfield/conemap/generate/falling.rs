@@ -10,8 +10,7 @@
 //! For cones over cells this is proven: each step meets the surface at most once. For cones
 //! over samples it is not, because rays pass between samples.
 
-use rayon::prelude::*;
-
+use crate::base::parallel::collect;
 use crate::heightfield::{Heights, Patches};
 
 /// The value of a place that limits nothing: lower than every height.
@@ -51,12 +50,13 @@ pub fn limits(
     up: [bool; 2],
 ) -> Vec<f32> {
     let width = heights.places_along(cells)[0] as usize;
-    let one = |(i, z): (usize, &f32)| {
+    let one = |i: usize| {
+        let z = &values[i];
         let place = [i % width, i / width].map(|i| i as i64);
         match is_limit(heights, cells, place, up) {
             true => *z,
             false => NO_LIMIT,
         }
     };
-    values.par_iter().enumerate().map(one).collect()
+    collect(0..values.len(), 1, one)
 }

@@ -2,8 +2,7 @@
 //! EGSR 2024), on the CPU and on a device with the same result.
 //! Twin: `wgsl/heightfield/conemap/generate/min3x3.wgsl`.
 
-use rayon::prelude::*;
-
+use crate::base::parallel::collect;
 use crate::base::shader::Program;
 use crate::heightfield::{ConeMap, heights::brought_in};
 use crate::wgsl;
@@ -29,7 +28,7 @@ pub fn min3x3(map: &ConeMap) -> ConeMap {
         nine.fold(f64::INFINITY, f64::min)
     };
     ConeMap {
-        ratios: (0..map.ratios.len()).into_par_iter().map(least).collect(),
+        ratios: collect(0..map.ratios.len(), 1, least),
         ..*map
     }
 }

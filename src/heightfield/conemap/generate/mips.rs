@@ -6,8 +6,7 @@
 //! Averages, which graphics hardware makes by default, promise nothing. Sizes
 //! halve rounding up, so that no row or column is lost.
 
-use rayon::prelude::*;
-
+use crate::base::parallel::collect;
 use crate::heightfield::ConeMap;
 
 /// One level.
@@ -65,8 +64,8 @@ fn halved(below: &ConeLevel) -> ConeLevel {
     };
     ConeLevel {
         size,
-        heights: (0..nodes).into_par_iter().map(highest).collect(),
-        ratios: (0..nodes * channels).into_par_iter().map(least).collect(),
+        heights: collect(0..nodes, 1, highest),
+        ratios: collect(0..nodes * channels, 1, least),
     }
 }
 

@@ -1,21 +1,21 @@
 //! Slopes at the samples, for the files that carry them beside the cones.
 
-use rayon::prelude::*;
-
+use crate::base::parallel::collect;
 use crate::heightfield::Heights;
 
 /// Rise per texel along both axes at each sample, by central differences; at a border
 /// that does not wrap by the difference to the one neighbour that there is.
 pub fn slopes(heights: &Heights) -> Vec<[f32; 2]> {
     let [w, h] = heights.size().map(i64::from);
-    let slope = |i: i64| {
+    let slope = |i: usize| {
+        let i = i as i64;
         let place = [i % w, i / w];
         [0, 1].map(|axis| {
             let (low, high) = beside(heights, axis, place);
             (high - low) * per_step(heights, axis, place[axis])
         })
     };
-    (0..w * h).into_par_iter().map(slope).collect()
+    collect(0..(w * h) as usize, 1, slope)
 }
 
 /// The heights of the two neighbours of a sample along an axis. At a border that

@@ -1,0 +1,48 @@
+//! What work beside the calling thread tells.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use crate::pass::progress::Progress;
+
+/// What is under way, and whether the answer is still wanted.
+#[derive(Debug)]
+pub struct Told {
+    unwanted: AtomicBool,
+    progress: Mutex<Progress>,
+}
+
+impl Told {
+    /// `first` is under way.
+    pub fn new(first: &str) -> Self {
+        Self {
+            unwanted: AtomicBool::new(false),
+            progress: Mutex::new(Progress {
+                pass: first.into(),
+                done: 0.0,
+            }),
+        }
+    }
+
+    /// Tells what is under way. Returns whether the answer is still wanted.
+    pub fn tell(&self, progress: &Progress) -> bool {
+        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = progress.clone();
+        !self.unwanted.load(Ordering::Relaxed)
+    }
+
+    /// Nobody wants the answer any more.
+    #[cfg(feature = "cli")]
+    pub fn cancel(&self) {
+        self.unwanted.store(true, Ordering::Relaxed);
+    }
+
+    /// What is under way.
+    pub fn progress(&self) -> Progress {
+        let progress = self.progress.lock();
+        progress.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+/// The thread has panicked.
+#[derive(Debug)]
+pub struct Panicked;

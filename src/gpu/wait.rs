@@ -1,0 +1,90 @@
+//! What waits for a device. A browser allows none of it.
+
+use std::time::Duration;
+
+use bytemuck::Pod;
+use wgpu::BufferUsages;
+
+use crate::gpu::buffer::{Buffer, bytes_for, create};
+use crate::gpu::device::{Device, DeviceError};
+
+impl Device {
+    /// Waits until everything submitted has run.
+    ///
+    /// # Errors
+    /// The device was lost or reported an error.
+    pub fn wait(&self) -> Result<(), DeviceError> {
+        self.wait_for(None)
+    }
+
+    /// Waits until a submission has run, or the last one.
+    ///
+    /// # Errors
+    /// The device was lost or reported an error.
+    pub fn wait_for(
+        &self,
+        submission_index: Option<wgpu::SubmissionIndex>,
+    ) -> Result<(), DeviceError> {
+        let polled = self.device.poll(wgpu::PollType::Wait {
+            submission_index,
+            // A dispatch has a bounded number of steps. A device that needs longer hangs.
+            timeout: Some(Duration::from_secs(120)),
+        });
+        self.trouble()?;
+        polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
+    }
+}
+
+impl<T: Pod> Buffer<T> {
+    /// Waits for the device and reads the first `count` values.
+    pub fn read(&self, device: &Device, count: usize) -> Result<Vec<T>, DeviceError> {
+        let size = bytes_for::<T>(count.min(self.len));
+        let staging = create(device, "staging", size, BufferUsages::MAP_READ);
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&self.raw, 0, &staging, 0, size);
+        device.queue.submit([encoder.finish()]);
+        let bytes = std::mem::size_of::<T>() * count.min(self.len);
+        map(device, &staging, bytes)
+    }
+}
+
+/// Waits for the device and reads the first bytes of a buffer that can be mapped. The buffer
+/// stays mapped.
+pub fn map<T: Pod>(
+    device: &Device,
+    staging: &wgpu::Buffer,
+    bytes: usize,
+) -> Result<Vec<T>, DeviceError> {
+    // If this fails, `wait` or the range below reports it.
+    staging.map_async(wgpu::MapMode::Read, .., |_| {});
+    device.wait()?;
+    let view = staging.get_mapped_range(..);
+    let view = view.map_err(|e| device.lost(e.to_string()))?;
+    Ok(bytemuck::pod_collect_to_vec(&view[..bytes]))
+}
+
+/// Waits for the device and reads a picture, row by row, four bytes to a pixel.
+///
+/// # Errors
+/// The device failed.
+pub fn read_picture(device: &Device, picture: &wgpu::Texture) -> Result<Vec<u8>, DeviceError> {
+    let row = 4 * picture.width();
+    let pitch = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let bytes = u64::from(pitch) * u64::from(picture.height());
+    let staging = create(device, "picture", bytes, BufferUsages::MAP_READ);
+    let mut encoder = device.device.create_command_encoder(&Default::default());
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(pitch),
+        rows_per_image: None,
+    };
+    let to = wgpu::TexelCopyBufferInfo {
+        buffer: &staging,
+        layout,
+    };
+    encoder.copy_texture_to_buffer(picture.as_image_copy(), to, picture.size());
+    device.queue.submit([encoder.finish()]);
+    let padded: Vec<u8> = map(device, &staging, bytes as usize)?;
+    let rows = padded.chunks(pitch as usize);
+    Ok(rows.flat_map(|r| &r[..row as usize]).copied().collect())
+}
