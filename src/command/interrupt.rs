@@ -1,6 +1,5 @@
 //! Ctrl-C and other requests to end: the work stops as soon as it can and leaves no file.
 
-use std::io::{self, IsTerminal, Write};
 use std::process::exit;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -79,10 +78,6 @@ pub fn code() -> u8 {
 /// Ends the process without a trace of files.
 fn end() -> ! {
     let _kept = picture::clear();
-    if io::stderr().is_terminal() {
-        // The line of the progress bar, which nobody else will clear now.
-        let _ = write!(io::stderr(), "\r\x1b[2K");
-    }
     say(&format!("error: {CANCELLED}"));
     exit(code().into());
 }

@@ -1,6 +1,6 @@
 //! Writes to standard output and standard error.
 
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 
 use anyhow::{Context, Result, anyhow};
 
@@ -42,5 +42,10 @@ pub fn tell(text: &str) {
 
 /// Writes a line to standard error. If that fails, the work goes on.
 pub fn say(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
+    // A progress bar may stand in the line. It draws itself again below.
+    let clear = match io::stderr().is_terminal() {
+        true => "\r\x1b[2K",
+        false => "",
+    };
+    let _ = writeln!(io::stderr(), "{clear}{line}");
 }

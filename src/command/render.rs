@@ -68,7 +68,7 @@ pub struct Render {
     #[arg(long, value_name = "LAYER", default_value = "color", value_parser = layers())]
     pub(crate) layer: Layer,
 
-    /// Bits per channel of a PNG [default: 8]
+    /// Bits of each colour of a PNG; 16 leave no steps in smooth shades [default: 8]
     #[arg(long, value_name = "BITS", value_parser = depths())]
     pub(crate) depth: Option<BitDepth>,
 

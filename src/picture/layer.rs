@@ -21,7 +21,7 @@ named_enum! {
         #[default]
         Color = "color" => "light, tone-mapped",
         /// Distances along the rays.
-        Depth = "depth" => "grey: nearest black, farthest 95 % white, linear between, sky white",
+        Depth = "depth" => "distance from the eye as grey: nearest black, farthest 95 % white, sky white",
         /// Normals in the world.
         Normal = "normal" =>
             "world normals, x y z as red green blue, -1..1 to 0..1; sky mid grey",
@@ -34,7 +34,7 @@ named_enum! {
         State = "state" => "sky dark blue, hit light grey, unconverged magenta",
         /// Errors of the depth.
         Error = "error" =>
-            "error of the depth against a slow reference, in footprints (half a pixel's width): grey 0, red 8 too deep or no hit, blue 8 too near",
+            "error of the depth against the truth, a slow reference that is rendered too, in footprints (half a pixel's width): grey 0, red 8 too deep or no hit, blue 8 too near",
     }
 }
 

@@ -16,7 +16,7 @@ pub struct RowFiles {
     /// Also write the rows as JSON; - is standard output, and the tables then go to stderr
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Also write the rows as CSV; - as above
+    /// Also write the rows as CSV; - is standard output, and the tables then go to stderr
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 }

@@ -91,7 +91,8 @@ pub struct Foreign {
     #[arg(long, value_name = "LAYOUT", value_parser = layouts())]
     from: Option<Layout>,
 
-    /// How its numbers encode ratios: as roots or as they are [default: sqrt, for relief linear]
+    /// Whether it holds the widths of cones as they are or as square roots [default: sqrt, for
+    /// relief linear]
     #[arg(long, value_name = "HOW", value_parser = ratio_scales(), requires = "from")]
     from_ratio: Option<RatioScale>,
 }
@@ -136,15 +137,16 @@ pub struct Writing {
     #[arg(long, value_name = "BITS", value_parser = bits())]
     bits: Option<Bits>,
 
-    /// How numbers of a PNG encode ratios: as roots or as they are [default: sqrt, for relief linear]
+    /// Whether a PNG holds the widths of cones as they are or as square roots, which keep narrow
+    /// cones more exact [default: sqrt, for relief linear]
     #[arg(long, value_name = "HOW", value_parser = ratio_scales())]
     ratio: Option<RatioScale>,
 
-    /// Height of 1 in texture widths, for the normals of relief [default: 0.25]
+    /// How deep the surface is, in widths of the map, for the normals of relief [default: 0.25]
     #[arg(long, value_name = "WIDTHS", value_parser = depth)]
     depth: Option<f64>,
 
-    /// What the slopes of dummer mean [default: whole]
+    /// Whether the slopes of dummer are those of the surface or half of them [default: whole]
     #[arg(long, value_name = "WHAT", value_parser = slopes())]
     slopes: Option<Slopes>,
 }
