@@ -22,7 +22,7 @@ use common::exact::first_hit;
 use common::overclaims::{brought_near, overclaims};
 use common::plans::{camera, compared, sized};
 use common::solved::{balls, cameras, rays, slab, solids, solved};
-use conemarch::base::work::Counts;
+use conemarch::base::outcome::Counts;
 use conemarch::gpu::render::Cutting;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;

@@ -5,7 +5,7 @@
 //! from that of the walk.
 
 use anyhow::Result;
-use conemarch::base::work::State;
+use conemarch::base::outcome::State;
 use conemarch::command::executor::Executor;
 use conemarch::cpu;
 use conemarch::gpu::adapters::Choice;

@@ -2,7 +2,7 @@
 //! and Ban (2022), at the sizes of the paper.
 
 use anyhow::{Context, Result, ensure};
-use conemarch::base::work::State;
+use conemarch::base::outcome::State;
 use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::Choice;
 use conemarch::picture::frame::Frame;

@@ -5,7 +5,7 @@
 //! - [`shader`]: WGSL programs joined from files
 //! - [`view`]: the camera's rays and cones
 //! - [`cone`]: how far an empty ball carries a cone
-//! - [`work`]: what a pixel is, and what it cost
+//! - [`outcome`]: what a pixel is, and what it cost
 //! - [`srgb`]: linear colours to and from sRGB
 //! - [`named`]: enums whose variants are chosen by a word
 //! - [`mod@clock`]: time; [`parallel`]: work over all cores
@@ -16,9 +16,9 @@ pub mod clock;
 pub mod cone;
 pub mod key;
 pub mod named;
+pub mod outcome;
 pub mod parallel;
 pub mod shader;
 pub mod srgb;
 pub mod units;
 pub mod view;
-pub mod work;

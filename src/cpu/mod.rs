@@ -6,8 +6,8 @@
 use rayon::prelude::*;
 
 use crate::base::clock::clock;
+use crate::base::outcome::{Counts, State};
 use crate::base::view::View;
-use crate::base::work::{Counts, State};
 use crate::heightfield::conemap::generate::cpu::generate;
 use crate::pass::look::Light;
 use crate::pass::march::{Ended, march};

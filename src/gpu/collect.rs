@@ -1,6 +1,6 @@
 //! Copies what the device made of a block into the frame of the whole picture.
 
-use crate::base::work::{Counts, State};
+use crate::base::outcome::{Counts, State};
 use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::staging::Staging;
 use crate::gpu::target::Target;

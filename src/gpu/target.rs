@@ -86,7 +86,7 @@ pub struct Target {
     /// The stages of a block.
     pub stages: Vec<Bound>,
     /// Resources of `arrange` for a stage that never comes: it only closes what has ended.
-    pub settle: Vec<wgpu::BindGroup>,
+    pub closing: Vec<wgpu::BindGroup>,
 }
 
 impl Target {
@@ -183,7 +183,7 @@ impl Target {
             })
         };
         Ok(Self {
-            settle: arranged(&never)?,
+            closing: arranged(&never)?,
             stages: compiled.into_iter().map(bind).collect::<Result<_, _>>()?,
             needs,
             parameters,

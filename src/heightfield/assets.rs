@@ -84,7 +84,9 @@ impl Assets {
             let surface = self.surface(settings)?;
             match self.cones(settings, &surface, &mut on_cpu) {
                 Ok(supply) => {
-                    settings.tracing.tracer(&surface, (*supply).as_ref(), 0.0)?;
+                    settings
+                        .tracer_settings
+                        .tracer(&surface, (*supply).as_ref(), 0.0)?;
                 }
                 Err(PrepareError::Fault(fault)) => return Err(fault),
                 // No generator runs for a map that is read.
@@ -212,13 +214,15 @@ impl Assets {
         };
         Ok(Ready {
             tracer: settings
-                .tracing
+                .tracer_settings
                 .tracer(&surface, (*cones).as_ref(), pixel)?,
             colors,
             placement,
             surface,
-            name: settings.tracing.tracer.name(),
-            most_steps: settings.tracing.most_steps(domain.map(i32::unsigned_abs)),
+            name: settings.tracer_settings.tracer.name(),
+            most_steps: settings
+                .tracer_settings
+                .most_steps(domain.map(i32::unsigned_abs)),
         })
     }
 
@@ -267,7 +271,7 @@ impl Assets {
     ) -> Result<Arc<Option<Supply>>, PrepareError> {
         kept_or_made(&self.cones, cones_key(settings), |_| {
             let folder = &settings.source.folder;
-            settings.tracing.cones(surface, folder, make)
+            settings.tracer_settings.cones(surface, folder, make)
         })
     }
 
@@ -280,7 +284,7 @@ impl Assets {
         let Some(by) = settings.paint else {
             return Ok(None);
         };
-        let tracing = &settings.tracing;
+        let tracing = &settings.tracer_settings;
         let made = kept_or_made(
             &self.paints,
             paint_key(settings, by),
@@ -302,12 +306,12 @@ fn surface_key(settings: &HeightfieldSettings) -> SurfaceKey {
 }
 
 fn cones_key(settings: &HeightfieldSettings) -> ConesKey {
-    let t = &settings.tracing;
+    let t = &settings.tracer_settings;
     (surface_key(settings), t.tracer, t.map.clone(), t.offset)
 }
 
 fn paint_key(settings: &HeightfieldSettings, by: Generator) -> PaintKey {
-    (surface_key(settings), by, settings.tracing.offset)
+    (surface_key(settings), by, settings.tracer_settings.offset)
 }
 
 /// A fault of `scene.tiles`.

@@ -37,7 +37,7 @@ pub struct HeightfieldSettings {
     /// Rotation in degrees about x, then y, then z.
     pub turn: DVec3,
     /// How rays are traced.
-    pub tracing: TracerSettings,
+    pub tracer_settings: TracerSettings,
     /// The generator whose cones pick the colour; `None` for the height.
     pub paint: Option<Generator>,
     /// The path of a picture that colours each tile; `none` for none.
@@ -54,7 +54,7 @@ impl Default for HeightfieldSettings {
             depth: 2.0,
             centre: DVec3::ZERO,
             turn: DVec3::ZERO,
-            tracing: TracerSettings::default(),
+            tracer_settings: TracerSettings::default(),
             paint: None,
             texture: NO_TEXTURE.into(),
         }
@@ -83,13 +83,13 @@ impl HeightfieldSettings {
             "texture" = text(&mut self.texture),
                 "a PNG, JPEG or WebP that colours each tile in place of the palette; \"none\" for none" => Assets;
         ]);
-        keys.extend(self.tracing.keys());
+        keys.extend(self.tracer_settings.keys());
         keys
     }
 
     /// Checks that all settings fit together. No file is read.
     pub fn check(&self) -> Result<(), Fault> {
-        self.tracing.check()?;
+        self.tracer_settings.check()?;
         for (axis, name) in [(0, "x"), (1, "y")] {
             if self.tiles[axis] > 1 && !self.source.options.wrap[axis] {
                 return Err(Fault::new(
@@ -125,7 +125,7 @@ impl HeightfieldSettings {
 
     /// Whether the cone map comes from a file.
     pub fn reads_cones(&self) -> bool {
-        self.tracing.map != "auto" && self.tracing.generator().is_none()
+        self.tracer_settings.map != "auto" && self.tracer_settings.generator().is_none()
     }
 
     /// Whether a picture colours it.
@@ -137,7 +137,7 @@ impl HeightfieldSettings {
     pub fn files(&self) -> Vec<(&'static str, PathBuf)> {
         let named = [
             (self.reads_heights(), "scene.field", &self.source.field),
-            (self.reads_cones(), "scene.map", &self.tracing.map),
+            (self.reads_cones(), "scene.map", &self.tracer_settings.map),
             (self.is_textured(), "scene.texture", &self.texture),
         ];
         let file =
@@ -147,7 +147,7 @@ impl HeightfieldSettings {
 
     /// The generators of the cone maps that it needs: the tracer's and the paint's.
     pub fn generators(&self) -> Vec<Generator> {
-        let traced = self.tracing.generator();
+        let traced = self.tracer_settings.generator();
         let painted = self.paint.filter(|by| traced != Some(*by));
         traced.into_iter().chain(painted).collect()
     }
@@ -169,9 +169,9 @@ impl HeightfieldSettings {
     /// The same heightfield with a tracer that finds every first hit and needs no cone map.
     pub fn exact(&self) -> Self {
         Self {
-            tracing: TracerSettings {
+            tracer_settings: TracerSettings {
                 tracer: TracerKind::exact_without_map(),
-                offset: self.tracing.offset,
+                offset: self.tracer_settings.offset,
                 ..TracerSettings::default()
             },
             ..self.clone()

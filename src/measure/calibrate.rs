@@ -11,8 +11,8 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::base::outcome::{Counts, State};
 use crate::base::view::{View, footprint};
-use crate::base::work::{Counts, State};
 use crate::cpu;
 use crate::gpu::RenderError;
 use crate::pass::march::{Ended, march};

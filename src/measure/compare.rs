@@ -14,8 +14,8 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::base::outcome::State;
 use crate::base::view::{Beam, footprint};
-use crate::base::work::State;
 use crate::picture::frame::{Frame, errors};
 use crate::plan::Plan;
 use crate::scene::AnySolid;

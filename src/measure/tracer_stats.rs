@@ -11,7 +11,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::base::work::{Counts, Step};
+use crate::base::outcome::{Counts, Step};
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::tracer::{LocalRay, Tracer};
 

@@ -11,7 +11,7 @@ use bytemuck::{cast_slice, pod_collect_to_vec};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::base::work::State;
+use crate::base::outcome::State;
 use crate::cpu;
 use crate::gpu::RenderError;
 use crate::pass::progress::{Progress, Watch};
@@ -287,7 +287,7 @@ mod tests {
         // The tracer does not matter.
         let mut other = of(slope);
         if let Scene::Heightfield(shape) = &mut other.scene {
-            shape.tracing.tracer = TracerKind::CsmFixed;
+            shape.tracer_settings.tracer = TracerKind::CsmFixed;
         }
         assert!(other != first && finds(&cache, &other));
         // One height of the file does, with the same plan.

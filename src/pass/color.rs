@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 
+use crate::base::outcome::State;
 use crate::base::view::{Beam, footprint};
-use crate::base::work::State;
 use crate::pass::look::Light;
 use crate::pass::shadow::{self, Shadow};
 use crate::pass::{fog, occlusion};

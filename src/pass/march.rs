@@ -2,8 +2,8 @@
 //! and 2).
 //! Twin: `wgsl/pass/march.wgsl`.
 
+use crate::base::outcome::Counts;
 use crate::base::view::Beam;
-use crate::base::work::Counts;
 use crate::scene::Solid;
 
 /// Why a cone ended.

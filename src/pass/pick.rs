@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
+use crate::base::outcome::State;
 use crate::base::shader::Program;
-use crate::base::work::State;
 use crate::scene::AnySolid;
 use crate::wgsl;
 

@@ -4,8 +4,8 @@
 
 use glam::DVec3;
 
+use crate::base::outcome::Counts;
 use crate::base::view::Beam;
-use crate::base::work::Counts;
 use crate::pass::LookFeature;
 use crate::pass::look::{Light, smoothstep};
 use crate::scene::{Solid, Step};

@@ -1,8 +1,8 @@
 //! The trace pass: one ray per pixel, from the front of its cell to the surface.
 //! Twin: `wgsl/pass/trace.wgsl`.
 
+use crate::base::outcome::{Counts, State};
 use crate::base::view::Beam;
-use crate::base::work::{Counts, State};
 use crate::scene::{Hit, Solid, Step};
 
 /// Follows one ray from a proven front by at most `limit` steps.

@@ -1,7 +1,7 @@
 //! The result of a render: layers with one value per pixel, and the figures of each pass.
 
+use crate::base::outcome::{Counts, State};
 use crate::base::view::{Beam, View};
-use crate::base::work::{State, Work};
 use crate::heightfield::assets::Preparation;
 use crate::plan::{Extras, Pass, Plan};
 use serde::{Serialize, Serializer};
@@ -54,7 +54,7 @@ pub struct LevelLayer {
     /// 0 sky, 1 stopped, 2 step limit reached.
     pub state: Vec<u8>,
     /// Work of each cell, if it was counted.
-    pub work: Vec<Work>,
+    pub work: Vec<Counts>,
 }
 
 /// How the host and a device worked together on a frame.
@@ -90,7 +90,7 @@ pub struct Frame {
     /// Unit normals in the world; zero for sky.
     pub normal: Vec<[f32; 3]>,
     /// Work of each pixel's ray, if it was counted.
-    pub work: Vec<Work>,
+    pub work: Vec<Counts>,
     /// Cone levels, coarsest first.
     pub levels: Vec<LevelLayer>,
     /// The figures of each pass, in order.
@@ -112,7 +112,7 @@ impl Frame {
             state: vec![State::Unconverged as u8; area],
             radiance: vec![[0.0; 3]; layer(!extras.depth_only, area)],
             normal: vec![[0.0; 3]; layer(extras.normals, area)],
-            work: vec![Work::default(); layer(extras.count, area)],
+            work: vec![Counts::default(); layer(extras.count, area)],
             ..Self::default()
         };
         for pass in plan.passes(extras) {
@@ -125,7 +125,7 @@ impl Frame {
                     cells,
                     front: vec![0.0; layer(extras.levels, count)],
                     state: vec![0; layer(extras.levels, count)],
-                    work: vec![Work::default(); layer(extras.count, count)],
+                    work: vec![Counts::default(); layer(extras.count, count)],
                 });
             }
         }
@@ -171,7 +171,7 @@ impl Frame {
     /// Evaluations of each pixel's ray and of all cells above it.
     pub fn steps(&self) -> Vec<f32> {
         let width = self.size[0] as usize;
-        let of = |(i, work): (usize, &Work)| {
+        let of = |(i, work): (usize, &Counts)| {
             let (x, y) = (i % width, i / width);
             let above = self.levels.iter().filter_map(|level| {
                 let d = level.divisor as usize;

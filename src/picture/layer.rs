@@ -6,9 +6,9 @@
 use glam::DVec3;
 
 use crate::base::named::named_enum;
+use crate::base::outcome::State;
 use crate::base::parallel::for_each_part;
 use crate::base::srgb::srgb;
-use crate::base::work::State;
 use crate::pass::look::tone;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
@@ -251,7 +251,7 @@ mod tests {
         let samples = Shades::new(Layer::State, &frame, &plan()).samples(255);
         assert_eq!(samples[6..], [255, 0, 255]);
         assert!(samples[0] < samples[3] && samples[3] == samples[4]);
-        frame.work = vec![crate::base::work::Work::default(); 3];
+        frame.work = vec![crate::base::outcome::Counts::default(); 3];
         frame.work[2].evaluations = 50;
         let shades = Shades::new(Layer::Steps, &frame, &plan());
         assert_eq!(shades.at(0), HEAT[0]);

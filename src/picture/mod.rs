@@ -1,5 +1,10 @@
 //! Pictures on their way out: layers as pixels, file formats, and files that appear whole
 //! or not at all.
+//!
+//! - [`frame`]: what a render yields; `layer`: a layer of it as pixels
+//! - `png`, `exr`, `web` (JPEG and WebP): files of pictures
+//! - `place`: a file that appears whole or not at all; `folder`: where it goes
+//! - `error`: why a picture cannot be written
 
 mod error;
 mod exr;

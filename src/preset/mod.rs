@@ -1,4 +1,9 @@
 //! Presets: the text of a Plan.
+//!
+//! - `builtin`: those of the program; `source`: one by its name, `file_text`: one in a file
+//! - `document`, `read`: from TOML to a Plan; `write`: back
+//! - `error`: why a preset is wrong; `nearest`: the word that may have been meant
+//! - `reference`: the page of all keys
 
 mod builtin;
 mod document;

@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use crate::base::array::SceneArray;
+use crate::base::outcome::Counts;
+pub use crate::base::outcome::Step;
 use crate::base::shader::Module;
 use crate::base::view::Beam;
-use crate::base::work::Counts;
-pub use crate::base::work::Step;
 
 /// The result of one step of a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,9 +11,9 @@ use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3};
 
 use crate::base::cone::ConeRule;
+use crate::base::outcome::Counts;
 use crate::base::shader::Module;
 use crate::base::view::{Beam, footprint};
-use crate::base::work::Counts;
 use crate::formula::{Bounds, Formula};
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::wgsl;

@@ -8,9 +8,9 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::base::cone::ConeRule;
 use crate::base::key::{Fault, Key, number, triple};
+use crate::base::outcome::Counts;
 use crate::base::shader::Module;
 use crate::base::view::Beam;
-use crate::base::work::Counts;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::scene::{AnySolid, Assets, SceneSettings, Viewpoint};

@@ -11,7 +11,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
-use conemarch::base::work::State;
+use conemarch::base::outcome::State;
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::render::{Cutting, Renderer};

@@ -1,6 +1,6 @@
 //! What cells of a render claim against where rays truly meet the surface.
 
-use conemarch::base::work::State;
+use conemarch::base::outcome::State;
 use conemarch::picture::frame::Frame;
 
 /// The proof needs no tolerance; f32 adds some roundings of 6e-8 to positions and

@@ -1,7 +1,7 @@
 //! What is asked of a picture however hard its plan is: measured on both executors and
 //! against what is true.
 
-use conemarch::base::work::State;
+use conemarch::base::outcome::State;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::Plan;
 use conemarch::plan::march::Mode;

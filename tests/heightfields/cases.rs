@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use conemarch::base::work::Counts;
+use conemarch::base::outcome::Counts;
 use conemarch::heightfield::conemap::generate::cpu;
 use conemarch::heightfield::conemap::generate::generator::{Generator, Options};
 use conemarch::heightfield::conemap::{ConeMap, MapKind};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use conemarch::base::work::Counts;
+use conemarch::base::outcome::Counts;
 use conemarch::heightfield::conemap::{ConeMap, MapKind};
 use conemarch::heightfield::height_surface::{HeightSurface, HeightSurfaceError};
 use conemarch::heightfield::heights::{Heights, Patches};

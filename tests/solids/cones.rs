@@ -2,8 +2,8 @@
 //! the front that is claimed for it.
 
 use conemarch::base::cone::ConeRule;
+use conemarch::base::outcome::Counts;
 use conemarch::base::view::Beam;
-use conemarch::base::work::Counts;
 use conemarch::scene::Solid;
 use glam::DVec3;
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use conemarch::base::clock::clock;
 use conemarch::base::key::Redo;
-use conemarch::base::work::State;
+use conemarch::base::outcome::State;
 use conemarch::gpu::RenderError;
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::{Device, DeviceError};

@@ -23,8 +23,8 @@ mod work;
 
 use adapter::{COUNTED, LEVELS, on_cpu, render};
 use common::plans::{compared, preset, sized, switch};
+use conemarch::base::outcome::State;
 use conemarch::base::srgb::srgb;
-use conemarch::base::work::State;
 use conemarch::measure::compare::{DepthError, Report, quantile};
 use conemarch::measure::truth::truth;
 use conemarch::pass::LookFeature;

@@ -1,7 +1,7 @@
 //! Cones and rays in scenes: fronts, empty balls, walks, hits and bounds agree.
 
+use conemarch::base::outcome::Counts;
 use conemarch::base::view::Beam;
-use conemarch::base::work::Counts;
 use conemarch::plan::Plan;
 use conemarch::scene::distance::Relaxation;
 use conemarch::scene::{Solid, Step, Task};

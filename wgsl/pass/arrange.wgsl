@@ -28,7 +28,7 @@ fn groups_of_round() -> u32 {
 }
 
 /// Goes on to the next round if this one is over, and to the next stage if no cell moves.
-fn settle() {
+fn close_ended() {
     if turn.begun == 0u {
         return;
     }
@@ -71,7 +71,7 @@ fn begin_stage() {
 
 @compute @workgroup_size(1)
 fn arrange() {
-    settle();
+    close_ended();
     if turn.number == stage_parameters.number {
         if turn.begun == 0u {
             begin_stage();

@@ -5,7 +5,7 @@ use anyhow::Result;
 use clap::{Args, value_parser};
 use serde::Serialize;
 
-use crate::base::work::State;
+use crate::base::outcome::State;
 use crate::command::bench::common::{Common, Subject};
 use crate::command::bench::runner::{COUNTED, Runner, TIMED};
 use crate::command::bench::table;

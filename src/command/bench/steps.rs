@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::Args;
 use clap::builder::TypedValueParser;
 
-use crate::base::work::{Counts, State};
+use crate::base::outcome::{Counts, State};
 use crate::command::arguments::words;
 use crate::command::bench::common::{Common, Subject, of_how_many};
 use crate::command::bench::runner::{COUNTED, RUNS, Runner, TIMED, median_of};

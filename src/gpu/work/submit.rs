@@ -68,7 +68,7 @@ impl Run {
         let mut compute = encoder.begin_compute_pass(&Default::default());
         target
             .arrange
-            .dispatch(&mut compute, &target.settle, [1, 1]);
+            .dispatch(&mut compute, &target.closing, [1, 1]);
         drop(compute);
         let report = self.kept.reports.pop();
         let report = report.unwrap_or_else(|| Staging::new(device, REPORT));

@@ -17,7 +17,7 @@
 
 use glam::DVec3;
 
-use crate::base::{named::named_enum, shader::Module, work::Counts};
+use crate::base::{named::named_enum, outcome::Counts, shader::Module};
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{
     GridRay, LocalRay, Method, Step, Trace, Tracer, cone::cone_way, settings::TracerSettings,

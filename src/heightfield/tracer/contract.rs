@@ -12,8 +12,8 @@ use glam::DVec3;
 use thiserror::Error;
 
 use crate::base::array::SceneArray;
-pub use crate::base::work::Step;
-use crate::base::{shader::Module, work::Counts};
+pub use crate::base::outcome::Step;
+use crate::base::{outcome::Counts, shader::Module};
 use crate::heightfield::conemap::generate::mips::stored;
 use crate::heightfield::height_surface::{HeightmapUniform, TracerParameters};
 use crate::heightfield::tracer::{

@@ -4,7 +4,7 @@
 //! The steps divide the part of the ray inside the block, so that they always reach its end.
 //! The tracer misses what is thinner than a step, and needs no map.
 
-use crate::base::{shader::Module, work::Counts};
+use crate::base::{outcome::Counts, shader::Module};
 use crate::heightfield::height_surface::TracerParameters;
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{

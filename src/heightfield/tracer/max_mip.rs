@@ -7,7 +7,7 @@
 //! it goes on to where it comes down to the maximum, and looks at the child there. In a cell it
 //! solves the patch. The pyramid may have any size, and each tile begins one of its own.
 
-use crate::base::{shader::Module, work::Counts};
+use crate::base::{outcome::Counts, shader::Module};
 use crate::heightfield::height_surface::Node;
 use crate::heightfield::tracer::{
     GridRay, LocalRay, Method, Step, Trace, Tracer, cone::WALK_TRUST,

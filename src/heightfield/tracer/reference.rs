@@ -4,7 +4,7 @@
 //! measured against it, and it is tested against closed forms. It has no shader of its own: on
 //! a GPU the cone walk with ratios of 0 visits the same cells.
 
-use crate::base::{shader::Module, work::Counts};
+use crate::base::{outcome::Counts, shader::Module};
 use crate::heightfield::tracer::{GridRay, Method, Step, Tracer};
 
 /// Solves cell by cell.

@@ -8,7 +8,7 @@
 //! left, and solves these exactly. Over boxes every bracket is settled after its rounds: a
 //! point near a box does not tell whether the ray meets its top or its side.
 
-use crate::base::work::{Counts, Step};
+use crate::base::outcome::{Counts, Step};
 use crate::heightfield::Patches;
 use crate::heightfield::tracer::GridRay;
 

@@ -9,7 +9,7 @@
 //! offset of the walk.) A rising ray may come out again anywhere. It goes from cell to cell, and
 //! over nodes of the pyramid of maxima that lie under it.
 
-use crate::base::{shader::Module, work::Counts};
+use crate::base::{outcome::Counts, shader::Module};
 use crate::heightfield::tracer::refine::{Refine, refine, refine_over};
 use crate::heightfield::tracer::{GridRay, Method, Step, Tracer, cone::cone_end};
 use crate::wgsl;

@@ -15,7 +15,7 @@
 //! that is farther. The patch of a cell is solved if the ray comes down to A in it. The offset
 //! makes cones wider: it uses that a step always reaches the exit.
 
-use crate::base::{shader::Module, work::Counts};
+use crate::base::{outcome::Counts, shader::Module};
 use crate::heightfield::tracer::{GridRay, Method, Step, Tracer, cone::cone_end};
 use crate::wgsl;
 

@@ -20,7 +20,7 @@
 use std::sync::Arc;
 
 use crate::base::array::SceneArray;
-use crate::base::{shader::Module, work::Counts};
+use crate::base::{outcome::Counts, shader::Module};
 use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, stored};
 use crate::heightfield::height_surface::{Node, TracerParameters};
 use crate::heightfield::tracer::cone::{WALK_TRUST, cone_end};

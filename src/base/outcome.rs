@@ -42,6 +42,3 @@ pub struct Counts {
     /// Iterations of the formula in these evaluations.
     pub iterations: u32,
 }
-
-/// [`Counts`] as pictures name them.
-pub type Work = Counts;
