@@ -7,7 +7,7 @@ use crate::pass::progress::Progress;
 
 /// No threads.
 #[derive(Default)]
-pub struct Threads;
+pub struct Threads {}
 
 type Deferred<T> = Box<dyn FnOnce(&Told) -> T + Send>;
 

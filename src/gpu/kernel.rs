@@ -68,7 +68,9 @@ enum Kind {
 
 /// The compiled programs of a device. Each is compiled once. Clones share them.
 #[derive(Clone, Default)]
-pub struct Kernels(Arc<Mutex<Vec<(Program, Arc<Kernel>)>>>);
+pub struct Kernels(Arc<Mutex<Compiled>>);
+
+type Compiled = Vec<(Program, Arc<Kernel>)>;
 
 impl Kernels {
     /// The kernel of a program, compiled now if it is new.
@@ -92,7 +94,7 @@ impl Kernels {
         found.map(|(_, kernel)| kernel.clone())
     }
 
-    fn lock(&self) -> MutexGuard<'_, Vec<(Program, Arc<Kernel>)>> {
+    fn lock(&self) -> MutexGuard<'_, Compiled> {
         // Nothing half-made is put there.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

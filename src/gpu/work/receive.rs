@@ -56,7 +56,7 @@ impl Run {
             false => turn.share(),
         };
         self.reached = turn.number;
-        if flight.stages.end % self.per_block() == 0 {
+        if flight.stages.end.is_multiple_of(self.per_block()) {
             // Each block counts anew.
             self.told = [0; MOST_STAGES];
         }
