@@ -133,7 +133,7 @@ pub fn run(args: &Render) -> Result<()> {
     say(&format!("rendering on {who}"));
     if args.layer == Layer::Error {
         say(&format!(
-            "the truth to compare with is rendered too, unless it is kept from before: in f64 on the CPU, in up to {MOST_ROUNDS} rounds of ever finer steps, which takes much longer than the picture"
+            "the truth, a slow reference in f64 on the CPU, is rendered too, unless it is kept from before: up to {MOST_ROUNDS} rounds of ever finer steps, which take much longer than the picture"
         ));
     }
     if let Some(warning) = executor.precision_warning(&plan) {

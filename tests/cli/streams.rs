@@ -213,6 +213,9 @@ fn long_work_tells_its_progress_in_lines() {
         let line = |l: &str| l.starts_with(says) && l.contains(&format!(" % ({part}"));
         let told = || fs::read_to_string(&heard).is_ok_and(|said| said.lines().any(line));
         let child = begun(&folder, args, stderr.into(), told);
-        assert_eq!(ended(child, &["INT"]).0, Some(130));
+        let code = ended(child, &["INT"]).0;
+        // The second half of `inspect` and `convert` may be done before the signal arrives.
+        let is_short = args.starts_with("conemap") && code == Some(0);
+        assert!(code == Some(130) || is_short, "{args}: {code:?}");
     }
 }
