@@ -12,6 +12,7 @@ use anyhow::{Context, Result, ensure};
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::render::Renderer;
+use conemarch::pass::progress::Progress;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset;
@@ -27,7 +28,7 @@ const MARKS: [&str; 2] = [
     "<!-- scripts/overhead COMMIT --write: end -->",
 ];
 /// Processes of each build per row; each has warm runs of its own.
-const RUNS: usize = 5;
+const RUNS: usize = 3;
 /// Presets whose second frame is looked at.
 const LIVE: [&str; 3] = ["mandelbox", "mandelbox-gate", "terrain"];
 
@@ -36,7 +37,7 @@ fn main() -> Result<()> {
     let args = std::env::args().skip(1).filter(|a| a != "--bench");
     let args: Vec<String> = args.collect();
     ensure!(args.len() >= 2, "give the old and the new program");
-    let text = [small(&args)?, large(&args)?, frames()?].join("\n");
+    let text = [small(&args)?, large(&args)?, processes(&args)?, frames()?].join("\n");
     println!("{text}");
     if args.iter().any(|a| a == "--write") {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md");
@@ -101,18 +102,62 @@ fn small(args: &[String]) -> Result<String> {
     ))
 }
 
-/// March and trace at 1280 x 720.
+/// March and trace at 1280 x 720, and the longest wait for a chance to cancel.
 fn large(args: &[String]) -> Result<String> {
-    let mut rows = Vec::new();
+    let (adapters, mut rows) = (Adapters::find(), Vec::new());
+    let (adapter, _) = adapters
+        .choose(&Choice::Auto)?
+        .context("there is no adapter")?;
     for (preset, _) in preset::BUILTIN {
         let [old, new] = measured(args, preset, "1280x720")?.map(|[wall, _]| wall);
+        let mut plan = preset::load(preset, &[])?.plan;
+        plan.size = [1280, 720];
+        let (mut longest, mut last) = (0.0_f64, Instant::now());
+        let watch = &mut |_: &Progress| {
+            longest = longest.max(last.elapsed().as_secs_f64() * 1e3);
+            last = Instant::now();
+            true
+        };
+        let mut renderer = Renderer::new(Device::open(adapter)?);
+        renderer.render(&plan, &Assets::default(), Extras::default(), watch)?;
         rows.push(format!(
-            "| {preset} | {old:.1} | {new:.1} | {:.2} |",
+            "| {preset} | {old:.1} | {new:.1} | {:.2} | {longest:.0} |",
             new / old
         ));
     }
     Ok(markdown::table(
-        "march and trace, 1280 x 720 | before, ms | now, ms | ratio",
+        "march and trace, 1280 x 720 | before, ms | now, ms | ratio | wait now, ms",
+        "lr",
+        rows,
+    ))
+}
+
+/// From nothing to a file: whole processes.
+fn processes(args: &[String]) -> Result<String> {
+    let mut rows = Vec::new();
+    for preset in LIVE {
+        let mut all = [vec![], vec![]];
+        for _ in 0..2 * RUNS {
+            for (runs, program) in all.iter_mut().zip(args) {
+                let start = Instant::now();
+                let mut command = Command::new(program);
+                command.args(["render", preset, "--size", "64x36", "-o", "-"]);
+                let output = command.stdin(Stdio::null()).output()?;
+                ensure!(output.status.success(), "{program} cannot render {preset}");
+                runs.push(start.elapsed().as_secs_f64() * 1e3);
+            }
+        }
+        let [old, new] = all.map(|mut runs| {
+            runs.sort_by(f64::total_cmp);
+            runs[RUNS]
+        });
+        rows.push(format!(
+            "| {preset} | {old:.0} | {new:.0} | {:.2} |",
+            new / old
+        ));
+    }
+    Ok(markdown::table(
+        "from nothing to a file, 64 x 36 | before, ms | now, ms | ratio",
         "lr",
         rows,
     ))

@@ -5,6 +5,8 @@ use conemarch::base::clock::clock;
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::render::{Cutting, Renderer};
+use conemarch::heightfield::conemap::generate::Generator;
+use conemarch::heightfield::{ConeMap, Heights};
 use conemarch::pass::tone::byte;
 use conemarch::picture::frame::{Frame, Traffic};
 use conemarch::plan::{Extras, Plan};
@@ -234,14 +236,45 @@ fn a_host_lends_its_device_and_a_render_moves_to_another_thread() {
 }
 
 #[test]
-fn every_preset_renders_within_the_limits_that_webgpu_promises() {
+fn a_painted_relief_with_four_cones_at_each_of_4096_x_4096_places_fits_too() {
+    let field = "scene.field=checker:4096x4096";
+    let changes = [
+        field,
+        "scene.tracer=quad",
+        "scene.paint=quad",
+        "image.size=[64, 36]",
+    ];
+    let plan = preset("terrain", &changes);
+    let assets = Assets::default();
+    // Narrow cones everywhere: to make the true ones takes minutes.
+    let make = &mut |generator: Generator, heights: &Heights, _, _: &_| {
+        Ok(ConeMap {
+            kind: generator.kind(),
+            size: heights.size(),
+            wrap: heights.wrap(),
+            offset: 0.0,
+            ratios: vec![0.1; heights.data().len() * generator.channels()],
+        })
+    };
+    plan.scene.prepare(&assets, make).unwrap();
+    let mut renderer = Renderer::new(within_promised_limits());
+    let frame = renderer.render(&plan, &assets, EVERYTHING, &mut |_| true);
+    let frame = frame.unwrap();
+    assert!(frame.traffic.unwrap().uploads > 5 * 4 * 4096 * 4096);
+    assert!(frame.census()[0] < 64 * 36, "only sky");
+}
+
+/// A device with the limits that WebGPU promises.
+fn within_promised_limits() -> Device {
     let adapters = Adapters::find();
-    let (adapter, _) = adapters
-        .choose(&Choice::Auto)
-        .unwrap()
-        .expect(adapter::NO_ADAPTER);
-    let device = Device::open_with(adapter, Limits::default()).unwrap();
-    let mut renderer = Renderer::new(device);
+    let chosen = adapters.choose(&Choice::Auto).unwrap();
+    let (adapter, _) = chosen.expect(adapter::NO_ADAPTER);
+    Device::open_with(adapter, Limits::default()).unwrap()
+}
+
+#[test]
+fn every_preset_renders_within_the_limits_that_webgpu_promises() {
+    let mut renderer = Renderer::new(within_promised_limits());
     let mut hits = 0;
     for (name, _) in BUILTIN {
         let plan = sized(name, [64, 36]);
