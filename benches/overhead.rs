@@ -91,7 +91,7 @@ fn small(args: &[String]) -> Result<String> {
     for preset in LIVE {
         let [old, new] = measured(args, preset, "64x36")?.map(|[wall, device]| wall - device);
         rows.push(format!(
-            "| {preset} | {old:.2} | {new:.2} | {:.2} |",
+            "{preset} | {old:.2} | {new:.2} | {:.2}",
             new / old
         ));
     }
@@ -121,7 +121,7 @@ fn large(args: &[String]) -> Result<String> {
         let mut renderer = Renderer::new(Device::open(adapter)?);
         renderer.render(&plan, &Assets::default(), Extras::default(), watch)?;
         rows.push(format!(
-            "| {preset} | {old:.1} | {new:.1} | {:.2} | {longest:.0} |",
+            "{preset} | {old:.1} | {new:.1} | {:.2} | {longest:.0}",
             new / old
         ));
     }
@@ -152,7 +152,7 @@ fn processes(args: &[String]) -> Result<String> {
             runs[RUNS]
         });
         rows.push(format!(
-            "| {preset} | {old:.0} | {new:.0} | {:.2} |",
+            "{preset} | {old:.0} | {new:.0} | {:.2}",
             new / old
         ));
     }
