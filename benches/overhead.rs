@@ -90,10 +90,7 @@ fn small(args: &[String]) -> Result<String> {
     let mut rows = Vec::new();
     for preset in LIVE {
         let [old, new] = measured(args, preset, "64x36")?.map(|[wall, device]| wall - device);
-        rows.push(format!(
-            "{preset} | {old:.2} | {new:.2} | {:.2}",
-            new / old
-        ));
+        rows.push(format!("{preset} | {old:.2} | {new:.2} | {:.2}", new / old));
     }
     Ok(markdown::table(
         "march and trace, 64 x 36 | overhead before, ms | now, ms | ratio",
@@ -151,10 +148,7 @@ fn processes(args: &[String]) -> Result<String> {
             runs.sort_by(f64::total_cmp);
             runs[RUNS]
         });
-        rows.push(format!(
-            "{preset} | {old:.0} | {new:.0} | {:.2}",
-            new / old
-        ));
+        rows.push(format!("{preset} | {old:.0} | {new:.0} | {:.2}", new / old));
     }
     Ok(markdown::table(
         "from nothing to a file, 64 x 36 | before, ms | now, ms | ratio",

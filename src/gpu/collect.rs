@@ -4,7 +4,7 @@ use crate::base::outcome::{Counts, State};
 use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::staging::Staging;
 use crate::gpu::target::Target;
-use crate::pass::turn::Layout;
+use crate::pass::turn::{CellsHead, Layout};
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Pass};
 
@@ -44,7 +44,6 @@ impl Parts {
     pub fn new(layout: &Layout, extras: Extras) -> Self {
         let area = layout.count(1);
         let (tally, front) = (layout.tally(1), layout.front(1));
-        let layers = 1 + u32::from(extras.normals);
         Self {
             depth: Range::between(front, front + area),
             state: Range::between(0, area),
@@ -52,32 +51,34 @@ impl Parts {
             level_states: Range::between(area, layout.states_end())
                 .only_if(extras.levels || extras.count),
             level_fronts: Range::between(front + area, layout.mark()).only_if(extras.levels),
-            pixels: Range::between(0, 4 * layers * area).only_if(!extras.depth_only),
+            pixels: Range::between(layout.light(), layout.lists()),
         }
     }
 
-    fn of_cells(&self) -> [Range; 5] {
+    fn all(&self) -> [Range; 6] {
         [
             self.depth,
             self.state,
             self.tally,
             self.level_states,
             self.level_fronts,
+            self.pixels,
         ]
     }
 
     /// Bytes of all parts.
     pub fn bytes(&self) -> u64 {
-        let words = self.of_cells().map(|r| u64::from(r.words));
-        4 * (words.iter().sum::<u64>() + u64::from(self.pixels.words))
+        4 * self.all().iter().map(|r| u64::from(r.words)).sum::<u64>()
     }
 
     /// The ranges to copy from the buffers of a target, in order.
     pub fn ranges<'a>(&self, target: &'a Target) -> Vec<(&'a wgpu::Buffer, u64, u64)> {
-        let range = |buffer, r: Range| (buffer, 4 * u64::from(r.at), 4 * u64::from(r.words));
-        let cells = self.of_cells().map(|r| range(&target.cells, r));
-        let pixels = range(&target.pixels, self.pixels);
-        cells.into_iter().chain([pixels]).collect()
+        let head = size_of::<CellsHead>() as u64;
+        let range = |r: Range| {
+            let [at, bytes] = [r.at, r.words].map(|n| 4 * u64::from(n));
+            (&target.cells, head + at, bytes)
+        };
+        self.all().map(range).to_vec()
     }
 
     /// Copies the parts into the frame.
@@ -98,10 +99,9 @@ impl Parts {
             at += 4 * r.words as usize;
             start
         };
-        let starts = self.of_cells().map(&mut next);
-        let pixels_at = next(self.pixels);
+        let starts = self.all().map(&mut next);
         let words = |i: usize| -> Result<Vec<u32>, DeviceError> {
-            from.read(device, starts[i], self.of_cells()[i].words as usize)
+            from.read(device, starts[i], self.all()[i].words as usize)
         };
         let whole = Place::new(layout, 1, frame.size[0]);
         let states_of = |words: Vec<u32>| -> Vec<Option<State>> {
@@ -157,7 +157,7 @@ impl Parts {
             let codes: Vec<u8> = states.iter().map(|s| code(*s)).collect();
             place.copy(&codes, &mut layer.state);
         }
-        let pixels: Vec<[f32; 4]> = from.read(device, pixels_at, self.pixels.words as usize / 4)?;
+        let pixels: Vec<[f32; 4]> = from.read(device, starts[5], self.pixels.words as usize / 4)?;
         let (light, normals) = pixels.split_at(pixels.len().min(codes.len()));
         let rgb = |p: &[[f32; 4]]| {
             p.iter()

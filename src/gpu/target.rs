@@ -14,7 +14,7 @@ use crate::gpu::buffer::{create, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::error::{RenderError, check_room};
 use crate::gpu::kernel::{Kernel, PICTURE};
-use crate::pass::turn::{Layout, ListsHead, Stage, Turn};
+use crate::pass::turn::{CellsHead, Layout, Stage, Turn};
 
 /// What decides a target.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,8 +23,6 @@ pub struct Needs {
     pub programs: Vec<Program>,
     /// The largest block.
     pub layout: Layout,
-    /// Values of four numbers per pixel: the light, and the normals if they are kept.
-    pub pixel_layers: u32,
     /// The size of the picture that is shown while it is made, if there is one.
     pub picture: Option<[u32; 2]>,
 }
@@ -71,12 +69,8 @@ pub struct Target {
     generation: u32,
     /// The turn.
     pub turn: wgpu::Buffer,
-    /// The lists of cells.
-    pub lists: wgpu::Buffer,
-    /// The values of cells.
+    /// The values and lists of cells.
     pub cells: wgpu::Buffer,
-    /// Light and normals.
-    pub pixels: wgpu::Buffer,
     /// The picture that is shown while it is made.
     pub picture: Option<wgpu::Texture>,
     /// Workgroups of the next dispatch.
@@ -85,8 +79,6 @@ pub struct Target {
     pub arrange: Arc<Kernel>,
     /// The stages of a block.
     pub stages: Vec<Bound>,
-    /// Resources of `arrange` for a stage that never comes: it only closes what has ended.
-    pub closing: Vec<wgpu::BindGroup>,
 }
 
 impl Target {
@@ -123,11 +115,9 @@ impl Target {
         let strides = compiled.iter().filter_map(|k| k.stride("walks"));
         let walk = u64::from(strides.max().unwrap_or(0));
         let turn = room("turn", size_of::<Turn>() as u64)?;
-        let head = size_of::<ListsHead>() as u64;
-        let lists = room("lists", head + 4 * u64::from(needs.layout.list_words()))?;
-        let cells = room("cells", 4 * u64::from(needs.layout.words()))?;
+        let head = size_of::<CellsHead>() as u64;
+        let cells = room("cells", head + 4 * u64::from(needs.layout.words()))?;
         let walks = room("walks", walk * pixels)?;
-        let light = room("pixels", 16 * u64::from(needs.pixel_layers) * pixels)?;
         let usage = BufferUsages::STORAGE | BufferUsages::INDIRECT;
         let workgroups = create(device, "workgroups", 16, usage);
         let picture = needs.picture.map(|size| new_picture(device, size));
@@ -135,10 +125,8 @@ impl Target {
         let shared = [
             ("turn", &turn),
             ("turn_parameters", &turn),
-            ("lists", &lists),
             ("cells", &cells),
             ("walks", &walks),
-            ("pixels", &light),
             ("workgroups", &workgroups),
         ];
         let named = |name: &str| {
@@ -167,12 +155,6 @@ impl Target {
             };
             arrange.bind(device, with_stage)
         };
-        let never = room("no stage", size_of::<Stage>() as u64)?;
-        let numbers = Stage {
-            number: u32::MAX,
-            ..Stage::zeroed()
-        };
-        device.queue.write_buffer(&never, 0, bytes_of(&numbers));
         let bind = |kernel: Arc<Kernel>| {
             let stage = room("stage", size_of::<Stage>() as u64)?;
             Ok::<_, RenderError>(Bound {
@@ -183,16 +165,13 @@ impl Target {
             })
         };
         Ok(Self {
-            closing: arranged(&never)?,
             stages: compiled.into_iter().map(bind).collect::<Result<_, _>>()?,
             needs,
             parameters,
             arrays: scene.iter().map(|a| a.array.clone()).collect(),
             generation: 0,
             turn,
-            lists,
             cells,
-            pixels: light,
             picture,
             workgroups,
             arrange,
@@ -244,9 +223,9 @@ impl Target {
             number,
             ..Turn::zeroed()
         };
-        let head = ListsHead::zeroed();
+        let head = CellsHead::zeroed();
         device.queue.write_buffer(&self.turn, 0, bytes_of(&turn));
-        device.queue.write_buffer(&self.lists, 0, bytes_of(&head));
+        device.queue.write_buffer(&self.cells, 0, bytes_of(&head));
     }
 
     /// Writes the numbers of the stages of a block.

@@ -56,8 +56,13 @@ pub struct Stage {
     pub tally: u32,
     /// Where the marks of hits start, three words to a pixel.
     pub mark: u32,
+    /// Where the light of the pixels starts, and after it the normals if they are kept, four words
+    /// to a pixel.
+    pub light: u32,
     /// The number of the block, which is part of every state.
     pub generation: u32,
+    /// Unused.
+    pub pad: u32,
 }
 
 /// What the next dispatch does. Only the device writes it.
@@ -93,20 +98,32 @@ pub struct Turn {
 }
 
 impl Turn {
+    /// Workgroups of the round.
+    fn groups_of_round(&self) -> u32 {
+        match self.visits {
+            0 => self.stage.tiles,
+            1 => self.count.div_ceil(16),
+            _ => self.count.div_ceil(64),
+        }
+    }
+
+    /// The stage that goes on next, if so many cells move: `close_ended` in
+    /// `wgsl/pass/arrange.wgsl` comes to the same before the next dispatch.
+    pub fn next(&self, moving: u32) -> u32 {
+        let is_over = self.first + self.groups >= self.groups_of_round();
+        self.number + u32::from(self.begun == 1 && is_over && moving == 0)
+    }
+
     /// The share of the stage that is done, about: most cells end in the first round.
     pub fn share(&self) -> f64 {
         if self.begun == 0 {
             return 0.0;
         }
-        let groups = match self.visits {
-            0 => self.stage.tiles,
-            1 => self.count.div_ceil(16),
-            _ => self.count.div_ceil(64),
-        };
-        let round = f64::from(self.first) / f64::from(groups.max(1));
+        let done = self.first + self.groups;
+        let round = f64::from(done) / f64::from(self.groups_of_round().max(1));
         match self.done {
-            0 => 0.8 * round,
-            _ => 0.8 + 0.2 * round,
+            0 => 0.8 * round.min(1.0),
+            _ => 0.8 + 0.2 * round.min(1.0),
         }
     }
 }
@@ -114,10 +131,10 @@ impl Turn {
 /// The most stages of a block.
 pub const MOST_STAGES: usize = 20;
 
-/// The head of the lists. The cells follow it.
+/// The head of the buffer of cells. Their values and the lists follow it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct ListsHead {
+pub struct CellsHead {
     /// Cells that still move.
     pub moving: u32,
     /// Cells whose children the next stage visits.
@@ -204,7 +221,8 @@ pub fn arrange() -> Program {
 }
 
 /// Where the values of a block's cells are in one buffer of words: first the states of all
-/// levels, the finest first, then the counts of work, the fronts, and the marks of the pixels.
+/// levels, the finest first, then the counts of work, the fronts, the marks and the light of the pixels, and last
+/// the lists.
 ///
 /// Blocks of different sizes use one buffer. Only states may stand where a state is looked for, as
 /// another word could be taken for the state of a cell that was not visited. So all blocks of an
@@ -217,18 +235,27 @@ pub struct Layout {
     coarsest: u32,
     counted: bool,
     marked: bool,
+    /// Values of four numbers per pixel: the light, and the normals if they are kept.
+    pixel_layers: u32,
     /// Words reserved for states.
     states: u32,
 }
 
 impl Layout {
     /// The layouts of the blocks of an image, of which the first is as large as any.
-    pub fn of_blocks(blocks: &[Block], coarsest: u32, counted: bool, marked: bool) -> Vec<Self> {
+    pub fn of_blocks(
+        blocks: &[Block],
+        coarsest: u32,
+        counted: bool,
+        marked: bool,
+        pixel_layers: u32,
+    ) -> Vec<Self> {
         let layout = |block: &Block| Self {
             block: *block,
             coarsest,
             counted,
             marked,
+            pixel_layers,
             states: 0,
         };
         let states = blocks.first().map_or(0, |b| layout(b).states_end());
@@ -285,19 +312,24 @@ impl Layout {
         self.front(2 * self.coarsest)
     }
 
-    /// Words of all values.
-    pub fn words(&self) -> u32 {
+    /// Where the light of the pixels starts.
+    pub fn light(&self) -> u32 {
         self.mark() + if self.marked { 3 * self.count(1) } else { 0 }
     }
 
-    /// Words of the lists without their head: two queues and two lists of parents.
-    pub fn list_words(&self) -> u32 {
-        self.parents_at(2)
+    /// Where the lists start: two queues and two lists of parents.
+    pub fn lists(&self) -> u32 {
+        self.light() + 4 * self.pixel_layers * self.count(1)
     }
 
     /// Where a list of parents starts. Stages take turns with the two.
     fn parents_at(&self, which: u32) -> u32 {
-        2 * self.count(1) + which * self.count(2)
+        self.lists() + 2 * self.count(1) + which * self.count(2)
+    }
+
+    /// Words of all values and lists.
+    pub fn words(&self) -> u32 {
+        self.parents_at(2)
     }
 
     /// The stages of the block, without step limits of dispatches. `first` is the number of the
@@ -331,11 +363,12 @@ impl Layout {
             tiles: self.cells(divisor).map(|n| n.div_ceil(8)).iter().product(),
             origin: self.block.origin.map(|o| o / divisor),
             cells: self.cells(divisor),
-            queues: [0, self.count(1)],
+            queues: [self.lists(), self.lists() + self.count(1)],
             front: self.front(divisor),
             state: self.state(divisor),
             tally: self.tally(divisor),
             mark: self.mark(),
+            light: self.light(),
             ..Stage::zeroed()
         };
         match kind {

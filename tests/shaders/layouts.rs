@@ -120,15 +120,15 @@ fn the_text_of_a_struct_has_the_layout_that_is_compiled() {
 fn structs_have_the_layout_that_the_shaders_read() {
     let all = in_wgsl();
     for (name, own) in &*IN_RUST {
-        // The head of the lists is the part of `Lists` before the cells.
-        let lists = name == "ListsHead";
-        let of = if lists { "Lists" } else { name };
+        // The head of the cells is the part of `Cells` before the words.
+        let lists = name == "CellsHead";
+        let of = if lists { "Cells" } else { name };
         let Some([wgsl]) = all.get(of).map(|found| &found[..]) else {
             panic!("{name} has not one layout: {:?}", all.get(of));
         };
         let mut wgsl = wgsl.clone();
         if lists {
-            let cells = ("cells".into(), own[own.len() - 1].1, 4);
+            let cells = ("words".into(), own[own.len() - 1].1, 4);
             assert_eq!(wgsl[own.len() - 1], cells);
             wgsl.truncate(own.len() - 1);
             wgsl.push(end(cells.1));
@@ -158,7 +158,7 @@ fn no_struct_that_a_shader_binds_is_left_out() {
             let kind = &made.module.types[global.ty];
             if global.binding.is_some() && matches!(kind.inner, TypeInner::Struct { .. }) {
                 let name = kind.name.as_deref().unwrap();
-                let known = IN_RUST.contains_key(name) || name == "Lists";
+                let known = IN_RUST.contains_key(name) || name == "Cells";
                 assert!(known, "no Rust struct for {name} in {listing}");
                 bound += 1;
             }

@@ -27,9 +27,9 @@ struct HeightmapUniform {
 /// Whether the patches are boxes as high as one sample, instead of bilinear between four samples.
 override HEIGHTMAP_BOXES: bool;
 
-@group(0) @binding(5) var heights: texture_2d<f32>;
-/// One cone for each place. Most steps read cones and maxima. They are buffers, as software Vulkan
-/// reads textures more slowly.
+/// Most steps read these. They are buffers, as software Vulkan reads textures more slowly.
+@group(0) @binding(5) var<storage, read> heights: array<f32>;
+/// One cone for each place.
 @group(0) @binding(6) var<storage, read> ratios: array<f32>;
 @group(0) @binding(7) var<storage, read> maxima: array<f32>;
 /// The scene loads it.
@@ -42,7 +42,7 @@ fn array_texel(i: u32) -> vec2<u32> {
 }
 
 fn heights_at(i: i32) -> f32 {
-    return textureLoad(heights, array_texel(u32(i)), 0).x;
+    return heights[i];
 }
 
 /// The cell of the first tile that corresponds to a cell of the domain.

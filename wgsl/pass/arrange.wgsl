@@ -37,7 +37,7 @@ fn close_ended() {
     if turn.first < groups_of_round() {
         return;
     }
-    turn.count = atomicExchange(&lists.moving, 0u);
+    turn.count = atomicExchange(&cells.moving, 0u);
     if turn.count == 0u {
         turn.number += 1u;
         turn.begun = 0u;
@@ -62,7 +62,7 @@ fn begin_stage() {
     turn.visits = VISIT_ALL;
     if turn.stage.parent_width > 0u {
         turn.visits = VISIT_PARENTS;
-        let count = atomicExchange(&lists.parents, 0u);
+        let count = atomicExchange(&cells.parents, 0u);
         // A stage without tiles is left out.
         turn.count = select(0u, count, turn.stage.tiles > 0u);
         turn.read = turn.stage.listed;
@@ -81,7 +81,7 @@ fn arrange() {
         let most = clamp(stage_parameters.slice / turn.chunk, 1u, MOST_GROUPS);
         turn.groups = (min(left, most) + PARTS - 1u) / PARTS * PARTS;
         turn.dispatches += min(turn.groups, 1u);
-        lists.dispatches[stage_parameters.index] = turn.dispatches;
+        cells.dispatches[stage_parameters.index] = turn.dispatches;
     }
     workgroups = array<u32, 3>(turn.groups / PARTS, PARTS, 1u);
 }

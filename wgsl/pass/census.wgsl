@@ -44,7 +44,7 @@ fn census(
             if wanted {
                 let wrong = left_out(square, size, at);
                 if wrong > 0u {
-                    atomicAdd(&lists.wrong, wrong);
+                    atomicAdd(&cells.wrong, wrong);
                 }
             }
             if any((square & vec2<u32>(1u)) != vec2<u32>(0u)) {

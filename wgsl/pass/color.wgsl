@@ -1,10 +1,6 @@
 // The colour pass: key light with shadow, light from the sky and from the ground with
 // occlusion, and fog. Light is linear. Tone and sRGB follow when the picture is written.
 
-/// Red, green, blue, and 0 where the shadow ray reached its step limit. The normals follow,
-/// for layers that show them.
-@group(2) @binding(3) var<storage, read_write> pixels: array<vec4<f32>>;
-
 override COLOR_KEEPS_NORMALS: bool;
 /// Whether pigments are linear colours.
 override COLOR_IS_PIGMENT: bool;
@@ -81,9 +77,9 @@ fn color(
             c = vec3<f32>(1.0, 0.0, 1.0);
         }
     }
-    pixels[index] = vec4<f32>(c, decided);
+    cell_store_pixel(index, vec4<f32>(c, decided));
     if COLOR_KEEPS_NORMALS {
         let area = turn.stage.cells.x * turn.stage.cells.y;
-        pixels[area + index] = vec4<f32>(n, 0.0);
+        cell_store_pixel(area + index, vec4<f32>(n, 0.0));
     }
 }

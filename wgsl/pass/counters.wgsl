@@ -16,9 +16,9 @@ fn count_iterations(n: u32) {
 fn counters_store(cell: u32) {
     let at = turn.stage.tally + 2u * cell;
     if turn.done > 0u {
-        evaluations += cells[at];
-        iterations += cells[at + 1u];
+        evaluations += cells.words[at];
+        iterations += cells.words[at + 1u];
     }
-    cells[at] = evaluations;
-    cells[at + 1u] = iterations;
+    cells.words[at] = evaluations;
+    cells.words[at + 1u] = iterations;
 }

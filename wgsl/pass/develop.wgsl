@@ -1,7 +1,5 @@
 // The stage after the colour pass: it shows what is coloured.
 
-@group(2) @binding(3) var<storage, read> pixels: array<vec4<f32>>;
-
 @compute @workgroup_size(64)
 fn develop(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -14,5 +12,5 @@ fn develop(
     }
     let cell = queue_cell(packed);
     let index = queue_index(cell);
-    tone_store(turn.stage.origin + cell, pixels[index].rgb);
+    tone_store(turn.stage.origin + cell, cell_pixel(index).rgb);
 }

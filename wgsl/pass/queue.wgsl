@@ -7,9 +7,6 @@
 /// The turn is in storage, as lavapipe inlines uniforms that steer branches and compiles again
 /// whenever one changes.
 @group(2) @binding(0) var<storage, read> turn_parameters: Turn;
-/// The values of all cells of the block, one plane after the other. Fronts are floats. A state has
-/// two bits. The others are the number of the block, so values of an earlier block need no reset.
-@group(2) @binding(2) var<storage, read_write> cells: array<u32>;
 var<private> turn: Turn;
 
 /// The state of a cell that was not visited: its parent is sky.
@@ -67,12 +64,12 @@ fn queue_take(group: vec2<u32>, lane: u32) -> u32 {
         if at >= turn.count {
             return QUEUE_NONE;
         }
-        return lists.cells[turn.read + at];
+        return cells.words[turn.read + at];
     }
     if at >= 4u * turn.count {
         return QUEUE_NONE;
     }
-    let parent = queue_cell(lists.cells[turn.read + at / 4u]);
+    let parent = queue_cell(cells.words[turn.read + at / 4u]);
     return queue_pack(2u * parent + vec2<u32>(at & 1u, (at >> 1u) & 1u));
 }
 
@@ -82,7 +79,7 @@ fn queue_front(cell: vec2<u32>) -> f32 {
         return 0.0;
     }
     let parent = (cell.y / 2u) * turn.stage.parent_width + cell.x / 2u;
-    return bitcast<f32>(cells[turn.stage.parent_front + parent]);
+    return bitcast<f32>(cells.words[turn.stage.parent_front + parent]);
 }
 
 /// The step limit of a cell in this dispatch.
@@ -95,40 +92,55 @@ fn queue_push(cell: u32) -> bool {
     if turn.done + turn.chunk >= turn.stage.limit {
         return true;
     }
-    let at = atomicAdd(&lists.moving, 1u);
-    lists.cells[turn.filled + at] = cell;
+    let at = atomicAdd(&cells.moving, 1u);
+    cells.words[turn.filled + at] = cell;
     return false;
 }
 
 /// Lists a packed cell whose children the next stage visits.
 fn queue_parent(cell: u32) {
-    let at = atomicAdd(&lists.parents, 1u);
-    lists.cells[turn.stage.parents + at] = cell;
+    let at = atomicAdd(&cells.parents, 1u);
+    cells.words[turn.stage.parents + at] = cell;
 }
 
 fn cell_front(cell: u32) -> f32 {
-    return bitcast<f32>(cells[turn.stage.front + cell]);
+    return bitcast<f32>(cells.words[turn.stage.front + cell]);
 }
 
 /// The state whose place among all values is `at`.
 fn cell_state(at: u32) -> u32 {
-    let kept = cells[at];
+    let kept = cells.words[at];
     return select(STATE_UNVISITED, kept & 3u, kept >> 2u == turn.stage.generation);
 }
 
 fn cell_store(cell: u32, front: f32, state: u32) {
-    cells[turn.stage.front + cell] = bitcast<u32>(front);
-    cells[turn.stage.state + cell] = (turn.stage.generation << 2u) | state;
+    cells.words[turn.stage.front + cell] = bitcast<u32>(front);
+    cells.words[turn.stage.state + cell] = (turn.stage.generation << 2u) | state;
 }
 
 fn cell_mark(cell: u32) -> Mark {
     let at = turn.stage.mark + 3u * cell;
-    return Mark(cells[at], bitcast<f32>(cells[at + 1u]), bitcast<f32>(cells[at + 2u]));
+    return Mark(cells.words[at], bitcast<f32>(cells.words[at + 1u]), bitcast<f32>(cells.words[at + 2u]));
 }
 
 fn cell_store_mark(cell: u32, mark: Mark) {
     let at = turn.stage.mark + 3u * cell;
-    cells[at] = mark.id;
-    cells[at + 1u] = bitcast<u32>(mark.u);
-    cells[at + 2u] = bitcast<u32>(mark.v);
+    cells.words[at] = mark.id;
+    cells.words[at + 1u] = bitcast<u32>(mark.u);
+    cells.words[at + 2u] = bitcast<u32>(mark.v);
+}
+
+fn cell_pixel(pixel: u32) -> vec4<f32> {
+    let at = turn.stage.light + 4u * pixel;
+    let w = vec4<u32>(cells.words[at], cells.words[at + 1u], cells.words[at + 2u], cells.words[at + 3u]);
+    return bitcast<vec4<f32>>(w);
+}
+
+fn cell_store_pixel(pixel: u32, value: vec4<f32>) {
+    let at = turn.stage.light + 4u * pixel;
+    let w = bitcast<vec4<u32>>(value);
+    cells.words[at] = w.x;
+    cells.words[at + 1u] = w.y;
+    cells.words[at + 2u] = w.z;
+    cells.words[at + 3u] = w.w;
 }

@@ -30,7 +30,7 @@ struct Stage {
     fudge: f32,
     /// Position among the stages of the block.
     index: u32,
-    /// Where its two queues start in the lists.
+    /// Where its two queues start in the cells.
     queues: vec2<u32>,
     /// Where its parents are listed, and where it lists parents itself.
     listed: u32,
@@ -41,8 +41,12 @@ struct Stage {
     state: u32,
     tally: u32,
     mark: u32,
+    /// Where the light of the pixels starts, and after it the normals if they are kept, four words
+    /// to a pixel.
+    light: u32,
     /// The number of the block, which is part of every state.
     generation: u32,
+    pad: u32,
 }
 
 /// What the next dispatch does. Only `arrange` writes it.
@@ -69,8 +73,10 @@ struct Turn {
     pad: u32,
 }
 
-/// Lists of cells, with their counts.
-struct Lists {
+/// All values of the cells of the block, and lists of cells: one buffer, as a stage may have only
+/// eight. First there are the values, one plane after the other. Fronts are floats. A state has two
+/// bits. The others are the number of the block, so values of an earlier block need no reset.
+struct Cells {
     /// Cells that still move.
     moving: atomic<u32>,
     /// Cells whose children the next stage visits.
@@ -80,7 +86,7 @@ struct Lists {
     pad: u32,
     /// Dispatches of each stage of the block.
     dispatches: array<u32, 20>,
-    cells: array<u32>,
+    words: array<u32>,
 }
 
 /// Workgroups of a dispatch along the second axis; see `queue_group`.
@@ -93,4 +99,4 @@ const VISIT_PARENTS = 1u;
 /// The listed cells.
 const VISIT_CELLS = 2u;
 
-@group(2) @binding(1) var<storage, read_write> lists: Lists;
+@group(2) @binding(1) var<storage, read_write> cells: Cells;

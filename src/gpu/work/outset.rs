@@ -157,7 +157,11 @@ impl Order {
         let coarsest = plan.coarsest();
         let blocks = Block::cut(plan.size, self.cutting.edge(), coarsest);
         let marked = scene.twin().marks_hits();
-        let blocks = turn::Layout::of_blocks(&blocks, coarsest, extras.count, marked);
+        let layers = match (extras.depth_only, extras.normals) {
+            (true, _) => 0,
+            (false, normals) => 1 + u32::from(normals),
+        };
+        let blocks = turn::Layout::of_blocks(&blocks, coarsest, extras.count, marked, layers);
         let limits = self.shared.device.device.limits();
         let largest = limits.max_texture_dimension_2d;
         let shown = extras.shown && plan.size.iter().all(|n| *n <= largest);
@@ -174,10 +178,6 @@ impl Order {
             picture: shown.then_some(plan.size),
             // The first block is as large as any.
             layout: blocks[0].clone(),
-            pixel_layers: match (extras.depth_only, extras.normals) {
-                (true, _) => 0,
-                (false, normals) => 1 + u32::from(normals),
-            },
         };
         Ok(Draft {
             scene,

@@ -6,7 +6,7 @@ use crate::gpu::collect::Parts;
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::{PAIRS, Pair};
-use crate::pass::turn::{ListsHead, MOST_STAGES, StageKind, Turn};
+use crate::pass::turn::{CellsHead, MOST_STAGES, StageKind, Turn};
 use crate::picture::frame::Traffic;
 
 use super::run::{Flight, REPORT, Run};
@@ -37,8 +37,9 @@ impl Run {
         let shared = self.shared.clone();
         let device = &shared.device;
         let turn: Vec<Turn> = flight.report.read(device, 0, 1)?;
-        let head: Vec<ListsHead> = flight.report.read(device, size_of::<Turn>(), 1)?;
+        let head: Vec<CellsHead> = flight.report.read(device, size_of::<Turn>(), 1)?;
         let (turn, head) = (turn[0], head[0]);
+        let next = turn.next(head.moving);
         let encoded = flight.encoded as usize;
         let pairs: Vec<Pair> = flight
             .report
@@ -51,18 +52,23 @@ impl Run {
         let last = flight.stages.start + flight.encoded - 1;
         self.count_time(flight.stages.start..=last, elapsed_ms, &pairs);
         self.learn(flight.stages.start..=last, elapsed_ms, &head);
-        self.share = match self.reached == turn.number {
-            true => self.share.max(turn.share()),
-            false => turn.share(),
+        let share = if next == turn.number {
+            turn.share()
+        } else {
+            0.0
         };
-        self.reached = turn.number;
+        self.share = match self.reached == next {
+            true => self.share.max(share),
+            false => share,
+        };
+        self.reached = next;
         if flight.stages.end.is_multiple_of(self.per_block()) {
             // Each block counts anew.
             self.told = [0; MOST_STAGES];
         }
         if let Some((block, staging)) = flight.reading {
             let is_next = self.collected + self.job.firsts == block;
-            if turn.number >= (block as u32 + 1) * self.per_block() && is_next {
+            if next >= (block as u32 + 1) * self.per_block() && is_next {
                 self.collect(block, &staging, &head)?;
             }
             staging.unmap();
@@ -70,16 +76,16 @@ impl Run {
         }
         // What is left of a stage that is over need not be encoded, except at the end of a block,
         // where the results are read.
-        let [reached, next] = [turn.number, self.cursor].map(|stage| self.place(stage));
-        if reached.0 == next.0 && reached.1 > next.1 {
-            self.go_to(turn.number);
+        let [reached, cursor] = [next, self.cursor].map(|stage| self.place(stage));
+        if reached.0 == cursor.0 && reached.1 > cursor.1 {
+            self.go_to(next);
         }
         // A submission from before a correction says nothing new.
-        if turn.number < flight.stages.end && flight.corrections == self.corrections {
+        if next < flight.stages.end && flight.corrections == self.corrections {
             self.corrections += 1;
             let drained = u32::from(self.flights.is_empty());
             self.traffic_mut().drains += drained;
-            self.go_to(turn.number);
+            self.go_to(next);
         }
         Ok(())
     }
@@ -113,7 +119,7 @@ impl Run {
     }
 
     /// Learns from a submission how long dispatches take.
-    fn learn(&mut self, stages: RangeInclusive<u32>, elapsed_ms: f64, head: &ListsHead) {
+    fn learn(&mut self, stages: RangeInclusive<u32>, elapsed_ms: f64, head: &CellsHead) {
         let (block, first) = self.place(*stages.start());
         let (_, last) = self.place(*stages.end());
         let ran = |i: usize| head.dispatches[i].saturating_sub(self.told[i]);
@@ -133,7 +139,7 @@ impl Run {
         &mut self,
         block: usize,
         staging: &Staging,
-        head: &ListsHead,
+        head: &CellsHead,
     ) -> Result<(), RenderError> {
         let device = &self.shared.device;
         if head.wrong > 0 {

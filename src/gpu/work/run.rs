@@ -12,7 +12,7 @@ use crate::gpu::target::{Needs, Parameters, Target};
 use crate::gpu::work::{Outset, Shared};
 use crate::heightfield::assets::Preparation;
 use crate::pass::progress::Progress;
-use crate::pass::turn::{Layout, ListsHead, MOST_STAGES, Stage, StageKind, Turn};
+use crate::pass::turn::{CellsHead, Layout, MOST_STAGES, Stage, StageKind, Turn};
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::{Extras, Pass};
 
@@ -22,7 +22,7 @@ pub const SUBMISSION_MS: f64 = 40.0;
 /// Submissions that the device may have at once: one runs, and one is next.
 const IN_FLIGHT: usize = 2;
 /// Bytes of a report: the turn, the head of the lists, and timestamps.
-pub(super) const REPORT: u64 = (size_of::<Turn>() + size_of::<ListsHead>()) as u64 + PAIRS;
+pub(super) const REPORT: u64 = (size_of::<Turn>() + size_of::<CellsHead>()) as u64 + PAIRS;
 
 /// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
 /// the programs and the sizes of a target stay anyway.

@@ -3,7 +3,7 @@
 use crate::gpu::collect::Parts;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::PAIRS;
-use crate::pass::turn::{ListsHead, StageKind, Turn};
+use crate::pass::turn::{CellsHead, StageKind, Turn};
 use crate::plan::Pass;
 
 use super::run::{Flight, REPORT, Run};
@@ -65,15 +65,10 @@ impl Run {
                 break;
             }
         }
-        let mut compute = encoder.begin_compute_pass(&Default::default());
-        target
-            .arrange
-            .dispatch(&mut compute, &target.closing, [1, 1]);
-        drop(compute);
         let report = self.kept.reports.pop();
         let report = report.unwrap_or_else(|| Staging::new(device, REPORT));
-        let (turn, head) = (size_of::<Turn>() as u64, size_of::<ListsHead>() as u64);
-        let mut ranges = vec![(&target.turn, 0, turn), (&target.lists, 0, head)];
+        let (turn, head) = (size_of::<Turn>() as u64, size_of::<CellsHead>() as u64);
+        let mut ranges = vec![(&target.turn, 0, turn), (&target.cells, 0, head)];
         if let Some(stamps) = stamps {
             stamps.resolve(&mut encoder, encoded);
             ranges.push((&stamps.pairs, 0, PAIRS));
