@@ -4,17 +4,16 @@ use crate::gpu::buffer::create;
 use crate::gpu::device::Device;
 use crate::pass::turn::MOST_STAGES;
 
-/// A timestamp at the begin of a stage, and one at its end.
-pub type Pair = [u64; 2];
+/// Timestamps of a submission: its begin, and the end of each stage.
+const COUNT: usize = MOST_STAGES + 1;
+/// Their bytes.
+pub const STAMPS: u64 = (COUNT * size_of::<u64>()) as u64;
 
-/// Bytes of the pairs of all stages of a submission.
-pub const PAIRS: u64 = (MOST_STAGES * size_of::<Pair>()) as u64;
-
-/// Pairs of timestamps, one for each stage of a submission.
+/// Timestamps, one at the begin of a submission and one at the end of each stage in it.
 pub struct Stamps {
     set: wgpu::QuerySet,
-    /// Where the pairs are resolved to.
-    pub pairs: wgpu::Buffer,
+    /// Where they are resolved to.
+    pub resolved: wgpu::Buffer,
     tick_ns: f32,
 }
 
@@ -25,12 +24,12 @@ impl Stamps {
         let set = device.device.create_query_set(&wgpu::QuerySetDescriptor {
             label: Some("stamps"),
             ty: wgpu::QueryType::Timestamp,
-            count: 2 * MOST_STAGES as u32,
+            count: COUNT as u32,
         });
         let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
         Some(Self {
             set,
-            pairs: create(device, "stamps", PAIRS, usage),
+            resolved: create(device, "stamps", STAMPS, usage),
             tick_ns,
         })
     }
@@ -39,19 +38,23 @@ impl Stamps {
     pub fn writes(&self, nth: u32) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.set,
-            beginning_of_pass_write_index: Some(2 * nth),
-            end_of_pass_write_index: Some(2 * nth + 1),
+            beginning_of_pass_write_index: (nth == 0).then_some(0),
+            end_of_pass_write_index: Some(nth + 1),
         }
     }
 
-    /// Encodes the resolution of so many pairs.
-    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder, count: u32) {
-        encoder.resolve_query_set(&self.set, 0..2 * count, &self.pairs, 0);
+    /// Encodes the resolution of the timestamps of so many stages.
+    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder, stages: u32) {
+        encoder.resolve_query_set(&self.set, 0..stages + 1, &self.resolved, 0);
     }
 
-    /// Milliseconds between the two timestamps of a pair.
+    /// Milliseconds of each stage.
     #[allow(clippy::cast_precision_loss, reason = "a time for reading")]
-    pub fn milliseconds(&self, pair: Pair) -> f64 {
-        pair[1].saturating_sub(pair[0]) as f64 * f64::from(self.tick_ns) * 1e-6
+    pub fn milliseconds(&self, stamps: &[u64]) -> Vec<f64> {
+        let between = |pair: &[u64]| {
+            let ticks = pair[1].saturating_sub(pair[0]);
+            ticks as f64 * f64::from(self.tick_ns) * 1e-6
+        };
+        stamps.windows(2).map(between).collect()
     }
 }

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use bytemuck::{Zeroable, bytes_of, cast_slice};
+use bytemuck::{Zeroable, bytes_of};
 use wgpu::BufferUsages;
 
 use crate::base::shader::Program;
@@ -47,10 +47,8 @@ struct Parameter {
     buffer: wgpu::Buffer,
 }
 
-/// A stage: its numbers, its kernel, and the resources of both.
+/// A stage: its kernel, and the resources of it and of `arrange`.
 pub struct Bound {
-    /// Numbers of the stage.
-    pub stage: wgpu::Buffer,
     /// Resources of the program that arranges its dispatches.
     pub arrange: Vec<wgpu::BindGroup>,
     /// Its kernel.
@@ -79,6 +77,10 @@ pub struct Target {
     pub arrange: Arc<Kernel>,
     /// The stages of a block.
     pub stages: Vec<Bound>,
+    /// Their numbers, one stage every `stage_step` bytes, and what was written there last.
+    numbers: wgpu::Buffer,
+    stage_step: u64,
+    written: Vec<Stage>,
 }
 
 impl Target {
@@ -148,24 +150,30 @@ impl Target {
             };
             buffer.or_else(array).or_else(picture)
         };
-        let arranged = |stage: &wgpu::Buffer| {
+        let step = device.device.limits().min_storage_buffer_offset_alignment;
+        let stage_step = (size_of::<Stage>() as u64).next_multiple_of(u64::from(step));
+        let numbers = room("stages", stage_step * compiled.len() as u64)?;
+        let bind = |(offset, kernel): (u64, Arc<Kernel>)| {
+            let stage = wgpu::BufferBinding {
+                buffer: &numbers,
+                offset: offset * stage_step,
+                size: wgpu::BufferSize::new(size_of::<Stage>() as u64),
+            };
             let with_stage = |name: &str| match name {
-                "stage_parameters" => Some(stage.as_entire_binding()),
+                "stage_parameters" => Some(wgpu::BindingResource::Buffer(stage.clone())),
                 other => named(other),
             };
-            arrange.bind(device, with_stage)
-        };
-        let bind = |kernel: Arc<Kernel>| {
-            let stage = room("stage", size_of::<Stage>() as u64)?;
             Ok::<_, RenderError>(Bound {
-                arrange: arranged(&stage)?,
+                arrange: arrange.bind(device, with_stage)?,
                 groups: kernel.bind(device, named)?,
-                stage,
                 kernel,
             })
         };
         Ok(Self {
-            stages: compiled.into_iter().map(bind).collect::<Result<_, _>>()?,
+            stages: (0..).zip(compiled).map(bind).collect::<Result<_, _>>()?,
+            numbers,
+            stage_step,
+            written: Vec::new(),
             needs,
             parameters,
             arrays: scene.iter().map(|a| a.array.clone()).collect(),
@@ -228,13 +236,17 @@ impl Target {
         device.queue.write_buffer(&self.cells, 0, bytes_of(&head));
     }
 
-    /// Writes the numbers of the stages of a block.
-    pub fn write_stages(&self, device: &Device, stages: &[Stage]) {
-        for (bound, stage) in self.stages.iter().zip(stages) {
-            device
-                .queue
-                .write_buffer(&bound.stage, 0, cast_slice(std::slice::from_ref(stage)));
+    /// Writes the numbers of the stages of a block, if they differ from the last ones.
+    pub fn write_stages(&mut self, device: &Device, stages: &[Stage]) {
+        if self.written == stages {
+            return;
         }
+        let mut bytes = vec![0; self.stage_step as usize * stages.len()];
+        for (to, stage) in bytes.chunks_mut(self.stage_step as usize).zip(stages) {
+            to[..size_of::<Stage>()].copy_from_slice(bytes_of(stage));
+        }
+        device.queue.write_buffer(&self.numbers, 0, &bytes);
+        self.written = stages.to_vec();
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use crate::gpu::collect::Parts;
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
-use crate::gpu::stamps::{PAIRS, Pair};
+use crate::gpu::stamps::STAMPS;
 use crate::pass::turn::{CellsHead, MOST_STAGES, StageKind, Turn};
 use crate::picture::frame::Traffic;
 
@@ -40,17 +40,16 @@ impl Run {
         let head: Vec<CellsHead> = flight.report.read(device, size_of::<Turn>(), 1)?;
         let (turn, head) = (turn[0], head[0]);
         let next = turn.next(head.moving);
-        let encoded = flight.encoded as usize;
-        let pairs: Vec<Pair> = flight
-            .report
-            .read(device, (REPORT - PAIRS) as usize, encoded)?;
+        let count = flight.encoded as usize + 1;
+        let at = (REPORT - STAMPS) as usize;
+        let stamps: Vec<u64> = flight.report.read(device, at, count)?;
         flight.report.unmap();
         self.kept.reports.push(flight.report);
         let now = (device.clock)();
         let elapsed_ms = now - flight.submitted.max(self.ended);
         self.ended = now;
         let last = flight.stages.start + flight.encoded - 1;
-        self.count_time(flight.stages.start..=last, elapsed_ms, &pairs);
+        self.count_time(flight.stages.start..=last, elapsed_ms, &stamps);
         self.learn(flight.stages.start..=last, elapsed_ms, &head);
         let share = if next == turn.number {
             turn.share()
@@ -92,9 +91,9 @@ impl Run {
 
     /// Adds the time of a submission to the figures of its passes: to each in proportion to its
     /// time on the device, or all to the last one if that is not measured.
-    fn count_time(&mut self, stages: RangeInclusive<u32>, elapsed_ms: f64, pairs: &[Pair]) {
-        let stamps = self.kept.stamps.as_ref().filter(|_| self.job.extras.time);
-        let own = stamps.map(|s| pairs.iter().map(|pair| s.milliseconds(*pair)).collect());
+    fn count_time(&mut self, stages: RangeInclusive<u32>, elapsed_ms: f64, stamps: &[u64]) {
+        let timed = self.kept.stamps.as_ref().filter(|_| self.job.extras.time);
+        let own = timed.map(|timed| timed.milliseconds(stamps));
         let own: Vec<f64> = own.unwrap_or_default();
         let all: f64 = own.iter().sum();
         let last = *stages.end();

@@ -7,7 +7,7 @@ use std::sync::{Arc, PoisonError};
 use crate::gpu::cost::{Cost, LONGEST_MS};
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
-use crate::gpu::stamps::{PAIRS, Stamps};
+use crate::gpu::stamps::{STAMPS, Stamps};
 use crate::gpu::target::{Needs, Parameters, Target};
 use crate::gpu::work::{Outset, Shared};
 use crate::heightfield::assets::Preparation;
@@ -22,7 +22,7 @@ pub const SUBMISSION_MS: f64 = 40.0;
 /// Submissions that the device may have at once: one runs, and one is next.
 const IN_FLIGHT: usize = 2;
 /// Bytes of a report: the turn, the head of the lists, and timestamps.
-pub(super) const REPORT: u64 = (size_of::<Turn>() + size_of::<CellsHead>()) as u64 + PAIRS;
+pub(super) const REPORT: u64 = (size_of::<Turn>() + size_of::<CellsHead>()) as u64 + STAMPS;
 
 /// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
 /// the programs and the sizes of a target stay anyway.

@@ -2,7 +2,7 @@
 
 use crate::gpu::collect::Parts;
 use crate::gpu::staging::Staging;
-use crate::gpu::stamps::PAIRS;
+use crate::gpu::stamps::STAMPS;
 use crate::pass::turn::{CellsHead, StageKind, Turn};
 use crate::plan::Pass;
 
@@ -18,10 +18,12 @@ impl Run {
         let stages = self.stages(block);
         let first = self.cursor;
         let mut encoder = device.device.create_command_encoder(&Default::default());
+        if let Some(target) = &mut self.kept.target {
+            target.write_stages(device, &stages);
+        }
         let Some(target) = self.kept.target.as_ref() else {
             unreachable!("a work has a target");
         };
-        target.write_stages(device, &stages);
         let stamps = self.kept.stamps.as_ref().filter(|_| self.job.extras.time);
         let mut encoded = 0;
         let mut cursor = self.cursor;
@@ -71,7 +73,7 @@ impl Run {
         let mut ranges = vec![(&target.turn, 0, turn), (&target.cells, 0, head)];
         if let Some(stamps) = stamps {
             stamps.resolve(&mut encoder, encoded);
-            ranges.push((&stamps.pairs, 0, PAIRS));
+            ranges.push((&stamps.resolved, 0, STAMPS));
         }
         report.copy(&mut encoder, &ranges);
         let reads = ends_block && block >= self.job.firsts;
