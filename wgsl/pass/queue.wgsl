@@ -42,10 +42,13 @@ fn queue_divide(a: u32, by: u32) -> vec2<u32> {
 }
 
 /// The place of a workgroup in its round. Software devices give each thread a run of consecutive
-/// workgroups. So consecutive ones are spread over the dispatch: each half, and each quarter, has
-/// its share of every part of the image. Without this, one thread waited for another.
+/// workgroups. So the parts of a dispatch are taken in bit-reversed order: each half of them, and
+/// each quarter, has its share of every region of the image. Without this, one thread waited for
+/// another. Within a part the order stays, as neighbours in a list should be neighbours in the
+/// image.
 fn queue_group(group: vec2<u32>) -> u32 {
-    return turn.first + PARTS * group.x + (reverseBits(group.y) >> 28u);
+    let part = reverseBits(group.y) >> 28u;
+    return turn.first + part * (turn.groups / PARTS) + group.x;
 }
 
 /// This invocation's cell in a stage that visits all cells, packed, or QUEUE_NONE.
