@@ -1,4 +1,4 @@
-//! What a step came to, what a pixel is, and what it cost.
+//! The result of a step, the state of a pixel, and counters of work.
 
 /// What one step of a ray came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

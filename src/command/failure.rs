@@ -62,7 +62,7 @@ pub fn flatten(error: &clap::Error) -> String {
         let mut given = std::env::args_os();
         let wrong = given.find(|a| a.to_str().is_none()).unwrap_or_default();
         return format!(
-            "the argument `{}` is not UTF-8; only the names of files may be something else",
+            "the argument `{}` is not UTF-8; only whole names of files may be something else, and a file that a preset names must have a name in UTF-8",
             wrong.to_string_lossy()
         );
     }

@@ -98,10 +98,15 @@ fn depths() -> impl TypedValueParser<Value = BitDepth> {
 /// # Errors
 /// A wrong preset or option, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &Render) -> Result<()> {
+    interrupt::listen();
     let overrides: Result<Vec<Override>, _> = args.set.iter().map(|s| Override::read(s)).collect();
     let preset = preset::load(&args.preset, &overrides?)?;
     let assets = Assets::default();
+    let mut progress = Reporter::start("loading");
+    progress.report(0.0, "the files of the preset");
     preset.load_assets(&assets)?;
+    drop(progress);
+    interrupt::check()?;
     let Preset { name, mut plan, .. } = preset;
     let own_size = plan.size;
     plan.size = args.size.unwrap_or(own_size);
@@ -124,9 +129,9 @@ pub fn run(args: &Render) -> Result<()> {
         say(&format!("note: {note}"));
     }
     if args.explain {
+        let _progress = Reporter::start("explaining");
         return explain(args, &plan, &assets, extras);
     }
-    interrupt::listen();
     let picture = Sink::prepare(&output)?;
     let figures = stats.map(Sink::prepare).transpose()?;
     let (mut executor, who) = Executor::open(&args.device)?;

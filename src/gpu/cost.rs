@@ -1,5 +1,5 @@
-//! What is known about the dispatches of a stage. It decides how work is cut, never what comes
-//! of it.
+//! What is known about the dispatches of a stage. It decides the size of dispatches, and never
+//! changes a pixel.
 
 use crate::pass::turn::Stage;
 

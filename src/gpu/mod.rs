@@ -8,13 +8,19 @@
 //! - `array`: arrays of the host on the device
 //! - `staging`: read-back without waiting; `collect`: results into the Frame
 //! - [`conemap`]: generators of cone maps on the device
-//! - `later`: work on a thread of its own, or `deferred` without threads; `told`: what it tells
+//! - `background`: a task on its own thread, or `on_demand` where there are no threads;
+//!   `task_status`: its progress
 //! - [`wait`]: what waits for a device
 //! - `error`: why a render failed
 
 #[cfg(feature = "cli")]
 pub mod adapters;
 mod array;
+#[cfg(feature = "cli")]
+mod background;
+#[cfg(not(feature = "cli"))]
+#[path = "on_demand.rs"]
+mod background;
 pub mod buffer;
 mod collect;
 #[cfg(feature = "cli")]
@@ -23,17 +29,12 @@ mod cost;
 pub mod device;
 mod error;
 pub mod kernel;
-#[cfg(feature = "cli")]
-mod later;
-#[cfg(not(feature = "cli"))]
-#[path = "deferred.rs"]
-mod later;
 pub mod pick;
 pub mod render;
 mod staging;
 mod stamps;
 mod target;
-mod told;
+mod task_status;
 #[cfg(feature = "cli")]
 pub mod wait;
 pub mod work;

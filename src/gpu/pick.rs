@@ -8,13 +8,13 @@ use wgpu::{BindingResource, BufferUsages};
 
 use crate::base::shader::Sources;
 use crate::gpu::array::Array;
+use crate::gpu::background::Background;
 use crate::gpu::buffer::{create, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::error::RenderError;
-use crate::gpu::later::Later;
 use crate::gpu::staging::Staging;
-use crate::gpu::told::Panicked;
-use crate::gpu::work::{Shared, most_steps, parameters, with_texts};
+use crate::gpu::task_status::Panicked;
+use crate::gpu::work::{Shared, marched, most_steps, with_texts};
 use crate::pass::pick::{self, At, PickAnswer, PickQuestion, Picked};
 use crate::plan::Plan;
 use crate::scene::Assets;
@@ -22,12 +22,12 @@ use crate::scene::Assets;
 /// A question to a device.
 pub struct Pick {
     device: Arc<Device>,
-    later: Later<Result<Asked, RenderError>>,
+    later: Background<Result<Asked, RenderError>>,
     asked: Option<Asked>,
 }
 
 impl Pick {
-    pub(super) fn new(device: Arc<Device>, later: Later<Result<Asked, RenderError>>) -> Self {
+    pub(super) fn new(device: Arc<Device>, later: Background<Result<Asked, RenderError>>) -> Self {
         Self {
             device,
             later,
@@ -97,7 +97,7 @@ impl Asked {
             ("walks", create(gpu, "walks", walk, usage)),
         ];
         let question = PickQuestion::new(at, eye, steps);
-        let mut numbers = parameters(plan, &scene);
+        let mut numbers = marched(plan, &scene);
         numbers.push(("pick_question", bytes_of(&question).to_vec()));
         let written = numbers.iter();
         let written = written.map(|(name, bytes)| (*name, uniform(gpu, name, bytes)));

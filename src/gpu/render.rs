@@ -7,13 +7,13 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::base::shader::Sources;
+use crate::gpu::background::{Background, Threads};
 use crate::gpu::device::Device;
 pub use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
-use crate::gpu::later::{Later, Threads};
 use crate::gpu::pick::{Asked, Pick};
 use crate::gpu::target::Needs;
-use crate::gpu::work::{Order, Shared, Work};
+use crate::gpu::work::{FrameRequest, Shared, Work};
 use crate::pass::pick::At;
 #[cfg(feature = "cli")]
 use crate::pass::progress::Watch;
@@ -79,7 +79,7 @@ impl Renderer {
                 device,
                 kernels: Kernels::default(),
                 arrays: Mutex::default(),
-                kept: Mutex::default(),
+                reusable: Mutex::default(),
             }),
             threads: Threads::default(),
         }
@@ -99,7 +99,7 @@ impl Renderer {
     ) -> Result<Work, RenderError> {
         self.reopen_if_lost()?;
         let mut work = Work::new(self.shared.clone(), extras);
-        let kept = self.shared.kept.lock();
+        let kept = self.shared.reusable.lock();
         let held = kept.unwrap_or_else(PoisonError::into_inner).needs();
         self.start(&mut work, plan, assets, held)?;
         Ok(work)
@@ -127,7 +127,7 @@ impl Renderer {
         assets: &Assets,
         held: Option<Needs>,
     ) -> Result<(), RenderError> {
-        let order = Order {
+        let order = FrameRequest {
             plan: plan.lean(work.extras()).into_owned(),
             assets: assets.clone(),
             extras: work.extras(),
@@ -136,11 +136,15 @@ impl Renderer {
             held,
             shared: self.shared.clone(),
         };
-        if let Some(outset) = order.at_once()? {
-            return work.start(outset);
+        if let Some(inputs) = order.at_once()? {
+            return work.start(inputs);
         }
         let prepare = move |told: &_| order.prepare(told);
-        work.start_later(Later::start(&mut self.threads, "prepare", prepare));
+        work.start_when_ready(Background::start(
+            &mut self.threads,
+            "heights, maps and programs",
+            prepare,
+        ));
         Ok(())
     }
 
@@ -154,7 +158,7 @@ impl Renderer {
         let (shared, sources) = (self.shared.clone(), self.sources.clone());
         let (plan, assets) = (plan.clone(), assets.clone());
         let ask = move |_: &_| Asked::new(&shared, sources.as_ref(), &plan, &assets, at);
-        let asked = Later::start(&mut self.threads, "pick", ask);
+        let asked = Background::start(&mut self.threads, "pick", ask);
         Ok(Pick::new(self.device.clone(), asked))
     }
 

@@ -38,6 +38,11 @@ impl Source {
         path.to_string_lossy().into_owned()
     }
 
+    /// Samples along each axis; `None` for a file.
+    pub fn pattern_size(&self) -> Option<[u32; 2]> {
+        Some(PatternSpec::read(&self.field)?.ok()?.size)
+    }
+
     /// Its keys in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![

@@ -148,6 +148,11 @@ impl Scene {
         self.heightfield().map_or(Ok(()), |h| assets.load(h))
     }
 
+    /// Samples along each axis of heights that a pattern makes.
+    pub fn pattern_size(&self) -> Option<[u32; 2]> {
+        self.heightfield()?.source.pattern_size()
+    }
+
     /// Whether all assets are loaded and made. It never waits for a thread that does it.
     pub fn has_assets(&self, assets: &Assets) -> bool {
         self.heightfield().is_none_or(|h| assets.has(h))

@@ -64,7 +64,7 @@ const CHOSEN: [(TracerKind, Generator); 8] = [
 ];
 
 /// Tracers, each with the cones that it is measured with; the exact ones last. Those that may be
-/// off by a pixel are left out: rays without pixels have nothing to show of them.
+/// off by a pixel are left out: they depend on the size of a pixel, and these rays have none.
 fn pairs() -> Vec<(TracerKind, Option<Generator>)> {
     let accuracy = |kind: &TracerKind| kind.facts().accuracy;
     let mut kinds = Vec::from(TracerKind::ALL);

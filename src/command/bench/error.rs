@@ -35,7 +35,7 @@ use crate::scene::Assets;
 pub struct ErrorBench {
     #[command(flatten)]
     common: Common,
-    /// Also change single settings: coarsest level, shell, relaxation, steps, fudge, detail
+    /// Also measure other values of march.coarsest, shell, relaxation, steps, fudge and detail, one at a time
     #[arg(long)]
     sweep: bool,
     /// Draw time against error; - is standard output, and the tables then go to stderr

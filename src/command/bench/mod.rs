@@ -32,6 +32,6 @@ pub enum Bench {
     Steps(steps::StepsBench),
     /// Cone maps and tracers of heightfields: time, width, steps, missed hits
     Cones(cones::ConesBench),
-    /// Propose lipschitz, shell and fudge that lose at most a given share of the pixels
+    /// Propose values of scene.lipschitz, march.shell and march.fudge that get at most a given share of the pixels wrong
     Calibrate(calibrate::CalibrateBench),
 }

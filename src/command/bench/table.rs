@@ -192,7 +192,7 @@ those of `safe`.
         ("behind %", &share(|r| r.report.behind)),
         ("holes %", &share(|r| r.report.holes)),
         ("unconverged %", &share(|r| r.report.unconverged)),
-        ("cells' pixels started behind", &starts),
+        ("pixels whose cell starts behind the surface", &starts),
         ("behind, holes and unconverged of `safe` %", &of_safe),
     ];
     text.to_string() + &table(&CLAIMS, &columns)

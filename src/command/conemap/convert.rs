@@ -54,8 +54,7 @@ pub fn run(args: &Convert) -> Result<()> {
     let format = args.writing.format(output, file.map.kind)?;
     let sink = Sink::prepare(output)?;
     interrupt::check()?;
-    // The new map is written and read back, which takes about as long each.
-    progress.report(1.0 / 3.0, "writing");
+    progress.report(0.0, "writing, and reading back");
     let what_is_kept = write(&file, &format, sink)?;
     drop(progress);
     let [w, h] = file.map.size;

@@ -39,9 +39,6 @@ pub struct Inspect {
     foreign: Foreign,
 }
 
-/// Share of the work that is reading a file or making a field, by the clock.
-const READ: f64 = 0.9;
-
 /// Tells what is in a file, and draws it.
 ///
 /// # Errors
@@ -70,7 +67,7 @@ pub fn run(args: &Inspect) -> Result<()> {
         if let Some(heights) = &args.heights {
             check_heights(args, &file, path, heights)?;
         }
-        progress.report(READ, "describing");
+        progress.report(0.0, "describing");
         let text = describe_map(&name, &file);
         (text, picture.is_some().then(|| map_panels(&file)))
     } else {
@@ -80,7 +77,7 @@ pub fn run(args: &Inspect) -> Result<()> {
             )));
         }
         let loaded = args.reading.load(&args.file)?;
-        progress.report(READ, "describing");
+        progress.report(0.0, "describing");
         let text = describe_heights(&name, &loaded);
         let panels = picture.is_some().then(|| heights_panels(&loaded.heights));
         (text, panels)

@@ -82,6 +82,7 @@ fn generators() -> impl TypedValueParser<Value = Generator> {
 /// # Errors
 /// There are no heights, the device fails, the file cannot be written, or an interrupt.
 pub fn run(args: &Make) -> Result<()> {
+    interrupt::listen();
     let generator = args.generator;
     let options = options(args)?;
     // The size of a field is known before its heights are made.
@@ -92,6 +93,7 @@ pub fn run(args: &Make) -> Result<()> {
     let mut progress = Reporter::start("making cones");
     progress.report(0.0, "heights");
     let loaded = args.reading.load(&args.heights)?;
+    interrupt::check()?;
     let heights = &loaded.heights;
     check_memory(generator, heights.size())?;
     // The default name is never that of the heights, and its format keeps everything.
@@ -103,7 +105,6 @@ pub fn run(args: &Make) -> Result<()> {
         &[("its heights", Path::new(&args.heights).into())],
     )?;
     let format = args.writing.format(&output, generator.kind())?;
-    interrupt::listen();
     let sink = Sink::prepare(&output)?;
     let patches = match args.boxes {
         true => Patches::Boxes,

@@ -7,11 +7,11 @@
 //! learns how far the frame has come, without waiting for it, and corrects what it encodes
 //! next. So neither the length of a submission nor a wrong estimate changes a bit.
 //!
-//! - `outset`: assets, programs and arrays, before the first submission
+//! - `inputs`: assets, programs and arrays, before the first submission
 //! - `run`: the submissions of a frame; `submit` encodes them, and `receive` takes in what comes
 //!   back
 
-mod outset;
+mod inputs;
 mod receive;
 mod run;
 mod submit;
@@ -19,12 +19,12 @@ mod submit;
 use std::sync::{Arc, Mutex};
 
 use crate::gpu::array::Arrays;
+use crate::gpu::background::Background;
 use crate::gpu::device::Device;
 use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
-use crate::gpu::later::Later;
 use crate::gpu::target::Needs;
-use crate::gpu::told::Panicked;
+use crate::gpu::task_status::Panicked;
 #[cfg(feature = "cli")]
 use crate::gpu::wait::read_picture;
 use crate::pass::progress::Progress;
@@ -32,8 +32,8 @@ use crate::pass::progress::Progress;
 use crate::pass::progress::Watch;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::Extras;
-pub(super) use outset::{Order, Outset, most_steps, parameters, with_texts};
-use run::Kept;
+pub(super) use inputs::{FrameInputs, FrameRequest, marched, most_steps, with_texts};
+use run::Reusable;
 use run::Run;
 pub use run::SUBMISSION_MS;
 
@@ -42,7 +42,7 @@ pub(super) struct Shared {
     pub device: Arc<Device>,
     pub kernels: Kernels,
     pub arrays: Mutex<Arrays>,
-    pub kept: Mutex<Kept>,
+    pub reusable: Mutex<Reusable>,
 }
 
 /// A render under way on a device. Dropping it cancels it.
@@ -50,7 +50,7 @@ pub struct Work {
     shared: Arc<Shared>,
     extras: Extras,
     /// What is prepared for the plan, until its run begins.
-    outset: Option<Later<Result<Outset, RenderError>>>,
+    inputs: Option<Background<Result<FrameInputs, RenderError>>>,
     /// The run of the last plan that was prepared.
     run: Option<Run>,
 }
@@ -60,18 +60,18 @@ impl Work {
         Self {
             shared,
             extras,
-            outset: None,
+            inputs: None,
             run: None,
         }
     }
 
     /// Begins a run in place of the one under way. If it cannot begin, the other one goes on.
-    pub(super) fn start(&mut self, outset: Outset) -> Result<(), RenderError> {
-        self.outset = None;
+    pub(super) fn start(&mut self, inputs: FrameInputs) -> Result<(), RenderError> {
+        self.inputs = None;
         if let Some(old) = &mut self.run {
             old.lend();
         }
-        match Run::begin(self.shared.clone(), outset) {
+        match Run::begin(self.shared.clone(), inputs) {
             Ok(run) => self.run = Some(run),
             Err(error) => {
                 if let Some(old) = &mut self.run {
@@ -84,43 +84,46 @@ impl Work {
     }
 
     /// Begins a run once it is prepared.
-    pub(super) fn start_later(&mut self, outset: Later<Result<Outset, RenderError>>) {
-        self.outset = Some(outset);
+    pub(super) fn start_when_ready(
+        &mut self,
+        inputs: Background<Result<FrameInputs, RenderError>>,
+    ) {
+        self.inputs = Some(inputs);
     }
 
     /// Takes in an answer of the thread that prepares the run.
     fn answered(
         &mut self,
-        answer: Result<Option<Result<Outset, RenderError>>, Panicked>,
+        answer: Result<Option<Result<FrameInputs, RenderError>>, Panicked>,
     ) -> Result<(), RenderError> {
         match answer {
             Ok(None) => Ok(()),
-            Ok(Some(Ok(outset))) => self.start(outset),
+            Ok(Some(Ok(inputs))) => self.start(inputs),
             Ok(Some(Err(error))) => {
-                self.outset = None;
+                self.inputs = None;
                 // On a lost device, programs fail too.
                 self.shared.device.check()?;
                 Err(error)
             }
             Err(Panicked) => {
-                self.outset = None;
+                self.inputs = None;
                 Err(RenderError::Panicked)
             }
         }
     }
 
     fn receive(&mut self) -> Result<(), RenderError> {
-        match &self.outset {
-            Some(outset) => self.answered(outset.poll()),
+        match &self.inputs {
+            Some(inputs) => self.answered(inputs.poll()),
             None => Ok(()),
         }
     }
 
     /// How far the render has come.
     pub fn progress(&self) -> Progress {
-        let outset = self.outset.as_ref().map(Later::progress);
+        let inputs = self.inputs.as_ref().map(Background::progress);
         let run = || self.run.as_ref().map(Run::progress);
-        outset.or_else(run).unwrap_or_default()
+        inputs.or_else(run).unwrap_or_default()
     }
 
     /// The picture as far as it is made: first the fronts of the coarse levels, then colours.
@@ -167,7 +170,7 @@ impl Work {
     /// failed is cancelled.
     pub fn poll(&mut self) -> Result<Option<Frame>, RenderError> {
         self.receive()?;
-        match (&mut self.run, &self.outset) {
+        match (&mut self.run, &self.inputs) {
             (_, Some(_)) => Ok(None),
             (Some(run), None) => run.poll(),
             (None, None) => Err(RenderError::Cancelled),
@@ -181,11 +184,11 @@ impl Work {
     /// [`RenderError::Cancelled`] if `watch` returns `false`, and those of [`Work::poll`].
     #[cfg(feature = "cli")]
     pub fn finish(mut self, watch: Watch<'_>) -> Result<Frame, RenderError> {
-        while let Some(outset) = &self.outset {
-            if !watch(&outset.progress()) {
+        while let Some(inputs) = &self.inputs {
+            if !watch(&inputs.progress()) {
                 return Err(RenderError::Cancelled);
             }
-            let answer = outset.wait();
+            let answer = inputs.wait();
             self.answered(answer)?;
         }
         let mut told = 0;
@@ -211,7 +214,7 @@ impl Work {
 
     /// The programs and sizes of the run under way.
     pub(super) fn needs(&self) -> Option<Needs> {
-        self.run.as_ref()?.kept.needs()
+        self.run.as_ref()?.reusable.needs()
     }
 
     pub(super) fn extras(&self) -> Extras {

@@ -44,7 +44,7 @@ impl Run {
         let at = (REPORT - STAMPS) as usize;
         let stamps: Vec<u64> = flight.report.read(device, at, count)?;
         flight.report.unmap();
-        self.kept.reports.push(flight.report);
+        self.reusable.reports.push(flight.report);
         let now = (device.clock)();
         let elapsed_ms = now - flight.submitted.max(self.ended);
         self.ended = now;
@@ -71,7 +71,7 @@ impl Run {
                 self.collect(block, &staging, &head)?;
             }
             staging.unmap();
-            self.kept.readings.push(staging);
+            self.reusable.readings.push(staging);
         }
         // What is left of a stage that is over need not be encoded, except at the end of a block,
         // where the results are read.
@@ -92,7 +92,11 @@ impl Run {
     /// Adds the time of a submission to the figures of its passes: to each in proportion to its
     /// time on the device, or all to the last one if that is not measured.
     fn count_time(&mut self, stages: RangeInclusive<u32>, elapsed_ms: f64, stamps: &[u64]) {
-        let timed = self.kept.stamps.as_ref().filter(|_| self.job.extras.time);
+        let timed = self
+            .reusable
+            .stamps
+            .as_ref()
+            .filter(|_| self.job.extras.time);
         let own = timed.map(|timed| timed.milliseconds(stamps));
         let own: Vec<f64> = own.unwrap_or_default();
         let all: f64 = own.iter().sum();
@@ -125,10 +129,15 @@ impl Run {
         let all: u32 = (first..=last).map(ran).sum();
         let each = elapsed_ms / f64::from(all.max(1));
         let known = self.stages(block);
-        let costs = self.kept.costs.iter_mut().zip(known).zip(head.dispatches);
+        let costs = self
+            .reusable
+            .costs
+            .iter_mut()
+            .zip(known)
+            .zip(head.dispatches);
         for (i, ((cost, stage), dispatches)) in costs.enumerate() {
             if (first..=last).contains(&i) && dispatches > self.told[i] {
-                cost.learn(each, dispatches, &stage, self.kept.aim_ms);
+                cost.learn(each, dispatches, &stage, self.reusable.aim_ms);
             }
         }
         self.told = head.dispatches;

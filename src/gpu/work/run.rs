@@ -9,7 +9,7 @@ use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::{STAMPS, Stamps};
 use crate::gpu::target::{Needs, Parameters, Target};
-use crate::gpu::work::{Outset, Shared};
+use crate::gpu::work::{FrameInputs, Shared};
 use crate::heightfield::assets::Preparation;
 use crate::pass::progress::Progress;
 use crate::pass::turn::{CellsHead, Layout, MOST_STAGES, Stage, StageKind, Turn};
@@ -56,7 +56,7 @@ impl Made {
 
 /// What one render leaves to the next.
 #[derive(Default)]
-pub(in crate::gpu) struct Kept {
+pub(in crate::gpu) struct Reusable {
     pub target: Option<Target>,
     pub costs: Vec<Cost>,
     /// Milliseconds that dispatches are made for.
@@ -82,7 +82,7 @@ pub(in crate::gpu) struct Job {
     /// The step limits of the first dispatch of a stage and of the largest.
     pub steps: [u32; 2],
     pub extras: Extras,
-    pub prepared: Vec<(Preparation, f64)>,
+    pub map_times: Vec<(Preparation, f64)>,
 }
 
 impl Job {
@@ -116,7 +116,7 @@ pub(super) struct Flight {
 /// The run of a frame on a device.
 pub struct Run {
     pub(super) shared: Arc<Shared>,
-    pub(super) kept: Kept,
+    pub(super) reusable: Reusable,
     pub(super) job: Job,
     pub(super) frame: Frame,
     /// The first stage; later than 0 if the frame goes on from the one before.
@@ -137,7 +137,7 @@ pub struct Run {
     pub(super) collected: usize,
 }
 
-impl Kept {
+impl Reusable {
     /// Programs and sizes of the last frame.
     pub fn needs(&self) -> Option<Needs> {
         self.target.as_ref().map(|target| target.needs.clone())
@@ -149,8 +149,8 @@ impl Run {
     ///
     /// # Errors
     /// The device has no room.
-    pub fn begin(shared: Arc<Shared>, outset: Outset) -> Result<Self, RenderError> {
-        let Outset {
+    pub fn begin(shared: Arc<Shared>, inputs: FrameInputs) -> Result<Self, RenderError> {
+        let FrameInputs {
             job,
             mut frame,
             needs,
@@ -158,9 +158,9 @@ impl Run {
             kernels,
             arrange,
             arrays,
-        } = outset;
+        } = inputs;
         let device = &shared.device;
-        let shelf = shared.kept.lock();
+        let shelf = shared.reusable.lock();
         let mut shelf = shelf.unwrap_or_else(PoisonError::into_inner);
         let traffic = frame.traffic.get_or_insert_default();
         match &mut shelf.target {
@@ -171,12 +171,12 @@ impl Run {
                 traffic.uploads += parameters.iter().map(|(_, b)| b.len()).sum::<usize>();
                 traffic.allocations = 1;
                 let target = Target::new(device, kernels, arrange, needs, parameters, &arrays)?;
-                *shelf = Kept {
+                *shelf = Reusable {
                     target: Some(target),
                     costs: vec![Cost::default(); job.kinds.len()],
                     aim_ms: LONGEST_MS,
                     stamps: Stamps::new(device),
-                    ..Kept::default()
+                    ..Reusable::default()
                 };
             }
         }
@@ -185,11 +185,11 @@ impl Run {
         Ok(Self::new(shared, kept, job, frame))
     }
 
-    fn new(shared: Arc<Shared>, kept: Kept, job: Job, frame: Frame) -> Self {
+    fn new(shared: Arc<Shared>, kept: Reusable, job: Job, frame: Frame) -> Self {
         let ended = (shared.device.clock)();
         let mut run = Self {
             shared,
-            kept,
+            reusable: kept,
             job,
             frame,
             from: 0,
@@ -203,13 +203,13 @@ impl Run {
             ended,
             collected: 0,
         };
-        let last = run.kept.made.take().filter(|_| run.job.extras.reuse);
+        let last = run.reusable.made.take().filter(|_| run.job.extras.reuse);
         let first = last.and_then(|last| run.job.made.resumes(&last, &run.job.kinds));
         run.from = first.unwrap_or(0);
         run.reached = run.from;
         let blocks = run.job.made.blocks.len();
         let device = &run.shared.device;
-        match (&mut run.kept.target, first) {
+        match (&mut run.reusable.target, first) {
             (Some(target), Some(first)) => target.resume(device, first),
             (Some(target), None) => target.begin(device, blocks),
             (None, _) => {}
@@ -243,7 +243,7 @@ impl Run {
     /// The number of a block, which tells its states from older ones.
     pub(super) fn generation(&self, block: usize) -> u32 {
         let later = self.job.made.blocks.len() - 1 - block;
-        let target = self.kept.target.as_ref();
+        let target = self.reusable.target.as_ref();
         target.map_or(0, |target| target.generation(later))
     }
 
@@ -252,7 +252,7 @@ impl Run {
         let first = block as u32 * self.per_block();
         let layout = &self.job.made.blocks[block];
         let mut stages = layout.stages(&self.job.kinds, first, self.job.made.ray_steps);
-        for (index, (stage, cost)) in stages.iter_mut().zip(&self.kept.costs).enumerate() {
+        for (index, (stage, cost)) in stages.iter_mut().zip(&self.reusable.costs).enumerate() {
             [stage.chunk, stage.most] = self.job.steps;
             stage.slice = cost.slice;
             stage.generation = self.generation(block);
@@ -269,7 +269,7 @@ impl Run {
         if stage < self.end() {
             let (block, index) = self.place(stage);
             let stage = self.stages(block)[index];
-            self.dispatches = self.kept.costs[index].dispatches(&stage);
+            self.dispatches = self.reusable.costs[index].dispatches(&stage);
         }
     }
 
@@ -299,7 +299,7 @@ impl Run {
     /// `None` without [`Extras::shown`], or if the image is larger than a texture can be. Its
     /// bytes are those of sRGB, as files hold them.
     pub fn picture(&self) -> Option<&wgpu::Texture> {
-        self.kept.target.as_ref()?.picture.as_ref()
+        self.reusable.target.as_ref()?.picture.as_ref()
     }
 
     /// How the host and the device worked together so far.
@@ -315,10 +315,10 @@ impl Run {
     pub fn advance(&mut self, budget_ms: f64) -> Result<(), RenderError> {
         self.receive()?;
         let aim = budget_ms.clamp(1.0, LONGEST_MS);
-        let factor = aim / self.kept.aim_ms;
+        let factor = aim / self.reusable.aim_ms;
         if !(0.5..=2.0).contains(&factor) {
-            self.kept.aim_ms = aim;
-            for cost in &mut self.kept.costs {
+            self.reusable.aim_ms = aim;
+            for cost in &mut self.reusable.costs {
                 cost.scale(factor);
             }
         }
@@ -338,9 +338,9 @@ impl Run {
         if self.collected < self.job.made.blocks.len() - self.job.firsts {
             return Ok(None);
         }
-        self.kept.made = Some(self.job.made.clone());
+        self.reusable.made = Some(self.job.made.clone());
         let mut frame = std::mem::take(&mut self.frame);
-        frame.finish(std::mem::take(&mut self.job.prepared));
+        frame.finish(std::mem::take(&mut self.job.map_times));
         Ok(Some(frame))
     }
 
@@ -382,21 +382,21 @@ impl Run {
     /// Leaves everything to the next render. The device may still run what was submitted; the
     /// next render is behind it.
     pub(super) fn lend(&mut self) {
-        let shelf = self.shared.kept.lock();
-        *shelf.unwrap_or_else(PoisonError::into_inner) = std::mem::take(&mut self.kept);
+        let shelf = self.shared.reusable.lock();
+        *shelf.unwrap_or_else(PoisonError::into_inner) = std::mem::take(&mut self.reusable);
     }
 
     /// Takes back what no other render took.
     pub(super) fn take_back(&mut self) {
-        let shelf = self.shared.kept.lock();
-        self.kept = std::mem::take(&mut *shelf.unwrap_or_else(PoisonError::into_inner));
+        let shelf = self.shared.reusable.lock();
+        self.reusable = std::mem::take(&mut *shelf.unwrap_or_else(PoisonError::into_inner));
     }
 }
 
 impl Drop for Run {
     fn drop(&mut self) {
         // Another render may have taken it already.
-        if self.kept.target.is_some() {
+        if self.reusable.target.is_some() {
             self.lend();
         }
     }

@@ -18,13 +18,17 @@ impl Run {
         let stages = self.stages(block);
         let first = self.cursor;
         let mut encoder = device.device.create_command_encoder(&Default::default());
-        if let Some(target) = &mut self.kept.target {
+        if let Some(target) = &mut self.reusable.target {
             target.write_stages(device, &stages);
         }
-        let Some(target) = self.kept.target.as_ref() else {
+        let Some(target) = self.reusable.target.as_ref() else {
             unreachable!("a work has a target");
         };
-        let stamps = self.kept.stamps.as_ref().filter(|_| self.job.extras.time);
+        let stamps = self
+            .reusable
+            .stamps
+            .as_ref()
+            .filter(|_| self.job.extras.time);
         let mut encoded = 0;
         let mut cursor = self.cursor;
         let mut estimate = 0.0;
@@ -32,7 +36,7 @@ impl Run {
         while estimate < budget_ms {
             let (_, index) = self.place(cursor);
             let bound = &target.stages[index];
-            let each = self.kept.costs[index].dispatch_ms;
+            let each = self.reusable.costs[index].dispatch_ms;
             let room = ((budget_ms - estimate) / each).max(1.0) as u32;
             let count = self.dispatches.min(room);
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -60,14 +64,14 @@ impl Run {
             let is_trace = self.job.kinds[index] == StageKind::Pass(Pass::Trace);
             if !ends_block {
                 let next = &stages[index + 1];
-                self.dispatches = self.kept.costs[index + 1].dispatches(next);
+                self.dispatches = self.reusable.costs[index + 1].dispatches(next);
             }
             // The time of march and trace is that of their own submissions.
             if ends_block || is_trace {
                 break;
             }
         }
-        let report = self.kept.reports.pop();
+        let report = self.reusable.reports.pop();
         let report = report.unwrap_or_else(|| Staging::new(device, REPORT));
         let (turn, head) = (size_of::<Turn>() as u64, size_of::<CellsHead>() as u64);
         let mut ranges = vec![(&target.turn, 0, turn), (&target.cells, 0, head)];
@@ -79,7 +83,7 @@ impl Run {
         let reads = ends_block && block >= self.job.firsts;
         let reading = reads.then(|| {
             let parts = Parts::new(&self.job.made.blocks[block], self.job.extras);
-            let kept = self.kept.readings.pop();
+            let kept = self.reusable.readings.pop();
             let staging = kept.filter(|s| s.holds(parts.bytes()));
             let staging = staging.unwrap_or_else(|| Staging::new(device, parts.bytes()));
             staging.copy(&mut encoder, &parts.ranges(target));

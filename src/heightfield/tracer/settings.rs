@@ -96,17 +96,61 @@ impl<M: Into<Arc<ConeMap>>> From<M> for Supply {
     }
 }
 
-/// The help of the key `tracer`: how well the tracers find the first hit.
-static TRACER_HELP: LazyLock<String> = LazyLock::new(|| {
-    let names = |accuracy| {
-        let all = TracerKind::ALL.into_iter();
-        let some = all.filter(|kind| kind.facts().accuracy == accuracy);
-        some.map(TracerKind::name).collect::<Vec<_>>().join(", ")
-    };
-    let [exact, pixel] = [Accuracy::Exact, Accuracy::Pixel].map(names);
-    format!(
-        "how rays find the surface; these find every first hit: {exact}; the hits of these are off by at most a pixel: {pixel}; the others may miss thin parts"
-    )
+/// The names of some tracers.
+fn names(some: impl Fn(&TracerKind) -> bool) -> String {
+    let some = TracerKind::ALL.into_iter().filter(some);
+    some.map(TracerKind::name).collect::<Vec<_>>().join(", ")
+}
+
+/// The names of the tracers whose numbers follow a setting.
+fn readers(change: fn(&mut TracerSettings)) -> String {
+    names(|kind| {
+        let own = TracerSettings::from(*kind);
+        let mut changed = own.clone();
+        change(&mut changed);
+        let [one, two] = [own, changed].map(|s| kind.facts().method.numbers(&s, 1.0));
+        one != two
+    })
+}
+
+/// Help texts that name tracers.
+struct Help {
+    tracer: String,
+    lookup: String,
+    steps: String,
+    rounds: String,
+    stretch: String,
+    lod: String,
+}
+
+static HELP: LazyLock<Help> = LazyLock::new(|| {
+    let of = |accuracy| names(|kind| kind.facts().accuracy == accuracy);
+    let [exact, pixel] = [Accuracy::Exact, Accuracy::Pixel].map(of);
+    let samples = names(|kind| kind.facts().kinds.first().is_some_and(|k| !k.over_cells()));
+    Help {
+        tracer: format!(
+            "how rays find the surface; these find every first hit: {exact}; the hits of these are off by at most a pixel: {pixel}; the others may miss thin parts"
+        ),
+        lookup: format!(
+            "how height and cone are read between samples: interpolated, or from the nearest sample; only for {samples}"
+        ),
+        steps: format!(
+            "step limit of a ray, or for a tracer without cones the number of its steps; auto is the tracer's own, see heightfields.md; only for {}",
+            readers(|s| s.steps = Some(7))
+        ),
+        rounds: format!(
+            "rounds of bisection or false position that refine a hit; auto is the tracer's own; only for {}",
+            readers(|s| s.rounds = Some(31))
+        ),
+        stretch: format!(
+            "factor on the cone steps; auto is 1.5 for csm-scaled, else 1; only for {}",
+            readers(|s| s.stretch = Some(0.9))
+        ),
+        lod: format!(
+            "distance from which walk-mip and cone-mip take texels to be narrower than a pixel, and at which csm-loop has half of its steps; 0 for none; auto follows the camera, and is 0 for csm-loop; only for {}",
+            readers(|s| s.lod = Some(7.0))
+        ),
+    }
 });
 
 /// How rays are traced.
@@ -161,19 +205,19 @@ impl TracerSettings {
     /// The keys of the tracer in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
-            "tracer" = word(&mut self.tracer, &TracerKind::WORDS), &TRACER_HELP => Assets;
+            "tracer" = word(&mut self.tracer, &TracerKind::WORDS), &HELP.tracer => Assets;
             "map" = text(&mut self.map),
                 "the cone map: auto makes one that fits the tracer; a generator's name makes its map; or the file of a map" => Assets;
             "lookup" = word(&mut self.lookup, &Lookup::WORDS),
-                "how height and cone are read between samples: interpolated, or from the nearest sample; only for the csm tracers, quad, rcs-binary and secant" => Assets;
+                &HELP.lookup => Assets;
             "tracer_steps" = auto_count(&mut self.steps, 1, MOST_STEPS),
-                "number of steps of linear-binary, and step limit of the csm tracers, quad, rcs-binary and secant; auto is the tracer's own, see heightfields.md";
+                &HELP.steps;
             "tracer_rounds" = auto_count(&mut self.rounds, 1, MOST_ROUNDS),
-                "rounds of bisection or false position that refine a hit of the tracers with tracer_steps, except csm-exact; auto is the tracer's own";
+                &HELP.rounds;
             "stretch" = auto_number(&mut self.stretch, 0.01, 100.0),
-                "factor on the cone steps of the csm tracers, quad, rcs-binary and secant; auto is 1.5 for csm-scaled, else 1";
+                &HELP.stretch;
             "lod" = auto_number(&mut self.lod, 0.0, 1e6),
-                "distance from which walk-mip and cone-mip take texels to be narrower than a pixel, and at which csm-loop has half of its steps; 0 for none; auto follows the camera for walk-mip and cone-mip, and is 0 for csm-loop";
+                &HELP.lod;
             "offset" = number(&mut self.offset, LEAST_OFFSET, MOST_OFFSET),
                 "texels that are added to each distance when the cones of the walk and its variants are made" => Assets;
         ]

@@ -1,31 +1,31 @@
-//! As `later`, where there are no threads: the work is done when its answer is asked for.
+//! Replaces `background` where there are no threads. The task runs when its result is asked for.
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::gpu::told::{Panicked, Told};
+use crate::gpu::task_status::{Panicked, TaskStatus};
 use crate::pass::progress::Progress;
 
 /// No threads.
 #[derive(Default)]
 pub struct Threads {}
 
-type Deferred<T> = Box<dyn FnOnce(&Told) -> T + Send>;
+type Deferred<T> = Box<dyn FnOnce(&TaskStatus) -> T + Send>;
 
 /// The answer of work that is done when it is asked for.
-pub struct Later<T> {
-    told: Told,
+pub struct Background<T> {
+    told: TaskStatus,
     work: Mutex<Option<Deferred<T>>>,
 }
 
-impl<T: Send + 'static> Later<T> {
+impl<T: Send + 'static> Background<T> {
     /// Takes on work. `first` is under way until it tells another.
     pub fn start(
         _: &mut Threads,
         first: &str,
-        work: impl FnOnce(&Told) -> T + Send + 'static,
+        work: impl FnOnce(&TaskStatus) -> T + Send + 'static,
     ) -> Self {
         Self {
-            told: Told::new(first),
+            told: TaskStatus::new(first),
             work: Mutex::new(Some(Box::new(work))),
         }
     }

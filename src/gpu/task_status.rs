@@ -1,4 +1,4 @@
-//! What work beside the calling thread tells.
+//! The progress of a background task, and whether it was cancelled.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -7,12 +7,12 @@ use crate::pass::progress::Progress;
 
 /// What is under way, and whether the answer is still wanted.
 #[derive(Debug)]
-pub struct Told {
+pub struct TaskStatus {
     unwanted: AtomicBool,
     progress: Mutex<Progress>,
 }
 
-impl Told {
+impl TaskStatus {
     /// `first` is under way.
     pub fn new(first: &str) -> Self {
         Self {

@@ -1,11 +1,11 @@
-//! Work on a thread of its own, which nobody waits for unasked.
+//! Runs a task on its own thread. The caller can ask for the result without waiting.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use crate::gpu::told::{Panicked, Told};
+use crate::gpu::task_status::{Panicked, TaskStatus};
 use crate::pass::progress::Progress;
 
 /// The threads of a renderer. Dropping it waits for them, as a driver may fail if a program ends
@@ -23,19 +23,19 @@ impl Drop for Threads {
 }
 
 /// The answer of a thread. Dropping it tells the thread to stop.
-pub struct Later<T> {
-    told: Arc<Told>,
+pub struct Background<T> {
+    told: Arc<TaskStatus>,
     answer: Receiver<T>,
 }
 
-impl<T: Send + 'static> Later<T> {
+impl<T: Send + 'static> Background<T> {
     /// Starts a thread. `first` is under way until it tells another.
     pub fn start(
         threads: &mut Threads,
         first: &str,
-        work: impl FnOnce(&Told) -> T + Send + 'static,
+        work: impl FnOnce(&TaskStatus) -> T + Send + 'static,
     ) -> Self {
-        let told = Arc::new(Told::new(first));
+        let told = Arc::new(TaskStatus::new(first));
         let (send, answer) = channel();
         let own = told.clone();
         threads.0.retain(|thread| !thread.is_finished());
@@ -70,7 +70,7 @@ impl<T: Send + 'static> Later<T> {
     }
 }
 
-impl<T> Drop for Later<T> {
+impl<T> Drop for Background<T> {
     fn drop(&mut self) {
         self.told.cancel();
     }

@@ -1,6 +1,6 @@
 //! What a frame needs before its first submission: assets, programs, and arrays on the device.
 //!
-//! An [`Order`] becomes an [`Outset`] at once if everything is known from frames before, else on a
+//! An [`FrameRequest`] becomes an [`FrameInputs`] at once if everything is known from frames before, else on a
 //! thread.
 
 use std::sync::{Arc, PoisonError};
@@ -13,11 +13,11 @@ use crate::base::shader::{Program, Sources};
 use crate::gpu::array::KeptArray;
 #[cfg(feature = "cli")]
 use crate::gpu::conemap::generate::Maker;
-use crate::gpu::error::RenderError;
+use crate::gpu::error::{RenderError, check_room};
 use crate::gpu::kernel::Kernel;
 use crate::gpu::render::Cutting;
 use crate::gpu::target::{Needs, Parameters};
-use crate::gpu::told::Told;
+use crate::gpu::task_status::TaskStatus;
 use crate::heightfield::assets::Preparation;
 #[cfg(not(feature = "cli"))]
 use crate::heightfield::conemap::generate::cpu::generate;
@@ -55,19 +55,15 @@ pub fn with_texts(sources: Option<&Sources>, program: Program) -> Program {
     }
 }
 
-/// The parameters of a frame by the names of the WGSL variables.
-pub fn parameters(plan: &Plan, scene: &AnySolid) -> Parameters {
-    let view = plan.view().uniform();
-    let look = Light::of(plan, scene).uniform();
-    let frame = [
-        ("view_parameters", bytes_of(&view).to_vec()),
-        ("look_parameters", bytes_of(&look).to_vec()),
-    ];
-    scene.twin().uniforms().into_iter().chain(frame).collect()
+/// The parameters of cones and rays by the names of the WGSL variables.
+pub fn marched(plan: &Plan, scene: &AnySolid) -> Parameters {
+    let view = bytes_of(&plan.view().uniform()).to_vec();
+    let own = scene.twin().uniforms().into_iter();
+    own.chain([("view_parameters", view)]).collect()
 }
 
 /// A frame that is asked for.
-pub struct Order {
+pub struct FrameRequest {
     pub plan: Plan,
     pub assets: Assets,
     pub extras: Extras,
@@ -79,7 +75,7 @@ pub struct Order {
 }
 
 /// A frame that can begin.
-pub struct Outset {
+pub struct FrameInputs {
     pub job: Job,
     pub frame: Frame,
     pub needs: Needs,
@@ -98,12 +94,12 @@ struct Draft {
     arrange: Program,
 }
 
-impl Order {
-    /// The outset, unless an asset or a program is missing.
+impl FrameRequest {
+    /// The inputs, unless an asset or a program is missing.
     ///
     /// # Errors
     /// A scene's settings do not fit.
-    pub fn at_once(&self) -> Result<Option<Outset>, RenderError> {
+    pub fn at_once(&self) -> Result<Option<FrameInputs>, RenderError> {
         if !self.plan.scene.has_assets(&self.assets) {
             return Ok(None);
         }
@@ -122,7 +118,13 @@ impl Order {
     /// # Errors
     /// The device fails, a named file cannot be read or does not fit, a cone map cannot be made, a
     /// shader text is wrong, or nobody waits any more. What was compiled and uploaded stays.
-    pub fn prepare(&self, told: &Told) -> Result<Outset, RenderError> {
+    pub fn prepare(&self, told: &TaskStatus) -> Result<FrameInputs, RenderError> {
+        let device = &self.shared.device;
+        // Large heights take seconds to make.
+        if let Some([w, h]) = self.plan.scene.pattern_size() {
+            let bytes = 4 * u64::from(w) * u64::from(h);
+            check_room(&device.info.name, "heights", bytes, device.most_bound())?;
+        }
         let mut tell = |progress: &Progress| told.tell(progress);
         let maps = self.maps(&mut tell)?;
         self.complete(self.draft()?, maps, &mut tell)
@@ -191,20 +193,19 @@ impl Order {
     fn complete(
         &self,
         draft: Draft,
-        prepared: Vec<(Preparation, f64)>,
+        map_times: Vec<(Preparation, f64)>,
         tell: Watch<'_>,
-    ) -> Result<Outset, RenderError> {
+    ) -> Result<FrameInputs, RenderError> {
         let Self { plan, extras, .. } = self;
         let (scene, needs) = (draft.scene, draft.needs);
-        let mut parameters = parameters(plan, &scene);
+        let marched = marched(plan, &scene);
+        let look = bytes_of(&Light::of(plan, &scene).uniform()).to_vec();
+        let mut parameters = marched.clone();
+        parameters.push(("look_parameters", look.clone()));
         if needs.picture.is_some() {
             let steps = tone_steps(plan.look.exposure.exp2());
             parameters.push(("tone_steps", bytes_of(&steps).to_vec()));
         }
-        let of_look = |p: &&(&str, Vec<u8>)| p.0 == "look_parameters";
-        let look = parameters.iter().find(of_look).map(|p| p.1.clone());
-        let of_march = |p: &&(&str, Vec<u8>)| !["look_parameters", "tone_steps"].contains(&p.0);
-        let marched = parameters.iter().filter(of_march).cloned().collect();
         let mut traffic = Traffic::default();
         let device = &self.shared.device;
         let mut compile = |program| {
@@ -234,7 +235,7 @@ impl Order {
         let most = most_steps(&scene);
         let mut frame = Frame::blank(plan, *extras);
         frame.traffic = Some(traffic);
-        Ok(Outset {
+        Ok(FrameInputs {
             job: Job {
                 firsts: firsts.len(),
                 first_stages,
@@ -244,11 +245,11 @@ impl Order {
                     blocks: [firsts, &draft.blocks].concat(),
                     ray_steps: plan.ray_steps(&scene),
                     marched,
-                    look: look.unwrap_or_default(),
+                    look,
                 },
                 steps: [self.cutting.chunk.clamp(1, most), most],
                 extras: *extras,
-                prepared,
+                map_times,
             },
             frame,
             needs,
