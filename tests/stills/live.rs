@@ -18,7 +18,7 @@ use glam::DVec3;
 use toml::Value;
 
 use super::common::plans::{preset, sized};
-use super::work::{bits, plans};
+use super::work::{bits, plans, within_promised_limits};
 use crate::adapter::{self, EVERYTHING};
 
 fn whole(renderer: &mut Renderer, plan: &Plan) -> Result<Vec<u32>, RenderError> {
@@ -196,6 +196,17 @@ fn a_lost_device_is_opened_again() {
         error,
         RenderError::Device(DeviceError::Lost { .. })
     ));
+}
+
+#[test]
+fn heights_that_do_not_fit_are_an_error_and_the_next_frame_is_right() {
+    let mut renderer = Renderer::new(within_promised_limits());
+    let large = preset("terrain", &["scene.field=checker:8192x8192"]);
+    let error = whole(&mut renderer, &large).unwrap_err().to_string();
+    assert!(error.contains("`heights` needs 256 MiB"), "{error}");
+    let plan = &plans()[1];
+    let wanted = whole(&mut adapter::open(), plan).unwrap();
+    assert!(whole(&mut renderer, plan).unwrap() == wanted);
 }
 
 fn picked(renderer: &mut Renderer, plan: &Plan, at: At) -> Picked {

@@ -265,7 +265,7 @@ fn a_painted_relief_with_four_cones_at_each_of_4096_x_4096_places_fits_too() {
 }
 
 /// A device with the limits that WebGPU promises.
-fn within_promised_limits() -> Device {
+pub fn within_promised_limits() -> Device {
     let adapters = Adapters::find();
     let chosen = adapters.choose(&Choice::Auto).unwrap();
     let (adapter, _) = chosen.expect(adapter::NO_ADAPTER);
