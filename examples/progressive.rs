@@ -2,6 +2,7 @@
 //! `cargo run --release --example progressive -- mandelbox slices`.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
@@ -26,6 +27,11 @@ fn main() -> anyhow::Result<()> {
         ..Extras::default()
     };
     let mut work = renderer.begin(&plan, &Assets::default(), extras)?;
+    // Until the first frame begins, a thread makes maps and compiles programs.
+    while work.picture().is_none() {
+        std::thread::sleep(Duration::from_millis(10));
+        work.advance(0.0)?;
+    }
     for slice in 0.. {
         work.advance(20.0)?;
         // Waits for the device, as a file needs the picture here. A window would show it there.
