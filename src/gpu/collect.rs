@@ -76,7 +76,7 @@ impl Parts {
         let head = size_of::<CellsHead>() as u64;
         let range = |r: Range| {
             let [at, bytes] = [r.at, r.words].map(|n| 4 * u64::from(n));
-            (&target.cells, head + at, bytes)
+            (&target.shared.cells, head + at, bytes)
         };
         self.all().map(range).to_vec()
     }

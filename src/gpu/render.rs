@@ -106,7 +106,8 @@ impl Renderer {
     }
 
     /// Puts another plan into a work. Once it is prepared, what was submitted of the old plan is
-    /// discarded; until then the old plan goes on. The extras stay.
+    /// discarded; until then the old plan goes on. The extras stay. A device that was lost is opened
+    /// again, unless a host has lent it.
     ///
     /// # Errors
     /// Those of [`Renderer::begin`]; the work goes on with the old plan then.
@@ -116,6 +117,8 @@ impl Renderer {
         plan: &Plan,
         assets: &Assets,
     ) -> Result<(), RenderError> {
+        self.reopen_if_lost()?;
+        work.move_to(&self.shared);
         let held = work.needs();
         self.start(work, plan, assets, held)
     }

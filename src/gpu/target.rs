@@ -28,6 +28,14 @@ pub struct Needs {
 }
 
 impl Needs {
+    /// Whether sizes and the programs of so many stages are the same.
+    fn like(&self, other: &Self, stages: usize) -> bool {
+        self.programs.len() == other.programs.len()
+            && self.programs[..stages] == other.programs[..stages]
+            && self.layout == other.layout
+            && self.picture == other.picture
+    }
+
     /// The program of a stage that can run in place of another: that of the last frame, if a slider
     /// passed through zero since.
     pub fn held(&self, stage: usize, layout: &Layout, program: &Program) -> Option<Program> {
@@ -57,6 +65,58 @@ pub struct Bound {
     pub groups: Vec<wgpu::BindGroup>,
 }
 
+/// What all stages share.
+pub struct SharedBuffers {
+    /// The turn.
+    pub turn: wgpu::Buffer,
+    /// The values and lists of cells.
+    pub cells: wgpu::Buffer,
+    /// The rays that still move.
+    walks: wgpu::Buffer,
+    /// Workgroups of the next dispatch.
+    pub workgroups: wgpu::Buffer,
+    /// The picture that is shown while it is made.
+    pub picture: Option<wgpu::Texture>,
+}
+
+impl SharedBuffers {
+    fn view(&self) -> Option<wgpu::TextureView> {
+        let picture = self.picture.as_ref();
+        picture.map(|p| p.create_view(&Default::default()))
+    }
+
+    /// The resource of a WGSL variable.
+    fn named<'a>(
+        &'a self,
+        name: &str,
+        parameters: &'a [Parameter],
+        scene: &'a [KeptArray],
+        view: Option<&'a wgpu::TextureView>,
+    ) -> Option<wgpu::BindingResource<'a>> {
+        let shared = match name {
+            "turn" | "turn_parameters" => Some(&self.turn),
+            "cells" => Some(&self.cells),
+            "walks" => Some(&self.walks),
+            "workgroups" => Some(&self.workgroups),
+            _ => None,
+        };
+        let own = || {
+            let found = parameters.iter().find(|p| p.name == name);
+            found.map(|p| &p.buffer)
+        };
+        let buffer = shared.or_else(own).map(wgpu::Buffer::as_entire_binding);
+        let array = || {
+            let found = scene.iter().find(|a| a.name == name);
+            found.map(|a| a.array.binding())
+        };
+        let picture = || {
+            let view = view.filter(|_| name == "picture");
+            view.map(wgpu::BindingResource::TextureView)
+        };
+        buffer.or_else(array).or_else(picture)
+    }
+}
+
 /// Buffers, kernels and bound resources of the frames of one kind.
 pub struct Target {
     /// Programs and sizes.
@@ -65,14 +125,8 @@ pub struct Target {
     arrays: Vec<Arc<Array>>,
     /// The number of the last block of the last frame. States contain it in 30 bits.
     generation: u32,
-    /// The turn.
-    pub turn: wgpu::Buffer,
-    /// The values and lists of cells.
-    pub cells: wgpu::Buffer,
-    /// The picture that is shown while it is made.
-    pub picture: Option<wgpu::Texture>,
-    /// Workgroups of the next dispatch.
-    pub workgroups: wgpu::Buffer,
+    /// What all stages share.
+    pub shared: SharedBuffers,
     /// The program that arranges dispatches.
     pub arrange: Arc<Kernel>,
     /// The stages of a block.
@@ -123,33 +177,15 @@ impl Target {
         let usage = BufferUsages::STORAGE | BufferUsages::INDIRECT;
         let workgroups = create(device, "workgroups", 16, usage);
         let picture = needs.picture.map(|size| new_picture(device, size));
-        let view = picture.as_ref().map(|p| p.create_view(&Default::default()));
-        let shared = [
-            ("turn", &turn),
-            ("turn_parameters", &turn),
-            ("cells", &cells),
-            ("walks", &walks),
-            ("workgroups", &workgroups),
-        ];
-        let named = |name: &str| {
-            let shared = shared.iter().find(|b| b.0 == name).map(|b| b.1);
-            let own = || {
-                parameters
-                    .iter()
-                    .find(|p| p.name == name)
-                    .map(|p| &p.buffer)
-            };
-            let buffer = shared.or_else(own).map(wgpu::Buffer::as_entire_binding);
-            let array = || {
-                let found = scene.iter().find(|a| a.name == name);
-                found.map(|a| a.array.binding())
-            };
-            let picture = || {
-                let view = view.as_ref().filter(|_| name == "picture");
-                view.map(wgpu::BindingResource::TextureView)
-            };
-            buffer.or_else(array).or_else(picture)
+        let shared = SharedBuffers {
+            turn,
+            cells,
+            walks,
+            workgroups,
+            picture,
         };
+        let view = shared.view();
+        let named = |name: &str| shared.named(name, &parameters, scene, view.as_ref());
         let step = device.device.limits().min_storage_buffer_offset_alignment;
         let stage_step = (size_of::<Stage>() as u64).next_multiple_of(u64::from(step));
         let numbers = room("stages", stage_step * compiled.len() as u64)?;
@@ -178,23 +214,54 @@ impl Target {
             parameters,
             arrays: scene.iter().map(|a| a.array.clone()).collect(),
             generation: 0,
-            turn,
-            cells,
-            picture,
-            workgroups,
+            shared,
             arrange,
         })
     }
 
-    /// Whether the target serves a frame: its programs, sizes and arrays are the same.
-    pub fn serves(&self, needs: &Needs, parameters: &Parameters, scene: &[KeptArray]) -> bool {
+    /// Puts other kernels in the place of those whose programs differ.
+    ///
+    /// # Errors
+    /// A variable of a program is unknown.
+    pub fn rebind(
+        &mut self,
+        device: &Device,
+        kernels: Vec<Arc<Kernel>>,
+        needs: Needs,
+        scene: &[KeptArray],
+    ) -> Result<(), RenderError> {
+        let view = self.shared.view();
+        let named = |name: &str| {
+            self.shared
+                .named(name, &self.parameters, scene, view.as_ref())
+        };
+        let olds = self.needs.programs.iter().zip(&needs.programs);
+        for ((bound, kernel), (old, new)) in self.stages.iter_mut().zip(kernels).zip(olds) {
+            if old != new {
+                bound.groups = kernel.bind(device, named)?;
+                bound.kernel = kernel;
+            }
+        }
+        self.needs = needs;
+        Ok(())
+    }
+
+    /// Whether the target serves a frame: its sizes, its arrays, and the programs of the first
+    /// stages are the same. The others can be put in their places.
+    pub fn serves(
+        &self,
+        needs: &Needs,
+        stages: usize,
+        parameters: &Parameters,
+        scene: &[KeptArray],
+    ) -> bool {
         let same = |own: &Parameter| {
             let found = parameters.iter().find(|(name, _)| *name == own.name);
             found.is_some_and(|(_, bytes)| own.bytes.len() == bytes.len())
         };
         let mut arrays = self.arrays.iter().zip(scene);
         self.generation < u32::MAX >> 3
-            && self.needs == *needs
+            && self.needs.like(needs, stages)
             && self.parameters.iter().all(same)
             && self.arrays.len() == scene.len()
             && arrays.all(|(own, kept)| Arc::ptr_eq(own, &kept.array))
@@ -232,8 +299,12 @@ impl Target {
             ..Turn::zeroed()
         };
         let head = CellsHead::zeroed();
-        device.queue.write_buffer(&self.turn, 0, bytes_of(&turn));
-        device.queue.write_buffer(&self.cells, 0, bytes_of(&head));
+        device
+            .queue
+            .write_buffer(&self.shared.turn, 0, bytes_of(&turn));
+        device
+            .queue
+            .write_buffer(&self.shared.cells, 0, bytes_of(&head));
     }
 
     /// Writes the numbers of the stages of a block, if they differ from the last ones.

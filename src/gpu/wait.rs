@@ -14,24 +14,29 @@ impl Device {
     /// # Errors
     /// The device was lost or reported an error.
     pub fn wait(&self) -> Result<(), DeviceError> {
-        self.wait_for(None)
-    }
-
-    /// Waits until a submission has run, or the last one.
-    ///
-    /// # Errors
-    /// The device was lost or reported an error.
-    pub fn wait_for(
-        &self,
-        submission_index: Option<wgpu::SubmissionIndex>,
-    ) -> Result<(), DeviceError> {
         let polled = self.device.poll(wgpu::PollType::Wait {
-            submission_index,
+            submission_index: None,
             // A dispatch has a bounded number of steps. A device that needs longer hangs.
             timeout: Some(Duration::from_secs(120)),
         });
         self.trouble()?;
         polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
+    }
+
+    /// Waits until a submission has run, but for 20 ms at most.
+    ///
+    /// # Errors
+    /// The device was lost or reported an error.
+    pub fn wait_a_moment(&self, submission: wgpu::SubmissionIndex) -> Result<(), DeviceError> {
+        let polled = self.device.poll(wgpu::PollType::Wait {
+            submission_index: Some(submission),
+            timeout: Some(Duration::from_millis(20)),
+        });
+        self.trouble()?;
+        match polled {
+            Ok(_) | Err(wgpu::PollError::Timeout) => Ok(()),
+            Err(e) => Err(self.lost(e.to_string())),
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use std::sync::{Arc, PoisonError};
 use bytemuck::bytes_of;
 
 use super::Shared;
-use super::run::{Job, Made};
+use super::job::{Job, Made};
 use crate::base::shader::{Program, Sources};
 use crate::gpu::array::KeptArray;
 #[cfg(feature = "cli")]
@@ -29,7 +29,7 @@ use crate::pass::tone::tone_steps;
 use crate::pass::turn::{self, StageKind};
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::pyramid::Block;
-use crate::plan::{Extras, Plan};
+use crate::plan::{Extras, Pass, Plan};
 use crate::scene::{AnySolid, Assets};
 
 /// The largest step limit of a dispatch. With a block of a million pixels it stays far below
@@ -224,6 +224,9 @@ impl FrameRequest {
         let mut arrays = arrays.unwrap_or_else(PoisonError::into_inner);
         let uploads = &mut traffic.uploads;
         let arrays = arrays.keep(device, &kernels, scene.twin().arrays(), uploads)?;
+        let color = StageKind::Pass(Pass::Color);
+        let colors = draft.kinds.iter().position(|kind| *kind == color);
+        let colors = colors.unwrap_or(draft.kinds.len());
         let first_stages = match draft.blocks.len() {
             1 => 0,
             _ => StageKind::first_picture(&draft.kinds),
@@ -240,12 +243,14 @@ impl FrameRequest {
                 firsts: firsts.len(),
                 first_stages,
                 kinds: draft.kinds,
+                colors_at: colors,
                 made: Made {
                     passes: plan.passes(*extras),
                     blocks: [firsts, &draft.blocks].concat(),
                     ray_steps: plan.ray_steps(&scene),
                     marched,
                     look,
+                    colors: needs.programs[colors..].to_vec(),
                 },
                 steps: [self.cutting.chunk.clamp(1, most), most],
                 extras: *extras,

@@ -8,15 +8,17 @@
 //! next. So neither the length of a submission nor a wrong estimate changes a bit.
 //!
 //! - `inputs`: assets, programs and arrays, before the first submission
+//! - `job`: what a run is made of, and what it leaves to the next
 //! - `run`: the submissions of a frame; `submit` encodes them, and `receive` takes in what comes
 //!   back
 
 mod inputs;
+mod job;
 mod receive;
 mod run;
 mod submit;
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::gpu::array::Arrays;
 use crate::gpu::background::Background;
@@ -33,7 +35,7 @@ use crate::pass::progress::Watch;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::Extras;
 pub(super) use inputs::{FrameInputs, FrameRequest, marched, most_steps, with_texts};
-use run::Reusable;
+use job::Reusable;
 use run::Run;
 pub use run::SUBMISSION_MS;
 
@@ -49,8 +51,9 @@ pub(super) struct Shared {
 pub struct Work {
     shared: Arc<Shared>,
     extras: Extras,
-    /// What is prepared for the plan, until its run begins.
-    inputs: Option<Background<Result<FrameInputs, RenderError>>>,
+    /// What is prepared, until a run begins: for the last plan, and for plans before it, to go back
+    /// to if the last one fails.
+    inputs: Vec<Background<Result<FrameInputs, RenderError>>>,
     /// The run of the last plan that was prepared.
     run: Option<Run>,
 }
@@ -60,27 +63,33 @@ impl Work {
         Self {
             shared,
             extras,
-            inputs: None,
+            inputs: Vec::new(),
             run: None,
         }
     }
 
     /// Begins a run in place of the one under way. If it cannot begin, the other one goes on.
     pub(super) fn start(&mut self, inputs: FrameInputs) -> Result<(), RenderError> {
-        self.inputs = None;
-        if let Some(old) = &mut self.run {
-            old.lend();
-        }
-        match Run::begin(self.shared.clone(), inputs) {
-            Ok(run) => self.run = Some(run),
-            Err(error) => {
-                if let Some(old) = &mut self.run {
-                    old.take_back();
-                }
-                return Err(error);
-            }
-        }
+        let shelf = self.shared.reusable.lock();
+        let mut shelf = shelf.unwrap_or_else(PoisonError::into_inner);
+        let reusable = match &mut self.run {
+            Some(old) => &mut old.reusable,
+            None => &mut *shelf,
+        };
+        let run = Run::begin(self.shared.clone(), inputs, reusable)?;
+        drop(shelf);
+        self.run = Some(run);
+        self.inputs.clear();
         Ok(())
+    }
+
+    /// Changes over to another device. What is under way on the old one is lost.
+    pub(super) fn move_to(&mut self, shared: &Arc<Shared>) {
+        if !Arc::ptr_eq(&self.shared, shared) {
+            self.shared = shared.clone();
+            self.run = None;
+            self.inputs.clear();
+        }
     }
 
     /// Begins a run once it is prepared.
@@ -88,7 +97,7 @@ impl Work {
         &mut self,
         inputs: Background<Result<FrameInputs, RenderError>>,
     ) {
-        self.inputs = Some(inputs);
+        self.inputs.push(inputs);
     }
 
     /// Takes in an answer of the thread that prepares the run.
@@ -98,22 +107,28 @@ impl Work {
     ) -> Result<(), RenderError> {
         match answer {
             Ok(None) => Ok(()),
-            Ok(Some(Ok(inputs))) => self.start(inputs),
+            Ok(Some(Ok(inputs))) => {
+                let begun = self.start(inputs);
+                if begun.is_err() {
+                    self.inputs.pop();
+                }
+                begun
+            }
             Ok(Some(Err(error))) => {
-                self.inputs = None;
+                self.inputs.pop();
                 // On a lost device, programs fail too.
                 self.shared.device.check()?;
                 Err(error)
             }
             Err(Panicked) => {
-                self.inputs = None;
+                self.inputs.pop();
                 Err(RenderError::Panicked)
             }
         }
     }
 
     fn receive(&mut self) -> Result<(), RenderError> {
-        match &self.inputs {
+        match self.inputs.last() {
             Some(inputs) => self.answered(inputs.poll()),
             None => Ok(()),
         }
@@ -121,7 +136,7 @@ impl Work {
 
     /// How far the render has come.
     pub fn progress(&self) -> Progress {
-        let inputs = self.inputs.as_ref().map(Background::progress);
+        let inputs = self.inputs.last().map(Background::progress);
         let run = || self.run.as_ref().map(Run::progress);
         inputs.or_else(run).unwrap_or_default()
     }
@@ -163,14 +178,14 @@ impl Work {
         }
     }
 
-    /// The frame, once it is finished. It never waits.
+    /// The frame, once it is finished, and once only. It never waits.
     ///
     /// # Errors
     /// Those of [`Work::advance`], or the device left cells unvisited. A work whose first plan has
     /// failed is cancelled.
     pub fn poll(&mut self) -> Result<Option<Frame>, RenderError> {
         self.receive()?;
-        match (&mut self.run, &self.inputs) {
+        match (&mut self.run, self.inputs.last()) {
             (_, Some(_)) => Ok(None),
             (Some(run), None) => run.poll(),
             (None, None) => Err(RenderError::Cancelled),
@@ -184,7 +199,7 @@ impl Work {
     /// [`RenderError::Cancelled`] if `watch` returns `false`, and those of [`Work::poll`].
     #[cfg(feature = "cli")]
     pub fn finish(mut self, watch: Watch<'_>) -> Result<Frame, RenderError> {
-        while let Some(inputs) = &self.inputs {
+        while let Some(inputs) = self.inputs.last() {
             if !watch(&inputs.progress()) {
                 return Err(RenderError::Cancelled);
             }
@@ -207,6 +222,9 @@ impl Work {
             told = run.reached;
             if let Some(frame) = frame {
                 return Ok(frame);
+            }
+            if run.is_delivered() {
+                return Err(RenderError::Cancelled);
             }
             run.wait()?;
         }

@@ -82,8 +82,13 @@ impl Run {
         // A submission from before a correction says nothing new.
         if next < flight.stages.end && flight.corrections == self.corrections {
             self.corrections += 1;
-            let drained = u32::from(self.flights.is_empty());
-            self.traffic_mut().drains += drained;
+            // What is in flight may be for later stages, and visits nothing.
+            let serves = |f: &Flight| {
+                let first = f.stages.start;
+                (first..first + f.encoded).contains(&next)
+            };
+            let drained = !self.flights.iter().any(serves);
+            self.traffic_mut().drains += u32::from(drained);
             self.go_to(next);
         }
         Ok(())

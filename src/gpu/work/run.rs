@@ -8,13 +8,13 @@ use crate::gpu::cost::{Cost, LONGEST_MS};
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::{STAMPS, Stamps};
-use crate::gpu::target::{Needs, Parameters, Target};
+use crate::gpu::target::Target;
+use crate::gpu::work::job::{Job, Reusable};
 use crate::gpu::work::{FrameInputs, Shared};
-use crate::heightfield::assets::Preparation;
 use crate::pass::progress::Progress;
-use crate::pass::turn::{CellsHead, Layout, MOST_STAGES, Stage, StageKind, Turn};
+use crate::pass::turn::{CellsHead, MOST_STAGES, Stage, StageKind, Turn};
 use crate::picture::frame::{Frame, Traffic};
-use crate::plan::{Extras, Pass};
+use crate::plan::Pass;
 
 /// The longest estimated submission in milliseconds. A window that shares the device stays
 /// fluid, and the device is free soon after a render was cancelled.
@@ -23,79 +23,6 @@ pub const SUBMISSION_MS: f64 = 40.0;
 const IN_FLIGHT: usize = 2;
 /// Bytes of a report: the turn, the head of the lists, and timestamps.
 pub(super) const REPORT: u64 = (size_of::<Turn>() + size_of::<CellsHead>()) as u64 + STAMPS;
-
-/// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
-/// the programs and the sizes of a target stay anyway.
-#[derive(Clone, Debug, PartialEq)]
-pub(in crate::gpu) struct Made {
-    pub passes: Vec<Pass>,
-    pub blocks: Vec<Layout>,
-    pub ray_steps: u32,
-    /// Parameters of cones and rays.
-    pub marched: Parameters,
-    /// Parameters of the colours.
-    pub look: Vec<u8>,
-}
-
-impl Made {
-    /// The stage of a block from which a frame goes on after a finished one, if it can.
-    fn resumes(&self, last: &Self, kinds: &[StageKind]) -> Option<u32> {
-        let same_rays = Self {
-            look: last.look.clone(),
-            ..self.clone()
-        } == *last;
-        // The buffers hold one block.
-        if !same_rays || self.blocks.len() > 1 {
-            return None;
-        }
-        let after = |pass: Pass| kinds.iter().position(|k| *k == StageKind::Pass(pass));
-        let color = after(Pass::Color)?;
-        Some(color as u32 + u32::from(self.look == last.look))
-    }
-}
-
-/// What one render leaves to the next.
-#[derive(Default)]
-pub(in crate::gpu) struct Reusable {
-    pub target: Option<Target>,
-    pub costs: Vec<Cost>,
-    /// Milliseconds that dispatches are made for.
-    pub aim_ms: f64,
-    pub stamps: Option<Stamps>,
-    pub reports: Vec<Staging>,
-    pub readings: Vec<Staging>,
-    /// What the last frame was made of, if it was finished.
-    pub made: Option<Made>,
-}
-
-/// What a render knows from the start.
-///
-/// If an image of several blocks is shown while it is made, the coarse levels run over all blocks
-/// before any ray, and once more with each block.
-pub(in crate::gpu) struct Job {
-    pub kinds: Vec<StageKind>,
-    pub made: Made,
-    /// How many of the blocks come before all others, only for a first picture of the whole image,
-    /// and how many stages of them run.
-    pub firsts: usize,
-    pub first_stages: usize,
-    /// The step limits of the first dispatch of a stage and of the largest.
-    pub steps: [u32; 2],
-    pub extras: Extras,
-    pub map_times: Vec<(Preparation, f64)>,
-}
-
-impl Job {
-    /// Whether a stage of a block is left out.
-    fn leaves_out(&self, block: usize, index: usize) -> bool {
-        let is_sketch = || matches!(self.kinds[index], StageKind::Sketch(_));
-        match block < self.firsts {
-            true => index >= self.first_stages,
-            // The first picture is finer.
-            false => self.firsts > 0 && index < self.first_stages && is_sketch(),
-        }
-    }
-}
 
 /// A submission that has not ended, as far as the host knows.
 pub(super) struct Flight {
@@ -135,13 +62,7 @@ pub struct Run {
     pub(super) ended: f64,
     /// Blocks in the frame, without those of the first picture.
     pub(super) collected: usize,
-}
-
-impl Reusable {
-    /// Programs and sizes of the last frame.
-    pub fn needs(&self) -> Option<Needs> {
-        self.target.as_ref().map(|target| target.needs.clone())
-    }
+    delivered: bool,
 }
 
 impl Run {
@@ -149,7 +70,11 @@ impl Run {
     ///
     /// # Errors
     /// The device has no room.
-    pub fn begin(shared: Arc<Shared>, inputs: FrameInputs) -> Result<Self, RenderError> {
+    pub fn begin(
+        shared: Arc<Shared>,
+        inputs: FrameInputs,
+        reusable: &mut Reusable,
+    ) -> Result<Self, RenderError> {
         let FrameInputs {
             job,
             mut frame,
@@ -160,18 +85,17 @@ impl Run {
             arrays,
         } = inputs;
         let device = &shared.device;
-        let shelf = shared.reusable.lock();
-        let mut shelf = shelf.unwrap_or_else(PoisonError::into_inner);
         let traffic = frame.traffic.get_or_insert_default();
-        match &mut shelf.target {
-            Some(target) if target.serves(&needs, &parameters, &arrays) => {
+        match &mut reusable.target {
+            Some(target) if target.serves(&needs, job.colors_at, &parameters, &arrays) => {
+                target.rebind(device, kernels, needs, &arrays)?;
                 traffic.uploads += target.rewrite(device, parameters);
             }
             _ => {
                 traffic.uploads += parameters.iter().map(|(_, b)| b.len()).sum::<usize>();
                 traffic.allocations = 1;
                 let target = Target::new(device, kernels, arrange, needs, parameters, &arrays)?;
-                *shelf = Reusable {
+                *reusable = Reusable {
                     target: Some(target),
                     costs: vec![Cost::default(); job.kinds.len()],
                     aim_ms: LONGEST_MS,
@@ -180,16 +104,15 @@ impl Run {
                 };
             }
         }
-        let kept = std::mem::take(&mut *shelf);
-        drop(shelf);
-        Ok(Self::new(shared, kept, job, frame))
+        let reusable = std::mem::take(reusable);
+        Ok(Self::new(shared, reusable, job, frame))
     }
 
-    fn new(shared: Arc<Shared>, kept: Reusable, job: Job, frame: Frame) -> Self {
+    fn new(shared: Arc<Shared>, reusable: Reusable, job: Job, frame: Frame) -> Self {
         let ended = (shared.device.clock)();
         let mut run = Self {
             shared,
-            reusable: kept,
+            reusable,
             job,
             frame,
             from: 0,
@@ -202,6 +125,7 @@ impl Run {
             corrections: 0,
             ended,
             collected: 0,
+            delivered: false,
         };
         let last = run.reusable.made.take().filter(|_| run.job.extras.reuse);
         let first = last.and_then(|last| run.job.made.resumes(&last, &run.job.kinds));
@@ -281,17 +205,30 @@ impl Run {
     /// The progress when a stage is under way of which a share is done.
     fn progress_at(&self, stage: u32, share: f64) -> Progress {
         let is_pass = |k: &&StageKind| matches!(k, StageKind::Pass(_));
+        if stage >= self.end() {
+            let last = self.job.made.passes.last();
+            return Progress {
+                pass: last.map(Pass::name).unwrap_or_default(),
+                done: 1.0,
+            };
+        }
         let (block, index) = self.place(stage);
+        let firsts = self.job.firsts;
         let before = self.job.kinds[..index].iter().filter(is_pass).count();
         let passes = self.job.made.passes.len();
         let share = match self.job.kinds[index] {
             StageKind::Pass(_) => share,
             _ => 0.0,
         };
-        let done = (block * passes + before) as f64 + share;
+        // The first picture takes little.
+        let done = match block.checked_sub(firsts) {
+            Some(block) => (block * passes + before) as f64 + share,
+            None => 0.0,
+        };
+        let all = passes * (self.job.made.blocks.len() - firsts);
         Progress {
             pass: self.job.made.passes[self.pass_at(index)].name(),
-            done: (done / (passes * self.job.made.blocks.len()) as f64).min(1.0),
+            done: (done / all as f64).min(1.0),
         }
     }
 
@@ -299,7 +236,7 @@ impl Run {
     /// `None` without [`Extras::shown`], or if the image is larger than a texture can be. Its
     /// bytes are those of sRGB, as files hold them.
     pub fn picture(&self) -> Option<&wgpu::Texture> {
-        self.reusable.target.as_ref()?.picture.as_ref()
+        self.reusable.target.as_ref()?.shared.picture.as_ref()
     }
 
     /// How the host and the device worked together so far.
@@ -338,8 +275,13 @@ impl Run {
         if self.collected < self.job.made.blocks.len() - self.job.firsts {
             return Ok(None);
         }
+        if std::mem::replace(&mut self.delivered, true) {
+            return Ok(None);
+        }
         self.reusable.made = Some(self.job.made.clone());
+        let traffic = self.frame.traffic;
         let mut frame = std::mem::take(&mut self.frame);
+        self.frame.traffic = traffic;
         frame.finish(std::mem::take(&mut self.job.map_times));
         Ok(Some(frame))
     }
@@ -364,15 +306,24 @@ impl Run {
         news
     }
 
-    /// Waits for the oldest submission.
+    /// Whether the frame was handed over.
+    pub fn is_delivered(&self) -> bool {
+        self.delivered
+    }
+
+    /// Waits a moment for the oldest submission.
     ///
     /// # Errors
-    /// The device failed.
+    /// The device failed, or has not answered for two minutes: a dispatch has a bounded number of
+    /// steps.
     #[cfg(feature = "cli")]
     pub fn wait(&self) -> Result<(), RenderError> {
         if let Some(flight) = self.flights.front() {
-            let index = Some(flight.index.clone());
-            self.shared.device.wait_for(index)?;
+            let device = &self.shared.device;
+            device.wait_a_moment(flight.index.clone())?;
+            if (device.clock)() - flight.submitted.max(self.ended) > 120e3 {
+                return Err(device.lost("it has not answered for two minutes").into());
+            }
         }
         Ok(())
     }
@@ -384,12 +335,6 @@ impl Run {
     pub(super) fn lend(&mut self) {
         let shelf = self.shared.reusable.lock();
         *shelf.unwrap_or_else(PoisonError::into_inner) = std::mem::take(&mut self.reusable);
-    }
-
-    /// Takes back what no other render took.
-    pub(super) fn take_back(&mut self) {
-        let shelf = self.shared.reusable.lock();
-        self.reusable = std::mem::take(&mut *shelf.unwrap_or_else(PoisonError::into_inner));
     }
 }
 

@@ -48,7 +48,7 @@ impl Run {
                 target
                     .arrange
                     .dispatch(&mut compute, &bound.arrange, [1, 1]);
-                let workgroups = &target.workgroups;
+                let workgroups = &target.shared.workgroups;
                 bound
                     .kernel
                     .dispatch_indirect(&mut compute, &bound.groups, workgroups);
@@ -74,7 +74,10 @@ impl Run {
         let report = self.reusable.reports.pop();
         let report = report.unwrap_or_else(|| Staging::new(device, REPORT));
         let (turn, head) = (size_of::<Turn>() as u64, size_of::<CellsHead>() as u64);
-        let mut ranges = vec![(&target.turn, 0, turn), (&target.cells, 0, head)];
+        let mut ranges = vec![
+            (&target.shared.turn, 0, turn),
+            (&target.shared.cells, 0, head),
+        ];
         if let Some(stamps) = stamps {
             stamps.resolve(&mut encoder, encoded);
             ranges.push((&stamps.resolved, 0, STAMPS));

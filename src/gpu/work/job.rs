@@ -1,0 +1,96 @@
+//! What a run is made of, and what one run leaves to the next.
+
+use crate::base::shader::Program;
+use crate::gpu::cost::Cost;
+use crate::gpu::staging::Staging;
+use crate::gpu::stamps::Stamps;
+use crate::gpu::target::{Needs, Parameters, Target};
+use crate::heightfield::assets::Preparation;
+use crate::pass::turn::{Layout, StageKind};
+use crate::plan::{Extras, Pass};
+
+/// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
+/// the programs and the sizes of a target stay anyway.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::gpu) struct Made {
+    pub passes: Vec<Pass>,
+    pub blocks: Vec<Layout>,
+    pub ray_steps: u32,
+    /// Parameters of cones and rays.
+    pub marched: Parameters,
+    /// Parameters of the colours.
+    pub look: Vec<u8>,
+    /// Programs from the colours on.
+    pub colors: Vec<Program>,
+}
+
+impl Made {
+    /// The stage of a block from which a frame goes on after a finished one, if it can.
+    pub(super) fn resumes(&self, last: &Self, kinds: &[StageKind]) -> Option<u32> {
+        let same_rays = Self {
+            look: last.look.clone(),
+            colors: last.colors.clone(),
+            ..self.clone()
+        } == *last;
+        // The buffers hold one block.
+        if !same_rays || self.blocks.len() > 1 {
+            return None;
+        }
+        let after = |pass: Pass| kinds.iter().position(|k| *k == StageKind::Pass(pass));
+        let color = after(Pass::Color)?;
+        let same = self.look == last.look && self.colors == last.colors;
+        Some(color as u32 + u32::from(same))
+    }
+}
+
+/// What one render leaves to the next.
+#[derive(Default)]
+pub(in crate::gpu) struct Reusable {
+    pub target: Option<Target>,
+    pub costs: Vec<Cost>,
+    /// Milliseconds that dispatches are made for.
+    pub aim_ms: f64,
+    pub stamps: Option<Stamps>,
+    pub reports: Vec<Staging>,
+    pub readings: Vec<Staging>,
+    /// What the last frame was made of, if it was finished.
+    pub made: Option<Made>,
+}
+
+/// What a render knows from the start.
+///
+/// If an image of several blocks is shown while it is made, the coarse levels run over all blocks
+/// before any ray, and once more with each block.
+pub(in crate::gpu) struct Job {
+    pub kinds: Vec<StageKind>,
+    /// The first stage that only colours need.
+    pub colors_at: usize,
+    pub made: Made,
+    /// How many of the blocks come before all others, only for a first picture of the whole image,
+    /// and how many stages of them run.
+    pub firsts: usize,
+    pub first_stages: usize,
+    /// The step limits of the first dispatch of a stage and of the largest.
+    pub steps: [u32; 2],
+    pub extras: Extras,
+    pub map_times: Vec<(Preparation, f64)>,
+}
+
+impl Job {
+    /// Whether a stage of a block is left out.
+    pub(super) fn leaves_out(&self, block: usize, index: usize) -> bool {
+        let is_sketch = || matches!(self.kinds[index], StageKind::Sketch(_));
+        match block < self.firsts {
+            true => index >= self.first_stages,
+            // The first picture is finer.
+            false => self.firsts > 0 && index < self.first_stages && is_sketch(),
+        }
+    }
+}
+
+impl Reusable {
+    /// Programs and sizes of the last frame.
+    pub fn needs(&self) -> Option<Needs> {
+        self.target.as_ref().map(|target| target.needs.clone())
+    }
+}
