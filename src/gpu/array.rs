@@ -143,13 +143,28 @@ impl Arrays {
         scene: Vec<SceneArray>,
         uploads: &mut usize,
     ) -> Result<Vec<KeptArray>, RenderError> {
-        let mut old = std::mem::take(&mut self.0);
+        self.0 = self.find_or_make(device, kernels, scene, uploads)?;
+        Ok(self.0.clone())
+    }
+
+    /// As [`Arrays::keep`], without a change of what is kept.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn find_or_make(
+        &self,
+        device: &Device,
+        kernels: &[Arc<Kernel>],
+        scene: Vec<SceneArray>,
+        uploads: &mut usize,
+    ) -> Result<Vec<KeptArray>, RenderError> {
+        let mut found = Vec::new();
         for asked in scene {
             let same = |kept: &KeptArray| {
                 kept.name == asked.name && Arc::ptr_eq(&kept.origin, &asked.origin)
             };
-            if let Some(i) = old.iter().position(same) {
-                self.0.push(old.swap_remove(i));
+            if let Some(kept) = self.0.iter().find(|kept| same(kept)) {
+                found.push(kept.clone());
                 continue;
             }
             let reader = kernels.iter().find(|k| k.reads(asked.name));
@@ -157,12 +172,12 @@ impl Arrays {
             let Some(reader) = reader else { continue };
             let bytes = asked.bytes();
             *uploads += bytes.len();
-            self.0.push(KeptArray {
+            found.push(KeptArray {
                 name: asked.name,
                 array: Arc::new(reader.array(device, asked.name, &bytes)?),
                 origin: asked.origin,
             });
         }
-        Ok(self.0.clone())
+        Ok(found)
     }
 }

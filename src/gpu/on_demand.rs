@@ -9,7 +9,7 @@ use crate::pass::progress::Progress;
 #[derive(Default)]
 pub struct Threads {}
 
-type Deferred<T> = Box<dyn FnOnce(&TaskStatus) -> T + Send>;
+type Deferred<T> = Box<dyn FnOnce(&TaskStatus) -> T>;
 
 /// The answer of work that is done when it is asked for.
 pub struct Background<T> {
@@ -17,12 +17,12 @@ pub struct Background<T> {
     work: Mutex<Option<Deferred<T>>>,
 }
 
-impl<T: Send + 'static> Background<T> {
+impl<T: 'static> Background<T> {
     /// Takes on work. `first` is under way until it tells another.
     pub fn start(
         _: &mut Threads,
         first: &str,
-        work: impl FnOnce(&TaskStatus) -> T + Send + 'static,
+        work: impl FnOnce(&TaskStatus) -> T + 'static,
     ) -> Self {
         Self {
             told: TaskStatus::new(first),

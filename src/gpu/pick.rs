@@ -79,12 +79,14 @@ impl Asked {
         let program = with_texts(sources, pick::program(&scene));
         let kernel = shared.kernels.get(gpu, &program)?;
         let arrays = shared.arrays.lock();
-        let mut arrays = arrays.unwrap_or_else(PoisonError::into_inner);
+        let arrays = arrays.unwrap_or_else(PoisonError::into_inner);
         let kernels = std::slice::from_ref(&kernel);
-        let arrays = arrays.keep(gpu, kernels, scene.twin().arrays(), &mut 0)?;
+        let arrays = arrays.find_or_make(gpu, kernels, scene.twin().arrays(), &mut 0)?;
         let steps = most_steps(&scene);
+        let of_cones: u32 = plan.levels().iter().map(|level| level.steps).sum();
+        let limit = plan.ray_steps(&scene).saturating_add(of_cones);
         let rounds = match at {
-            At::Pixel(_) => plan.ray_steps(&scene).div_ceil(steps),
+            At::Pixel(_) => limit.div_ceil(steps),
             At::Point(_) => 1,
         };
         let eye = plan.camera.eye;
@@ -96,7 +98,7 @@ impl Asked {
             ("pick_answer", answer.clone()),
             ("walks", create(gpu, "walks", walk, usage)),
         ];
-        let question = PickQuestion::new(at, eye, steps);
+        let question = PickQuestion::new(at, eye, [steps, limit]);
         let mut numbers = marched(plan, &scene);
         numbers.push(("pick_question", bytes_of(&question).to_vec()));
         let written = numbers.iter();

@@ -43,13 +43,13 @@ pub struct PickQuestion {
     pub pixel: [u32; 2],
     /// The step limit of a dispatch.
     pub steps: u32,
-    /// Unused.
-    pub pad: u32,
+    /// The step limit of the ray. It starts at the eye, so it has the steps of the cones too.
+    pub limit: u32,
 }
 
 impl PickQuestion {
     /// The question for a place that is seen from an eye.
-    pub fn new(at: At, eye: DVec3, steps: u32) -> Self {
+    pub fn new(at: At, eye: DVec3, [steps, limit]: [u32; 2]) -> Self {
         let of_place = match at {
             At::Pixel(pixel) => Self {
                 traces: 1,
@@ -61,7 +61,11 @@ impl PickQuestion {
                 ..Self::zeroed()
             },
         };
-        Self { steps, ..of_place }
+        Self {
+            steps,
+            limit,
+            ..of_place
+        }
     }
 }
 
@@ -79,8 +83,8 @@ pub struct PickAnswer {
     pub state: u32,
     /// 1 if there was a ray.
     pub begun: u32,
-    /// Unused.
-    pub pad: u32,
+    /// Steps done.
+    pub done: u32,
 }
 
 impl PickAnswer {

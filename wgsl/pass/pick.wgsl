@@ -10,7 +10,8 @@ struct PickQuestion {
     pixel: vec2<u32>,
     /// The step limit of a dispatch. The next one goes on.
     steps: u32,
-    pad: u32,
+    /// The step limit of the ray.
+    limit: u32,
 }
 
 /// What there is.
@@ -22,7 +23,8 @@ struct PickAnswer {
     state: u32,
     /// 1 if the ray has begun.
     begun: u32,
-    pad: u32,
+    /// Steps done.
+    done: u32,
 }
 
 @group(2) @binding(0) var<storage, read> pick_question: PickQuestion;
@@ -47,7 +49,9 @@ fn pick() {
             walk = begin(ray, 0.0, bounds_far());
         }
         var state = STATE_MOVING;
-        for (var i = 0u; i < pick_question.steps; i++) {
+        let last = min(pick_question.steps, pick_question.limit - pick_answer.done);
+        pick_answer.done += last;
+        for (var i = 0u; i < last; i++) {
             state = walk_step(ray, &walk);
             if state != STATE_MOVING {
                 break;

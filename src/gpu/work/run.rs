@@ -307,6 +307,7 @@ impl Run {
     }
 
     /// Whether the frame was handed over.
+    #[cfg(feature = "cli")]
     pub fn is_delivered(&self) -> bool {
         self.delivered
     }
