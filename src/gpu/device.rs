@@ -121,6 +121,15 @@ impl Device {
         polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
     }
 
+    /// Forgets a reported error. A loss stays.
+    pub(super) fn forget_reported(&self) {
+        if let Ok(mut slot) = self.trouble.lock()
+            && matches!(*slot, Some(DeviceError::Reported { .. }))
+        {
+            *slot = None;
+        }
+    }
+
     pub(super) fn lost(&self, why: impl Into<String>) -> DeviceError {
         DeviceError::Lost {
             name: self.info.name.clone(),

@@ -167,11 +167,13 @@ impl Renderer {
 
     fn reopen_if_lost(&mut self) -> Result<(), RenderError> {
         #[cfg(feature = "cli")]
-        if self.device.check().is_err() {
+        if self.device.check().is_err() && self.device.opened.is_some() {
             let fresh = Self::new(self.device.reopen()?);
             self.device = fresh.device;
             self.shared = fresh.shared;
         }
+        // It may be an error of the host, and the device still works.
+        self.device.forget_reported();
         Ok(self.device.check()?)
     }
 

@@ -191,6 +191,15 @@ fn a_lost_device_is_opened_again() {
     let opened = pollster::block_on(adapter.request_device(&Default::default()));
     let (device, queue) = opened.unwrap();
     let mut lent = Renderer::new(Device::adopt(adapter, device, queue, clock));
+    // An error of the host itself is no reason to stop.
+    let _wrong = lent.device.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 3,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::STORAGE,
+        mapped_at_creation: false,
+    });
+    assert!(lent.device.check().is_err());
+    assert!(whole(&mut lent, plan).unwrap() == wanted);
     lent.device.device.destroy();
     let error = whole(&mut lent, plan).unwrap_err();
     assert!(matches!(
