@@ -121,6 +121,14 @@ impl Device {
         polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
     }
 
+    /// Whether this program has opened the device, so that it can open it again.
+    pub(super) fn is_opened_here(&self) -> bool {
+        #[cfg(feature = "cli")]
+        return self.opened.is_some();
+        #[cfg(not(feature = "cli"))]
+        false
+    }
+
     /// Forgets a reported error. A loss stays.
     pub(super) fn forget_reported(&self) {
         if let Ok(mut slot) = self.trouble.lock()

@@ -22,15 +22,15 @@ use crate::scene::Assets;
 /// A question to a device.
 pub struct Pick {
     device: Arc<Device>,
-    later: Background<Result<Asked, RenderError>>,
+    task: Background<Result<Asked, RenderError>>,
     asked: Option<Asked>,
 }
 
 impl Pick {
-    pub(super) fn new(device: Arc<Device>, later: Background<Result<Asked, RenderError>>) -> Self {
+    pub(super) fn new(device: Arc<Device>, task: Background<Result<Asked, RenderError>>) -> Self {
         Self {
             device,
-            later,
+            task,
             asked: None,
         }
     }
@@ -42,7 +42,7 @@ impl Pick {
     pub fn poll(&mut self) -> Result<Option<Picked>, RenderError> {
         self.device.check()?;
         if self.asked.is_none() {
-            let asked = self.later.poll();
+            let asked = self.task.poll();
             self.asked = asked
                 .map_err(|Panicked| RenderError::Panicked)?
                 .transpose()?;

@@ -97,6 +97,11 @@ impl Renderer {
         assets: &Assets,
         extras: Extras,
     ) -> Result<Work, RenderError> {
+        // It may be an error of the host, and the device still works. Only here: a work under way
+        // must not miss its own error because another plan is set or a pixel is picked.
+        if !self.device.is_opened_here() {
+            self.device.forget_reported();
+        }
         self.reopen_if_lost()?;
         let mut work = Work::new(self.shared.clone(), extras);
         let kept = self.shared.reusable.lock();
@@ -130,7 +135,7 @@ impl Renderer {
         assets: &Assets,
         held: Option<Needs>,
     ) -> Result<(), RenderError> {
-        let order = FrameRequest {
+        let request = FrameRequest {
             plan: plan.lean(work.extras()).into_owned(),
             assets: assets.clone(),
             extras: work.extras(),
@@ -139,10 +144,10 @@ impl Renderer {
             held,
             shared: self.shared.clone(),
         };
-        if let Some(inputs) = order.at_once()? {
+        if let Some(inputs) = request.at_once()? {
             return work.start(inputs);
         }
-        let prepare = move |told: &_| order.prepare(told);
+        let prepare = move |told: &_| request.prepare(told);
         work.start_when_ready(Background::start(
             &mut self.threads,
             "heights, maps and programs",
@@ -167,13 +172,11 @@ impl Renderer {
 
     fn reopen_if_lost(&mut self) -> Result<(), RenderError> {
         #[cfg(feature = "cli")]
-        if self.device.check().is_err() && self.device.opened.is_some() {
+        if self.device.check().is_err() && self.device.is_opened_here() {
             let fresh = Self::new(self.device.reopen()?);
             self.device = fresh.device;
             self.shared = fresh.shared;
         }
-        // It may be an error of the host, and the device still works.
-        self.device.forget_reported();
         Ok(self.device.check()?)
     }
 

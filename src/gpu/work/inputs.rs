@@ -1,7 +1,7 @@
 //! What a frame needs before its first submission: assets, programs, and arrays on the device.
 //!
-//! An [`FrameRequest`] becomes an [`FrameInputs`] at once if everything is known from frames before, else on a
-//! thread.
+//! If earlier frames have left everything that a [`FrameRequest`] needs, it becomes [`FrameInputs`]
+//! at once. Otherwise a thread prepares them.
 
 use std::sync::{Arc, PoisonError};
 
