@@ -9,7 +9,7 @@ use glam::{DVec3, DVec4, Vec4};
 
 use crate::base::key::{Key, number};
 use crate::base::shader::Module;
-use crate::formula::contract::{Bounds, DistanceEstimate};
+use crate::formula::contract::{Bounds, DistanceEstimate, Evaluate, Evaluator};
 use crate::{settings, wgsl};
 
 /// The solids as WGSL reads them.
@@ -67,7 +67,7 @@ impl DistanceEstimate for Balls {
     }
 
     fn modules(&self) -> Vec<Module> {
-        vec![wgsl!("formula/balls.wgsl")]
+        vec![wgsl!("formula/balls.wgsl"), wgsl!("formula/plain.wgsl")]
     }
 
     fn uniforms(&self, _iterations: u32) -> Vec<(&'static str, Vec<u8>)> {
@@ -83,18 +83,8 @@ impl DistanceEstimate for Balls {
         vec![("balls_parameters", bytes_of(&solids).to_vec())]
     }
 
-    fn estimate(&self, p: DVec3, _most: u32) -> (f64, u32) {
-        let [balls @ .., box0, box1, rod] = self.solids();
-        let mut d = f64::INFINITY;
-        for s in balls {
-            d = d.min((p - s.truncate()).length() - s.w);
-        }
-        for s in [box0, box1] {
-            let q = (p - s.truncate()).abs() - DVec3::splat(s.w);
-            d = d.min(q.max(DVec3::ZERO).length() + q.max_element().min(0.0));
-        }
-        let nearest = DVec3::new(rod.x, rod.y, p.z.clamp(-rod.z, rod.z));
-        (d.min((p - nearest).length() - rod.w), 1)
+    fn evaluator(&self) -> Evaluator {
+        Evaluator::new(self.clone())
     }
 
     fn trap(&self, p: DVec3, _most: u32) -> DVec3 {
@@ -111,5 +101,21 @@ impl DistanceEstimate for Balls {
 
     fn iterations(&self, _eps: f64) -> u32 {
         1
+    }
+}
+
+impl Evaluate for Balls {
+    fn value(&self, p: DVec3, _most: u32) -> (f64, u32) {
+        let [balls @ .., box0, box1, rod] = self.solids();
+        let mut d = f64::INFINITY;
+        for s in balls {
+            d = d.min((p - s.truncate()).length() - s.w);
+        }
+        for s in [box0, box1] {
+            let q = (p - s.truncate()).abs() - DVec3::splat(s.w);
+            d = d.min(q.max(DVec3::ZERO).length() + q.max_element().min(0.0));
+        }
+        let nearest = DVec3::new(rod.x, rod.y, p.z.clamp(-rod.z, rod.z));
+        (d.min((p - nearest).length() - rod.w), 1)
     }
 }

@@ -1,5 +1,9 @@
 //! The trait of all formulas, and the region that holds a shape.
 
+use std::fmt;
+use std::ops::Deref;
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::base::key::{Fault, Key};
@@ -41,8 +45,77 @@ impl Bounds {
     }
 }
 
+/// What an evaluation tells about a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// The estimate of the distance. It decides hits and normals, and depends on the point alone.
+    pub value: f64,
+    /// The radius of a ball about the point. What it holds depends on what was asked.
+    pub radius: f64,
+    /// Iterations that it took.
+    pub iterations: u32,
+}
+
+/// A formula with its parameters resolved, ready for many points. Points are given with an
+/// iteration limit.
+pub trait Evaluate: Send + Sync {
+    /// The estimate at a point, and the number of iterations. Inside the shape the estimate is at
+    /// most 0.
+    fn value(&self, p: DVec3, most: u32) -> (f64, u32);
+
+    /// The Lipschitz constant: a bound of the estimate's slope.
+    fn lipschitz(&self) -> f64 {
+        1.0
+    }
+
+    /// For steps of rays: a ball in which the estimate should exceed `clear`.
+    fn step(&self, p: DVec3, most: u32, clear: f64) -> Reading {
+        let (value, iterations) = self.value(p, most);
+        Reading {
+            value,
+            radius: (value - clear) / self.lipschitz(),
+            iterations,
+        }
+    }
+
+    /// For cones: an empty ball, of which at most `trial` is tried.
+    fn cone(&self, p: DVec3, most: u32, trial: f64) -> Reading {
+        self.ball(p, most, trial)
+    }
+
+    /// For steps that need a proof: an empty ball. A proof may need to know how large a ball is
+    /// tried; then the radius is at most `trial`.
+    fn ball(&self, p: DVec3, most: u32, _trial: f64) -> Reading {
+        self.step(p, most, 0.0)
+    }
+}
+
+/// A shared evaluator.
+#[derive(Clone)]
+pub struct Evaluator(Arc<dyn Evaluate>);
+
+impl Evaluator {
+    /// Shares an evaluator.
+    pub fn new(of: impl Evaluate + 'static) -> Self {
+        Self(Arc::new(of))
+    }
+}
+
+impl Deref for Evaluator {
+    type Target = dyn Evaluate;
+    fn deref(&self) -> &Self::Target {
+        &*self.0
+    }
+}
+
+impl fmt::Debug for Evaluator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Evaluator").finish_non_exhaustive()
+    }
+}
+
 /// A shape given by an estimate of the distance to it. Its WGSL twin has the functions
-/// `formula_load`, `estimate` and `trap`.
+/// `formula_load`, `estimate`, `estimate_step`, `estimate_ball` and `trap`.
 pub trait DistanceEstimate {
     /// Name in presets, and of the two files.
     fn name(&self) -> &'static str;
@@ -62,9 +135,13 @@ pub trait DistanceEstimate {
     /// estimate.
     fn uniforms(&self, iterations: u32) -> Vec<(&'static str, Vec<u8>)>;
 
-    /// The estimate of the distance at a point after at most `most` iterations, and the number
-    /// of iterations. Inside the shape the estimate is at most 0.
-    fn estimate(&self, p: DVec3, most: u32) -> (f64, u32);
+    /// Resolves the parameters.
+    fn evaluator(&self) -> Evaluator;
+
+    /// The estimate of the distance at one point; see [`Evaluate::value`].
+    fn estimate(&self, p: DVec3, most: u32) -> (f64, u32) {
+        self.evaluator().value(p, most)
+    }
 
     /// Three orbit traps from 0 to 1, which pick the colour: how near the orbit of a point
     /// comes to three sets.

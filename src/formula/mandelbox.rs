@@ -6,14 +6,18 @@
 //! so steps divide by a *Lipschitz constant*: a bound of the estimate's slope.
 //! Twin: `wgsl/formula/mandelbox.wgsl`.
 
-use bytemuck::{Pod, Zeroable, bytes_of};
-use glam::{DVec3, Vec3};
+use bytemuck::bytes_of;
+use glam::DVec3;
 
 use crate::base::key::{Fault, Key, auto_number, number, switch, triple, word};
 use crate::base::named::named_enum;
 use crate::base::shader::Module;
-use crate::formula::contract::{Bounds, DistanceEstimate};
+use crate::formula::contract::{Bounds, DistanceEstimate, Evaluator};
+use crate::formula::folds::Folds;
+use crate::formula::julia::Julia;
+use crate::formula::orbit::{Orbits, ROTATED_SLOPE};
 use crate::formula::rotation::Rotation;
+use crate::formula::scalar::Scalar;
 use crate::{settings, wgsl};
 
 /// 2 sqrt(3). A box fold moves a point by at most this times the fold limit.
@@ -23,37 +27,13 @@ const TWO_SQRT_3: f64 = 3.464_101_615_137_754_6;
 /// estimate lower: at 5 by some per cent.
 const BAIL_FACTOR: f64 = 20.0;
 
-/// The parameters as WGSL reads them.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct MandelboxUniform {
-    /// The added constant in Julia mode.
-    pub julia: Vec3,
-    /// s.
-    pub scale: f32,
-    /// L.
-    pub fold_limit: f32,
-    /// Squared min radius.
-    pub min2: f32,
-    /// Squared fixed radius.
-    pub fixed2: f32,
-    /// The orbit has escaped where |z|^2 exceeds this.
-    pub bail2: f32,
-    /// K for c = 0: 2 sqrt(3) L |s| / (|s| - 1).
-    pub k_at_zero: f32,
-    /// 1 / (|s| - 1).
-    pub tail: f32,
-    /// |s - 1|.
-    pub classic_offset: f32,
-    /// |s|^(1 - iterations).
-    pub classic_skin: f32,
-}
-
 named_enum! {
     /// A distance estimate.
     pub enum Estimate {
-        /// `(|z| - K) / (w + 1/(|s| - 1))`: a lower bound of the limit of `|z|/w`.
-        Proven = "proven",
+        /// The sharpest one, which follows the Jacobian of the first iterations.
+        Tight = "tight",
+        /// `(|z| - K) / (w + 1/(|s| - 1))`: one growth factor w for all directions.
+        Scalar = "scalar",
         /// `(|z| - |s - 1|)/w - |s|^(1 - N)`: the form of other programs, for comparison. It
         /// is too large at up to 8 % of points.
         Classic = "classic",
@@ -71,7 +51,7 @@ settings! {
             "rotation about x, then y, then z in degrees, between the folds and the scale" => Program;
         julia: bool = false, switch(), "whether each iteration adds julia_constant instead of the starting point" => Program;
         julia_constant: DVec3 = DVec3::ZERO, triple(-1e3, 1e3), "the constant that each iteration adds if julia is true";
-        estimate: Estimate = Estimate::Proven, word(&Estimate::WORDS), "the distance estimate: the proven one, or for comparison the classic one of other programs" => Program;
+        estimate: Estimate = Estimate::Tight, word(&Estimate::WORDS), "the distance estimate: the sharpest one, or for comparison the one with a scalar growth factor or the classic one of other programs" => Program;
         lipschitz: Option<f64> = None, auto_number(0.05, 100.0),
             "Lipschitz constant, the largest change of the estimate per unit of distance; steps are divided by it; auto is the formula's own";
     }
@@ -101,23 +81,22 @@ impl Mandelbox {
         }
     }
 
-    fn bail2(&self) -> f64 {
+    /// The resolved numbers.
+    fn folds(&self) -> Folds {
         let k = self.k(self.largest_c());
-        (BAIL_FACTOR * k).powi(2)
-    }
-
-    fn box_fold(&self, z: DVec3) -> DVec3 {
-        let limit = DVec3::splat(self.fold_limit);
-        2.0 * z.clamp(-limit, limit) - z
-    }
-
-    /// The squares of the ball fold's radii.
-    fn radii2(&self) -> (f64, f64) {
-        (self.min_radius.powi(2), self.fixed_radius.powi(2))
-    }
-
-    fn classic_skin(&self, iterations: u32) -> f64 {
-        self.scale.abs().powf(1.0 - f64::from(iterations))
+        Folds {
+            julia: self.julia_constant,
+            rotation: self.rotated(),
+            scale: self.scale,
+            fold_limit: self.fold_limit,
+            radii: [self.min_radius, self.fixed_radius],
+            lipschitz: self.lipschitz(),
+            bail2: (BAIL_FACTOR * k).powi(2),
+            tail: self.tail(),
+            k_at_zero: self.k(0.0),
+            lead: 2.0 * self.fold_limit * self.scale.abs() * self.tail(),
+            kappa: 1.0 / (self.scale + 1.0),
+        }
     }
 }
 
@@ -145,93 +124,56 @@ impl DistanceEstimate for Mandelbox {
     }
 
     fn modules(&self) -> Vec<Module> {
-        let classic = self.estimate == Estimate::Classic;
-        vec![
-            wgsl!(
-                "formula/mandelbox.wgsl",
-                "MANDELBOX_JULIA" = f64::from(u8::from(self.julia)),
-                "MANDELBOX_CLASSIC" = f64::from(u8::from(classic))
-            ),
+        let julia = f64::from(u8::from(self.julia));
+        let mut all = vec![
+            wgsl!("formula/folds.wgsl", "FOLDS_JULIA" = julia),
             Rotation::module(self.rotated().as_ref()),
-        ]
+        ];
+        all.extend(match (self.estimate, self.julia) {
+            (Estimate::Tight, false) => vec![
+                wgsl!("formula/orbit.wgsl", "ORBIT_ROTATED_SLOPE" = ROTATED_SLOPE),
+                Rotation::jacobian(self.rotated().as_ref()),
+            ],
+            (Estimate::Tight, true) => vec![wgsl!("formula/julia.wgsl")],
+            (other, _) => {
+                let classic = f64::from(u8::from(other == Estimate::Classic));
+                vec![
+                    wgsl!("formula/scalar.wgsl", "SCALAR_CLASSIC" = classic),
+                    wgsl!("formula/plain.wgsl"),
+                ]
+            }
+        });
+        all
     }
 
     fn uniforms(&self, iterations: u32) -> Vec<(&'static str, Vec<u8>)> {
-        let (min2, fixed2) = self.radii2();
-        let folds = MandelboxUniform {
-            julia: self.julia_constant.as_vec3(),
-            scale: self.scale as f32,
-            fold_limit: self.fold_limit as f32,
-            min2: min2 as f32,
-            fixed2: fixed2 as f32,
-            bail2: self.bail2() as f32,
-            k_at_zero: self.k(0.0) as f32,
-            tail: self.tail() as f32,
-            classic_offset: (self.scale - 1.0).abs() as f32,
-            classic_skin: self.classic_skin(iterations) as f32,
-        };
-        let rows = Rotation::uniform(self.rotated().as_ref());
+        let folds = self.folds();
+        let rows = Rotation::uniform(folds.rotation.as_ref());
         vec![
-            ("mandelbox_parameters", bytes_of(&folds).to_vec()),
+            (
+                "folds_parameters",
+                bytes_of(&folds.uniform(iterations)).to_vec(),
+            ),
             ("rotation_parameters", bytes_of(&rows).to_vec()),
         ]
     }
 
-    fn estimate(&self, p: DVec3, most: u32) -> (f64, u32) {
-        let rotation = self.rotated();
-        let (c, gain) = if self.julia {
-            (self.julia_constant, 0.0)
-        } else {
-            (p, 1.0)
-        };
-        let (bail2, (low, high)) = (self.bail2(), self.radii2());
-        let (mut z, mut w, mut n) = (p, 1.0_f64, 0);
-        while n < most && z.length_squared() <= bail2 {
-            let b = self.box_fold(z);
-            let m = high / b.length_squared().clamp(low, high);
-            let turned = rotation.as_ref().map_or(b, |r| r.rotate(b));
-            z = self.scale * (m * turned) + c;
-            // Kept finite. The estimate is zero in f64 long before this limit.
-            w = (self.scale.abs() * m * w + gain).min(1e300);
-            n += 1;
+    fn evaluator(&self) -> Evaluator {
+        let (folds, julia) = (self.folds(), self.julia);
+        match (self.estimate, julia) {
+            (Estimate::Tight, false) => Evaluator::new(Orbits(folds)),
+            (Estimate::Tight, true) => Evaluator::new(Julia(folds)),
+            (other, _) => Evaluator::new(Scalar {
+                folds,
+                julia,
+                classic: other == Estimate::Classic,
+            }),
         }
-        let d = match self.estimate {
-            Estimate::Classic => {
-                (z.length() - (self.scale - 1.0).abs()) / w - self.classic_skin(most)
-            }
-            Estimate::Proven => {
-                let tail = if self.julia { 0.0 } else { self.tail() };
-                (z.length() - self.k(c.length())) / (w + tail)
-            }
-        };
-        (d, n)
     }
 
     fn trap(&self, p: DVec3, most: u32) -> DVec3 {
-        let rotation = self.rotated();
         let c = if self.julia { self.julia_constant } else { p };
-        let (bail2, (low, high)) = (self.bail2(), self.radii2());
-        let (mut origin, mut plane, mut sphere) = (1e10_f64, 1e10_f64, 1e10_f64);
-        let mut z = p;
-        // Later iterations only add noise to the colour.
-        for _ in 0..most.min(10) {
-            if z.length_squared() > bail2 {
-                break;
-            }
-            let b = self.box_fold(z);
-            let b2 = b.length_squared();
-            origin = origin.min(b2);
-            plane = plane.min(b.abs().min_element());
-            sphere = sphere.min((b2 - high).abs());
-            let turned = rotation.as_ref().map_or(b, |r| r.rotate(b));
-            z = self.scale * high / b2.clamp(low, high) * turned + c;
-        }
-        let size = self.fold_limit;
-        DVec3::new(
-            origin.sqrt() / (origin.sqrt() + size),
-            plane / (plane + 0.25 * size),
-            sphere / (sphere + high),
-        )
+        self.folds().trap(p, c, most)
     }
 
     fn lipschitz(&self) -> f64 {

@@ -1,6 +1,7 @@
 //! Formulas: shapes given by an estimate of the distance to them.
 //!
-//! - [`mandelbox`]: the Mandelbox, and its Julia sets
+//! - [`mandelbox`]: the Mandelbox, and its Julia sets; `folds`: one iteration; `orbit`, `julia`
+//!   and `scalar`: its estimates
 //! - [`balls`]: balls, boxes and a rod, for tests
 //! - [`rotation`]: a rotation between folds
 //! - `contract`: [`DistanceEstimate`], what a scene asks a formula
@@ -10,10 +11,14 @@
 
 pub mod balls;
 mod contract;
+mod folds;
+mod julia;
 pub mod mandelbox;
+mod orbit;
 pub mod rotation;
+mod scalar;
 
-pub use contract::{Bounds, DistanceEstimate};
+pub use contract::{Bounds, DistanceEstimate, Evaluate, Evaluator, Reading};
 
 /// Makes the enum of all formulas from one list: module and type of each.
 macro_rules! formulas {

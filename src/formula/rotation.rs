@@ -49,8 +49,16 @@ impl Rotation {
     /// The WGSL module of a rotation, or of none.
     pub fn module(rotation: Option<&Self>) -> Module {
         match rotation {
-            Some(_) => wgsl!("formula/rotation.wgsl").neutral(),
+            Some(_) => wgsl!("formula/rotation.wgsl"),
             None => wgsl!("formula/rotation_off.wgsl"),
+        }
+    }
+
+    /// The WGSL module of the Jacobian of an orbit with a rotation, or without.
+    pub fn jacobian(rotation: Option<&Self>) -> Module {
+        match rotation {
+            Some(_) => wgsl!("formula/jacobian.wgsl"),
+            None => wgsl!("formula/jacobian_diagonal.wgsl"),
         }
     }
 

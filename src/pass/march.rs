@@ -4,7 +4,7 @@
 
 use crate::base::outcome::Counts;
 use crate::base::view::Beam;
-use crate::scene::Solid;
+use crate::scene::{Advance, Solid};
 
 /// Why a cone ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,16 +25,15 @@ pub fn march<S: Solid>(
     limit: u32,
     work: &mut Counts,
 ) -> (f64, Ended) {
-    let mut f = front;
+    let mut at = Advance::at(front, true);
     for _ in 0..limit {
-        let next = solid.advance(cone, f, work);
-        f = next.front;
-        if f > solid.bounds_far() {
-            return (f, Ended::Sky);
+        at = solid.advance(cone, at, work);
+        if at.front > solid.bounds_far() {
+            return (at.front, Ended::Sky);
         }
-        if !next.going {
-            return (f, Ended::Stopped);
+        if !at.going {
+            return (at.front, Ended::Stopped);
         }
     }
-    (f, Ended::Limited)
+    (at.front, Ended::Limited)
 }

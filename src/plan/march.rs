@@ -18,6 +18,8 @@ pub struct Facts {
     cones: Option<ConeRule>,
     /// Whether steps keep the shell of `march.shell`.
     shell: bool,
+    /// Whether rays go by proven balls, as cones do.
+    proven: bool,
     /// Whether rays are relaxed as `march.relaxation` says.
     relaxed: bool,
     /// The factor on ray steps where `march.stride` is `"auto"`.
@@ -29,6 +31,7 @@ pub struct Facts {
 const SAFE: Facts = Facts {
     cones: Some(ConeRule::Exact),
     shell: true,
+    proven: false,
     relaxed: true,
     stride: 1.0,
     budget: None,
@@ -54,6 +57,8 @@ named_enum! {
         /// Exact cones at full width, relaxed rays.
         #[default]
         Safe = "safe" => SAFE,
+        /// As safe, and no step of a ray is longer than a proof allows.
+        Proven = "proven" => Facts { proven: true, ..SAFE },
         /// Exact cones, narrowed by the factors that a calibration found.
         Calibrated = "calibrated" => SAFE,
         /// The slides' rule. 128 steps are split evenly over all passes.
@@ -182,6 +187,7 @@ impl Marching {
             relaxation: relaxation.unwrap_or(Relaxation::Off),
             stride: self.stride(),
             clip: self.clip.unwrap_or(facts.cones.is_some()),
+            proven: facts.proven,
             rule: facts.cones.unwrap_or_default(),
         }
     }

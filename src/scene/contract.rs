@@ -8,13 +8,29 @@ pub use crate::base::outcome::Step;
 use crate::base::shader::Module;
 use crate::base::view::Beam;
 
-/// The result of one step of a cone.
+/// A cone between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Advance {
-    /// The new front: the distance up to which every ray of the cone is proven free.
+    /// Every ray of the cone is proven free up to here.
     pub front: f64,
+    /// Where the next sample is taken; not below the front.
+    pub sample: f64,
+    /// The radius of the last ball; 0 before the first.
+    pub radius: f64,
     /// Whether another step is worth its cost.
     pub going: bool,
+}
+
+impl Advance {
+    /// A cone at a front, with nothing known about what is ahead.
+    pub fn at(front: f64, going: bool) -> Self {
+        Self {
+            front,
+            sample: front,
+            radius: 0.0,
+            going,
+        }
+    }
 }
 
 /// Where a ray met the scene.
@@ -45,7 +61,7 @@ pub trait Solid: Sync {
     type Walk: Copy;
 
     /// One step of a cone. The new front is never below the old one.
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Counts) -> Advance;
+    fn advance(&self, cone: &Beam, at: Advance, work: &mut Counts) -> Advance;
 
     /// Starts a ray at a proven front. It ends at `t_max` at the latest.
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Counts) -> Self::Walk;

@@ -14,7 +14,7 @@ use crate::base::cone::ConeRule;
 use crate::base::outcome::Counts;
 use crate::base::shader::Module;
 use crate::base::view::{Beam, footprint};
-use crate::formula::{Bounds, Formula};
+use crate::formula::{Bounds, Evaluator, Formula, Reading};
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::wgsl;
 
@@ -23,6 +23,12 @@ use crate::wgsl;
 /// that rays would hit. At 0.3 some pixels start behind the surface, at 0.8 none does on the
 /// five bench presets.
 const DISTANCE_ENOUGH: f64 = 0.8;
+/// How far ahead of its front a cone takes the next sample, in parts of its last gain.
+const DISTANCE_AHEAD: f64 = 0.0;
+/// The ball that is tried, in radii of the last one. From 1.25 to 1.7 this makes no difference.
+const DISTANCE_TRIAL: f64 = 1.5;
+/// The least step of a ray, in hit thresholds.
+const DISTANCE_LEAST: f64 = 0.1;
 /// Weight of the newest slope in the automatic relaxation.
 const DISTANCE_SMOOTHING: f64 = 0.3;
 /// Where a clipped ray starts, in hit thresholds from the bounds. At 1 the first sample
@@ -52,8 +58,6 @@ pub struct DistanceUniform {
     pub half: Vec3,
     /// Nothing is farther from the eye.
     pub far: f32,
-    /// The Lipschitz constant. Steps divide by it.
-    pub lipschitz: f32,
     /// Share of the hit threshold that steps keep clear of.
     pub shell: f32,
     /// 0 automatic, 1 off, else a factor.
@@ -68,6 +72,8 @@ pub struct DistanceUniform {
     pub pad0: u32,
     /// Unused.
     pub pad1: u32,
+    /// Unused.
+    pub pad2: u32,
 }
 
 /// How rays stretch their steps.
@@ -108,13 +114,16 @@ pub struct Stepping {
     pub rule: ConeRule,
     /// Whether rays start where they enter the bounds.
     pub clip: bool,
+    /// Whether rays go by proven balls, as cones do.
+    pub proven: bool,
 }
 
 /// A formula seen from an eye, with all settings resolved to numbers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Distance {
     /// The formula.
     pub formula: Formula,
+    evaluator: Evaluator,
     /// Its iteration limit.
     pub iterations: u32,
     /// Camera position.
@@ -137,6 +146,7 @@ impl Distance {
             bounds,
             lipschitz: formula.lipschitz(),
             far: bounds.farthest(eye),
+            evaluator: formula.evaluator(),
             formula,
         }
     }
@@ -146,25 +156,45 @@ impl Distance {
         self.stepping.detail * footprint(beam, t)
     }
 
-    fn estimate_at(&self, q: DVec3, work: &mut Counts) -> f64 {
-        let (d, n) = self.formula.estimate(self.eye + q, self.iterations);
+    /// Adds the cost of an evaluation, and widens it by the distance to the bounds. Inside the
+    /// bounds the value may be negative: the gradient needs it.
+    fn read(&self, q: DVec3, reading: Reading, clear: f64, work: &mut Counts) -> (f64, f64) {
         work.evaluations += 1;
-        work.iterations += n;
-        d
+        work.iterations += reading.iterations;
+        let outside = self.bounds.distance(self.eye + q);
+        let value = match outside > 0.0 {
+            true => reading.value.max(outside),
+            false => reading.value,
+        };
+        (value, reading.radius.max(outside - clear))
     }
 
-    /// The value of the field, and the radius of a ball in which it exceeds `clear`. Inside the
-    /// bounds the value may be negative: the gradient needs it.
-    fn field(&self, q: DVec3, clear: f64, work: &mut Counts) -> (f64, f64) {
-        let outside = self.bounds.distance(self.eye + q);
-        let inside = self.estimate_at(q, work);
-        let ball = ((inside - clear) / self.lipschitz).max(outside - clear);
-        let value = if outside > 0.0 {
-            inside.max(outside)
-        } else {
-            inside
+    /// The value of the field.
+    fn value(&self, q: DVec3) -> f64 {
+        let (value, iterations) = self.evaluator.value(self.eye + q, self.iterations);
+        let reading = Reading {
+            value,
+            radius: 0.0,
+            iterations,
         };
-        (value, ball)
+        self.read(q, reading, 0.0, &mut Counts::default()).0
+    }
+
+    /// The value of the field, and the radius of a ball in which it should exceed `clear`. Where
+    /// rays go by proven balls, the ball is empty, but at most `trial` is tried.
+    fn field(&self, q: DVec3, clear: f64, trial: f64, work: &mut Counts) -> (f64, f64) {
+        let (p, most) = (self.eye + q, self.iterations);
+        let reading = match self.stepping.proven {
+            true => {
+                let ball = self.evaluator.ball(p, most, trial);
+                Reading {
+                    radius: ball.radius - clear,
+                    ..ball
+                }
+            }
+            false => self.evaluator.step(p, most, clear),
+        };
+        self.read(q, reading, clear, work)
     }
 
     /// The part of a ray, as (near, far), that is nearer to the bounds than
@@ -210,6 +240,10 @@ impl Twin for Distance {
             wgsl!(
                 "scene/distance.wgsl",
                 "DISTANCE_ENOUGH" = DISTANCE_ENOUGH,
+                "DISTANCE_AHEAD" = DISTANCE_AHEAD,
+                "DISTANCE_TRIAL" = DISTANCE_TRIAL,
+                "DISTANCE_LEAST" = DISTANCE_LEAST,
+                "DISTANCE_PROVEN" = f64::from(u8::from(self.stepping.proven)),
                 "DISTANCE_SMOOTHING" = DISTANCE_SMOOTHING,
                 "DISTANCE_MOST_RELAXED" = DISTANCE_MOST_RELAXED,
                 "DISTANCE_WITHIN" = DISTANCE_WITHIN,
@@ -229,7 +263,6 @@ impl Twin for Distance {
             half: self.bounds.half.as_vec3(),
             // Rounded up: the farthest corner must not lie beyond it.
             far: (self.far * (1.0 + 1e-6)) as f32,
-            lipschitz: self.lipschitz as f32,
             shell: self.stepping.shell as f32,
             relaxation: self.stepping.relaxation.code() as f32,
             stride: self.stepping.stride as f32,
@@ -263,6 +296,8 @@ pub struct Walk {
     pace: f64,
     /// The smoothed slope of the radius.
     slope: f64,
+    /// The value of the field there: a smooth guess of the free room.
+    room: f64,
     /// Where the ray ends.
     end: f64,
 }
@@ -270,20 +305,35 @@ pub struct Walk {
 impl Solid for Distance {
     type Walk = Walk;
 
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Counts) -> Advance {
-        let q = cone.at(front);
-        let shell = self.stepping.shell * self.threshold(cone, front);
+    fn advance(&self, cone: &Beam, at: Advance, work: &mut Counts) -> Advance {
+        let t = at.sample;
+        let q = cone.at(t);
+        let eps = self.threshold(cone, t);
+        let shell = self.stepping.shell * eps;
         let mut d = self.bounds.distance(self.eye + q) - cone.r0 - shell;
         // Far from the bounds their distance is enough.
-        if d <= 2.0 * cone.k * front {
-            let e = (self.estimate_at(q, work) - shell) / self.lipschitz;
-            d = d.max(e - cone.r0);
+        if d <= 2.0 * cone.k * t {
+            let trial = match at.radius > 0.0 {
+                true => DISTANCE_TRIAL * at.radius,
+                false => 4.0 * cone.k * t,
+            };
+            let ball = self
+                .evaluator
+                .cone(self.eye + q, self.iterations, trial + 2.0 * eps);
+            work.evaluations += 1;
+            work.iterations += ball.iterations;
+            d = d.max(ball.radius - shell - cone.r0);
         }
-        let next = self.stepping.rule.cone_front(front, front, d, cone.k);
+        let front = self.stepping.rule.cone_front(at.front, t, d, cone.k);
+        let gain = front - at.front;
+        // After a short gain, or without a ball, the four thinner children go on.
+        let pays = gain > DISTANCE_ENOUGH * d.max(0.0);
         Advance {
-            front: next,
-            // After a short gain, or without a ball, the four thinner children go on.
-            going: next - front > DISTANCE_ENOUGH * d.max(0.0),
+            front,
+            // A sample ahead that gains little is taken again at the front.
+            sample: front + if pays { DISTANCE_AHEAD * gain } else { 0.0 },
+            radius: d.max(0.0),
+            going: pays || t > at.front,
         }
     }
 
@@ -295,6 +345,7 @@ impl Solid for Distance {
             radius: 0.0,
             pace: 0.0,
             slope: -1.0,
+            room: 0.0,
             end: if near > far { -1.0 } else { far.min(t_max) },
         }
     }
@@ -307,8 +358,15 @@ impl Solid for Distance {
         let t = (w.t + w.pace).min(w.end);
         let gone = t - w.t;
         let eps = self.threshold(ray, t);
-        let (value, ball) = self.field(ray.at(t), self.stepping.shell * eps, work);
-        let radius = ball * self.stepping.stride;
+        let clear = self.stepping.shell * eps;
+        let trial = DISTANCE_TRIAL * w.radius + 2.0 * eps;
+        let (value, ball) = self.field(ray.at(t), clear, trial, work);
+        // Near a fold the ball may be tiny, and rays would creep.
+        let least = match self.stepping.proven {
+            true => (ball + clear).min(DISTANCE_LEAST * eps),
+            false => DISTANCE_LEAST * eps,
+        };
+        let radius = ball.max(least) * self.stepping.stride;
         // Only a stretched step can leave a gap. Any other difference is rounding.
         if w.pace > w.radius && gone > w.radius + radius.max(0.0) {
             walk.pace = w.radius;
@@ -331,6 +389,7 @@ impl Solid for Distance {
             }
         };
         walk.radius = radius;
+        walk.room = value;
         walk.pace = radius * factor;
         Step::Moving
     }
@@ -343,11 +402,16 @@ impl Solid for Distance {
     }
 
     fn walk_radius(&self, _ray: &Beam, walk: &Walk) -> f64 {
-        walk.radius
+        walk.room
     }
 
     fn clearance(&self, q: DVec3) -> f64 {
-        self.field(q, 0.0, &mut Counts::default()).1.max(0.0)
+        let trial = self.far;
+        self.field(q, 0.0, trial, &mut Counts::default()).1.max(0.0)
+    }
+
+    fn room(&self, q: DVec3) -> f64 {
+        self.value(q).max(0.0)
     }
 
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface {
@@ -360,11 +424,7 @@ impl Solid for Distance {
             DVec3::new(-1.0, 1.0, -1.0),
             DVec3::new(1.0, 1.0, 1.0),
         ];
-        let work = &mut Counts::default();
-        let g: DVec3 = corners
-            .iter()
-            .map(|&c| c * self.field(q + h * c, 0.0, work).0)
-            .sum();
+        let g: DVec3 = corners.iter().map(|&c| c * self.value(q + h * c)).sum();
         Surface {
             // A point without a gradient faces the viewer.
             normal: if g.length() > DISTANCE_FLAT {

@@ -250,8 +250,9 @@ impl Twin for Heightfield {
 impl Solid for Heightfield {
     type Walk = Trace;
 
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Counts) -> Advance {
-        let free_to = |front| Advance { front, going: true };
+    fn advance(&self, cone: &Beam, at: Advance, work: &mut Counts) -> Advance {
+        let free_to = |front| Advance::at(front, true);
+        let front = at.front;
         let ray = self.local(cone);
         let here = ray.at(front);
         let away = self.made.placement.distance(here) - cone.r0;
@@ -273,10 +274,7 @@ impl Solid for Heightfield {
                 break;
             }
         }
-        Advance {
-            front: front.max(carried),
-            going: false,
-        }
+        Advance::at(front.max(carried), false)
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Counts) -> Trace {

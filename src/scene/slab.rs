@@ -158,14 +158,12 @@ pub struct Walk {
 impl Solid for Slab {
     type Walk = Walk;
 
-    fn advance(&self, cone: &Beam, front: f64, work: &mut Counts) -> Advance {
+    fn advance(&self, cone: &Beam, at: Advance, work: &mut Counts) -> Advance {
+        let front = at.front;
         work.evaluations += 1;
         let d = self.slab_distance(cone.at(front)) - cone.r0;
         let next = self.rule.cone_front(front, front, d, cone.k);
-        Advance {
-            front: next,
-            going: next > front,
-        }
+        Advance::at(next, next > front)
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, work: &mut Counts) -> Walk {

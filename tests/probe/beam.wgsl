@@ -4,7 +4,7 @@
 fn answer(q: Numbers) -> Numbers {
     scene_load();
     let beam = Beam(q.a.xyz, q.b.xyz, q.c.x, q.b.w, 0.0, q.c.y);
-    let next = advance(beam, q.a.w);
+    let next = advance(beam, advance_at(q.a.w, true));
     var walk = begin(beam, q.a.w, q.c.z);
     var s = STATE_MOVING;
     for (var i = 0u; i < u32(q.c.w) && s == STATE_MOVING; i++) {

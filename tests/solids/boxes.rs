@@ -62,8 +62,10 @@ fn the_estimate_grows_with_iterations_and_never_passes_the_converged_value() {
     let random = &mut Random::new(12);
     let mut escaped = 0;
     for _ in 0..3000 {
-        let m = random_box(random);
+        let mut m = random_box(random);
         let p = random_point(&m, random);
+        let tight = m.evaluator();
+        m.estimate = Estimate::Scalar;
         let end = converged(&m, p);
         escaped += u32::from(end > 0.0);
         let noise = 1e-9 * (1.0 + end);
@@ -73,6 +75,13 @@ fn the_estimate_grows_with_iterations_and_never_passes_the_converged_value() {
             assert!(spent <= n);
             assert!(d >= last - noise, "{d} after {last} at {n}, {m:?} {p}");
             assert!(d <= end + noise, "{d} above {end} at {n}, {m:?} {p}");
+            last = d;
+        }
+        // The sharper one is never lower.
+        let mut last = f64::NEG_INFINITY;
+        for n in 3..40 {
+            let (d, _) = tight.value(p, n);
+            assert!(d >= last - noise, "{d} after {last} at {n}, {m:?} {p}");
             last = d;
         }
         // It comes near: where it stops for the escape, within a tenth. (Orbits that

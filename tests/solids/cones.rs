@@ -4,7 +4,7 @@
 use conemarch::base::cone::ConeRule;
 use conemarch::base::outcome::Counts;
 use conemarch::base::view::Beam;
-use conemarch::scene::Solid;
+use conemarch::scene::{Advance, Solid};
 use glam::DVec3;
 
 use super::common::exact::{Exact, distance, first_hit};
@@ -46,16 +46,16 @@ pub fn ray_of(cone: &Beam, random: &mut Random) -> (DVec3, DVec3) {
 /// The front that a solid claims for a cone after so many steps.
 pub fn claimed<S: Solid>(solid: &S, cone: &Beam, steps: u32) -> f64 {
     let work = &mut Counts::default();
-    let mut front = 0.0;
+    let mut at = Advance::at(0.0, true);
     for _ in 0..steps {
-        let next = solid.advance(cone, front, work);
-        assert!(next.front >= front, "a front went back");
-        front = next.front;
-        if !next.going || front > solid.bounds_far() {
+        let next = solid.advance(cone, at, work);
+        assert!(next.front >= at.front, "a front went back");
+        at = next;
+        if !next.going || next.front > solid.bounds_far() {
             break;
         }
     }
-    front
+    at.front
 }
 
 /// A cone's front after samples of the field at random places: at the front, far ahead of

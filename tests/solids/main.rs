@@ -11,11 +11,13 @@ mod boxes;
 #[path = "../common"]
 #[allow(dead_code, reason = "other crates use the rest")]
 mod common {
+    pub mod climbs;
     pub mod exact;
     pub mod plans;
     pub mod random;
 }
 mod cones;
+mod oversteps;
 mod sights;
 
 use common::exact::{Exact, balls, distance, first_hit};
@@ -52,6 +54,7 @@ fn stepping(rule: ConeRule) -> Stepping {
         stride: 1.0,
         rule,
         clip: true,
+        proven: false,
     }
 }
 

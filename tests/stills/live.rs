@@ -281,13 +281,8 @@ fn a_number_that_passes_through_zero_compiles_nothing() {
         reuse: true,
         ..EVERYTHING
     };
-    let on = [
-        "look.fog=0.05",
-        "look.occlusion=0.8",
-        "scene.rotation=[10, 0, 20]",
-        "image.size=[64, 36]",
-    ];
-    let off = ["look.fog=0", "look.occlusion=0", "scene.rotation=[0, 0, 0]"];
+    let on = ["look.fog=0.05", "look.occlusion=0.8", "image.size=[64, 36]"];
+    let off = ["look.fog=0", "look.occlusion=0"];
     let plan = preset("mandelbox", &on);
     renderer
         .render(&plan, &assets, extras, &mut |_| true)

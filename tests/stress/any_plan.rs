@@ -31,7 +31,7 @@ fn mandelbox() -> impl Strategy<Value = Mandelbox> {
     let turn = prop_oneof![Just(DVec3::ZERO), cube(180.0)];
     let lengths = (size(1e-5, 1.0), size(0.1, 10.0), size(0.1, 10.0));
     let julia = (any::<bool>(), cube(2.0));
-    let estimate = prop_oneof![4 => Just(Estimate::Proven), 1 => Just(Estimate::Classic)];
+    let estimate = prop_oneof![4 => Just(Estimate::Tight), 1 => Just(Estimate::Scalar), 1 => Just(Estimate::Classic)];
     (scale, lengths, turn, julia, estimate).prop_map(
         |((more, minus), (min, fixed, limit), rotation, (julia, constant), estimate)| Mandelbox {
             scale: if minus { -1.0 - more } else { 1.0 + more },

@@ -2,4 +2,6 @@
 // computes in f64, if the adapter has it.
 
 alias real = f32;
+alias real2 = vec2<f32>;
 alias real3 = vec3<f32>;
+alias real4 = vec4<f32>;

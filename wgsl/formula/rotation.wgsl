@@ -17,6 +17,8 @@ fn rotation_load() {
     rotation = rotation_parameters;
 }
 
+const ROTATES = true;
+
 fn rotate(v: real3) -> real3 {
     return real3(
         dot(real3(rotation.row0), v),

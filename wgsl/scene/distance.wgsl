@@ -14,8 +14,6 @@ struct DistanceUniform {
     half: vec3<f32>,
     /// Nothing is farther from the eye than this.
     far: f32,
-    /// The Lipschitz constant. Steps divide by it.
-    lipschitz: f32,
     /// Steps keep clear of `shell * eps`, where eps is the hit threshold.
     shell: f32,
     /// How rays stretch their steps: 0 automatic, 1 off, else a factor.
@@ -27,19 +25,26 @@ struct DistanceUniform {
     clip: u32,
     pad0: u32,
     pad1: u32,
+    pad2: u32,
 }
 
 /// The state of a ray between two steps: the last accepted point, the radius of the empty ball
-/// there, the length of the next step, the smoothed slope of the radius, and the end.
+/// there, the length of the next step, the smoothed slope of the radius, the value of the field,
+/// and the end.
 struct Walk {
     t: f32,
     radius: f32,
     pace: f32,
     slope: f32,
+    room: f32,
     end: f32,
 }
 
 override DISTANCE_ENOUGH: f32;
+override DISTANCE_AHEAD: f32;
+override DISTANCE_TRIAL: f32;
+override DISTANCE_LEAST: f32;
+override DISTANCE_PROVEN: bool;
 override DISTANCE_SMOOTHING: f32;
 override DISTANCE_MOST_RELAXED: f32;
 override DISTANCE_WITHIN: f32;
@@ -53,8 +58,8 @@ fn scene_load() {
     formula_load();
 }
 
-fn estimate_at(q: vec3<f32>) -> f32 {
-    return f32(estimate(real3(distance_scene.eye) + real3(q), distance_scene.iterations));
+fn scene_point(q: vec3<f32>) -> real3 {
+    return real3(distance_scene.eye) + real3(q);
 }
 
 /// Distance to the bounds; 0 inside.
@@ -64,13 +69,36 @@ fn bounds_distance(q: vec3<f32>) -> f32 {
     return max(length(o), max(0.0, length(p) - distance_scene.radius));
 }
 
-/// The value of the field, and the radius of a ball in which it exceeds `clear`. Inside the
-/// bounds the value may be negative: the gradient needs it.
-fn field(q: vec3<f32>, clear: f32) -> vec2<f32> {
+/// The value of the field, given the estimate. Inside the bounds it may be negative: the gradient
+/// needs it.
+fn widened(inside: f32, outside: f32) -> f32 {
+    return select(inside, max(inside, outside), outside > 0.0);
+}
+
+/// The value of the field.
+fn field_value(q: vec3<f32>) -> f32 {
+    let inside = f32(estimate(scene_point(q), distance_scene.iterations));
+    return widened(inside, bounds_distance(q));
+}
+
+/// The value of the field, and the radius of a ball in which it should exceed `clear`. Where rays
+/// go by proven balls, the ball is empty, but at most `trial` is tried.
+fn field(q: vec3<f32>, clear: f32, trial: f32) -> vec2<f32> {
     let outside = bounds_distance(q);
-    let inside = estimate_at(q);
-    let ball = max((inside - clear) / distance_scene.lipschitz, outside - clear);
-    return vec2<f32>(select(inside, max(inside, outside), outside > 0.0), ball);
+    let p = scene_point(q);
+    let most = distance_scene.iterations;
+    var value = 0.0;
+    var ball = outside - clear;
+    if DISTANCE_PROVEN {
+        let reading = estimate_ball(p, most, real(trial));
+        value = f32(reading.x);
+        ball = max(ball, f32(reading.y) - clear);
+    } else {
+        let reading = estimate_step(p, most, real(clear));
+        value = f32(reading.x);
+        ball = max(ball, f32(reading.y));
+    }
+    return vec2<f32>(widened(value, outside), ball);
 }
 
 /// The distance from the eye beyond which there is nothing.
@@ -120,18 +148,25 @@ fn bounds_interval(ray: Beam) -> vec2<f32> {
 }
 
 /// One step of a cone.
-fn advance(cone: Beam, front: f32) -> Advance {
-    let q = cone.origin + front * cone.axis;
-    let eps = distance_scene.detail * footprint(cone, front);
-    var d = bounds_distance(q) - cone.r0 - distance_scene.shell * eps;
+fn advance(cone: Beam, at: Advance) -> Advance {
+    let t = at.sample;
+    let q = cone.origin + t * cone.axis;
+    let eps = distance_scene.detail * footprint(cone, t);
+    let shell = distance_scene.shell * eps;
+    var d = bounds_distance(q) - cone.r0 - shell;
     // Far from the bounds their distance is enough.
-    if d <= 2.0 * cone.k * front {
-        let e = (estimate_at(q) - distance_scene.shell * eps) / distance_scene.lipschitz;
-        d = max(d, e - cone.r0);
+    if d <= 2.0 * cone.k * t {
+        let trial = select(4.0 * cone.k * t, DISTANCE_TRIAL * at.radius, at.radius > 0.0);
+        let ball = estimate_cone(scene_point(q), distance_scene.iterations, real(trial + 2.0 * eps));
+        d = max(d, f32(ball.y) - shell - cone.r0);
     }
-    let next = cone_front(front, front, d, cone.k);
+    let front = cone_front(at.front, t, d, cone.k);
+    let gain = front - at.front;
     // After a short gain, or without a ball, the four thinner children go on.
-    return Advance(next, next - front > DISTANCE_ENOUGH * max(d, 0.0));
+    let pays = gain > DISTANCE_ENOUGH * max(d, 0.0);
+    // A sample ahead that gains little is taken again at the front.
+    let sample = front + select(0.0, DISTANCE_AHEAD * gain, pays);
+    return Advance(front, sample, max(d, 0.0), u32(pays || t > at.front));
 }
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
@@ -144,7 +179,7 @@ fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
     if span.x > span.y {
         end = -1.0;
     }
-    return Walk(t, 0.0, 0.0, -1.0, end);
+    return Walk(t, 0.0, 0.0, -1.0, 0.0, end);
 }
 
 /// One step of a ray: STATE_MOVING, STATE_HIT, or STATE_SKY beyond the end.
@@ -161,8 +196,15 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     let t = min(w.t + w.pace, w.end);
     let gone = t - w.t;
     let eps = distance_scene.detail * footprint(ray, t);
-    let f = field(ray.origin + t * ray.axis, distance_scene.shell * eps);
-    let radius = f.y * distance_scene.stride;
+    let trial = DISTANCE_TRIAL * w.radius + 2.0 * eps;
+    let clear = distance_scene.shell * eps;
+    let f = field(ray.origin + t * ray.axis, clear, trial);
+    // Near a fold the ball may be tiny, and rays would creep.
+    var least = DISTANCE_LEAST * eps;
+    if DISTANCE_PROVEN {
+        least = min(least, f.y + clear);
+    }
+    let radius = max(f.y, least) * distance_scene.stride;
     // Only a stretched step can leave a gap. Any other difference is rounding.
     if w.pace > w.radius && gone > w.radius + max(radius, 0.0) {
         (*walk).pace = w.radius;
@@ -182,6 +224,7 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
         factor = clamp(2.0 / max(1.0 - slope, 1e-3), 1.0, DISTANCE_MOST_RELAXED);
     }
     (*walk).radius = radius;
+    (*walk).room = f.x;
     (*walk).slope = slope;
     (*walk).pace = radius * factor;
     return STATE_MOVING;
@@ -194,17 +237,17 @@ fn walk_hit(walk: Walk) -> Hit {
 
 /// The free room about the ray's current place, for soft shadows.
 fn walk_radius(ray: Beam, walk: Walk) -> f32 {
-    return walk.radius;
+    return walk.room;
 }
 
-/// The radius of a ball about a point that is proven empty.
+/// The radius of a ball about a point that should be empty.
 fn clearance(q: vec3<f32>) -> f32 {
-    return max(0.0, field(q, 0.0).y);
+    return max(0.0, field(q, 0.0, distance_scene.far).y);
 }
 
 /// The free room about a point, for occlusion.
 fn room(q: vec3<f32>) -> f32 {
-    return clearance(q);
+    return max(0.0, field_value(q));
 }
 
 /// The normal is the gradient over the corners of a tetrahedron half a pixel wide, the pigment
@@ -216,14 +259,14 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
     let b = vec3<f32>(-1.0, -1.0, 1.0);
     let c = vec3<f32>(-1.0, 1.0, -1.0);
     let d = vec3<f32>(1.0, 1.0, 1.0);
-    let g = a * field(q + h * a, 0.0).x + b * field(q + h * b, 0.0).x
-        + c * field(q + h * c, 0.0).x + d * field(q + h * d, 0.0).x;
+    let g = a * field_value(q + h * a) + b * field_value(q + h * b)
+        + c * field_value(q + h * c) + d * field_value(q + h * d);
     let n = length(g);
     // A point without a gradient faces the viewer.
     var normal = -ray.axis;
     if n > 1e-20 {
         normal = g / n;
     }
-    let pigment = trap(real3(distance_scene.eye) + real3(q), distance_scene.iterations);
+    let pigment = trap(scene_point(q), distance_scene.iterations);
     return Surface(normal, pigment);
 }

@@ -77,7 +77,8 @@ fn sweep_is_free(one: vec3<f32>, two: vec3<f32>, radius: f32) -> bool {
 
 /// One step of a cone: the longest of several lengths, each half the one before, whose whole
 /// sweep is free. At t the rays of the cone are within r0 + k t of the axis.
-fn advance(cone: Beam, front: f32) -> Advance {
+fn advance(cone: Beam, at: Advance) -> Advance {
+    let front = at.front;
     let origin = heightfield.eye + to_local(cone.origin);
     let axis = to_local(cone.axis);
     let here = origin + front * axis;
@@ -85,14 +86,14 @@ fn advance(cone: Beam, front: f32) -> Advance {
     // Far outside the block, the distance to it is enough.
     let carried = cone_front(front, front, away, cone.k);
     if away > 0.0 && carried - front > 0.5 * away {
-        return Advance(carried, true);
+        return advance_at(carried, true);
     }
     let thick = cone.r0 + cone.k * front;
     var length = heightfield.far * 1.0001 - front;
     for (var i = 0u; i < HEIGHTFIELD_HALVINGS; i++) {
         let end = front + length;
         if sweep_is_free(here, origin + end * axis, cone.r0 + cone.k * end) {
-            return Advance(end, true);
+            return advance_at(end, true);
         }
         length *= 0.5;
         // The four thinner children gain more.
@@ -100,7 +101,7 @@ fn advance(cone: Beam, front: f32) -> Advance {
             break;
         }
     }
-    return Advance(max(front, carried), false);
+    return advance_at(max(front, carried), false);
 }
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {

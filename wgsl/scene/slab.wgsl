@@ -55,11 +55,12 @@ fn slab_distance(q: vec3<f32>) -> f32 {
 }
 
 /// One step of a cone. The distance is exact, so any gain is worth another step.
-fn advance(cone: Beam, front: f32) -> Advance {
+fn advance(cone: Beam, at: Advance) -> Advance {
+    let front = at.front;
     count_evaluation();
     let d = slab_distance(cone.origin + front * cone.axis) - cone.r0;
     let next = cone_front(front, front, d, cone.k);
-    return Advance(next, next > front);
+    return advance_at(next, next > front);
 }
 
 /// Finds the first of the planes and the rim that the ray enters.

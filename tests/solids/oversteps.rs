@@ -1,0 +1,201 @@
+//! The balls of the Mandelbox in f64: those that are proven hold no point of the set, those that
+//! rays step by hold one only as far as docs/method.md says.
+
+use conemarch::formula::DistanceEstimate;
+use conemarch::formula::mandelbox::{Estimate, Mandelbox};
+use glam::DVec3;
+
+use crate::common::climbs::{Climb, climb, largest, of_the_set, settings, start};
+use crate::common::random::Random;
+
+/// Iterations after which an estimate in f64 no longer changes.
+const MANY: u32 = 120;
+/// What rounding adds to a ball in f64, near points of the set that are themselves rounded.
+const ROUNDED: f64 = 1.0 + 1e-6;
+
+/// The largest overstep of so many climbs. `radius` is told a centre and its distance from the set.
+fn search(m: &Mandelbox, count: usize, radius: impl Fn(DVec3, f64) -> f64) -> Climb {
+    let random = &mut Random::new(77);
+    let mut climbs = start(m, count, random);
+    climb(&mut climbs, 40, random, |tried| {
+        tried.iter().map(|(p, off)| radius(*p, *off)).collect()
+    });
+    largest(&climbs)
+}
+
+#[test]
+fn proven_balls_are_empty() {
+    for m in settings() {
+        let evaluator = m.evaluator();
+        for trial in [0.7, 1.0, 1.5] {
+            let worst = search(&m, 3400, |p, off| {
+                evaluator.ball(p, MANY, trial * off).radius
+            });
+            assert!(worst.ratio < ROUNDED, "{m:?}, trial {trial}: {worst:?}");
+            // The search comes close, or it would prove nothing.
+            assert!(worst.ratio > 0.69, "{m:?}, trial {trial}: {worst:?}");
+        }
+    }
+}
+
+#[test]
+fn proven_balls_are_empty_in_julia_mode_and_with_a_rotation() {
+    for mut m in settings() {
+        m.julia_constant = m.fold_limit * DVec3::new(0.7, -0.4, 1.1);
+        m.julia = true;
+        let evaluator = m.evaluator();
+        let worst = search(&m, 2000, |p, _| evaluator.step(p, MANY, 0.0).radius);
+        assert!(worst.ratio < ROUNDED, "{m:?}: {worst:?}");
+        m.julia = false;
+        m.rotation = DVec3::new(12.0, -8.0, 25.0);
+        let evaluator = m.evaluator();
+        let worst = search(&m, 1000, |p, off| evaluator.ball(p, MANY, off).radius);
+        assert!(worst.ratio < ROUNDED, "{m:?}: {worst:?}");
+    }
+}
+
+/// Steps of rays follow the derivative at their start, and a ball fold's factor varies over a step.
+/// Where it does not vary, they are exact.
+#[test]
+fn steps_are_empty_where_ball_folds_do_not_invert() {
+    let mut closest = 0.0_f64;
+    for mut m in settings() {
+        m.min_radius = m.fixed_radius;
+        let evaluator = m.evaluator();
+        let worst = search(&m, 2000, |p, _| evaluator.step(p, MANY, 0.0).radius);
+        assert!(worst.ratio < ROUNDED, "{m:?}: {worst:?}");
+        closest = closest.max(worst.ratio);
+    }
+    assert!(closest > 0.9, "{closest}");
+}
+
+/// The table of docs/method.md, 3.
+#[test]
+fn steps_are_too_long_by_as_much_as_is_said() {
+    for (m, said) in settings()
+        .iter()
+        .zip([1.1, 1.3, 1.2, 1.25, 1.2, 1.3, 1.4, 1.5, 1.01, 1.12])
+    {
+        let evaluator = m.evaluator();
+        let worst = search(m, 3000, |p, _| evaluator.step(p, MANY, 0.0).radius);
+        println!(
+            "{} {} {}: {:.3}",
+            m.scale, m.fold_limit, m.min_radius, worst.ratio
+        );
+        assert!(worst.ratio < said, "{m:?}: {worst:?}");
+    }
+}
+
+/// A point whose step passes a point of the set, found by a climb.
+#[test]
+fn a_step_that_is_too_long_is_known() {
+    let m = Mandelbox::default();
+    let p = DVec3::new(-2.275_275_5, 5.925_384_4, 4.129_797_5);
+    let q = DVec3::new(-2.263_832_1, 5.921_871_0, 4.129_756_0);
+    let (evaluator, off) = (m.evaluator(), p.distance(q));
+    assert!((off - 0.011_97).abs() < 1e-5);
+    let step = evaluator.step(p, MANY, 0.0).radius;
+    assert!((step / off - 1.13).abs() < 0.01, "{}", step / off);
+    let ball = evaluator.ball(p, MANY, off).radius;
+    assert!(ball > 0.3 * off && ball < off, "{}", ball / off);
+}
+
+/// |z|/w far out, with the Jacobian's norm after the first linear iterations in place of w: what
+/// the estimate of an escaped orbit tends to. Written without the code under test.
+fn converged(m: &Mandelbox, p: DVec3, follow: u32) -> f64 {
+    let c = if m.julia { m.julia_constant } else { p };
+    let gain = f64::from(u8::from(!m.julia));
+    let (mut z, mut w, mut diagonal) = (p, 1.0, DVec3::ONE);
+    let mut linear = true;
+    for n in 0..400 {
+        if z.length() > 1e12 * m.bounds().half.length() {
+            break;
+        }
+        let mut d = DVec3::ONE;
+        for i in 0..3 {
+            if z[i].abs() > m.fold_limit {
+                z[i] = 2.0 * m.fold_limit * z[i].signum() - z[i];
+                d[i] = -1.0;
+            }
+        }
+        let l = z.length();
+        linear &= n < follow && !(l > m.min_radius && l < m.fixed_radius);
+        let factor = (m.fixed_radius / l.clamp(m.min_radius, m.fixed_radius)).powi(2) * m.scale;
+        diagonal = factor * d * diagonal + gain;
+        w = match linear {
+            true => diagonal.abs().max_element(),
+            false => factor.abs() * w + gain,
+        };
+        z = factor * z + c;
+    }
+    z.length() / w
+}
+
+#[test]
+fn an_estimate_is_the_limit_of_its_orbit_or_a_little_less() {
+    let random = &mut Random::new(5);
+    for mut m in settings() {
+        for julia in [false, true] {
+            m.julia = julia;
+            m.julia_constant = m.fold_limit * DVec3::new(0.7, -0.4, 1.1);
+            let follow = if m.scale > 0.0 && !julia { 3 } else { 0 };
+            let evaluator = m.evaluator();
+            for _ in 0..4000 {
+                let p = m.bounds().half * random.cube(1.0);
+                let limit = converged(&m, p, follow);
+                let (value, _) = evaluator.value(p, 400);
+                let rounding = 1e-12 * limit.max(m.bounds().half.x);
+                assert!(value < limit + rounding, "{m:?} {p}: {value} {limit}");
+                assert!(
+                    value > 0.85 * limit - rounding,
+                    "{m:?} {p}: {value} {limit}"
+                );
+            }
+        }
+    }
+}
+
+/// Before an orbit of Julia mode has escaped, a large coordinate is no proof that it will.
+#[test]
+fn an_estimate_never_exceeds_the_limit_whatever_the_iterations() {
+    let random = &mut Random::new(6);
+    for mut m in settings() {
+        m.julia = true;
+        m.julia_constant = m.fold_limit * random.cube(6.0);
+        let evaluator = m.evaluator();
+        for _ in 0..4000 {
+            let p = m.bounds().half * random.cube(1.0);
+            let limit = converged(&m, p, 0);
+            for most in 1..6 {
+                let (value, _) = evaluator.value(p, most);
+                let rounding = 1e-12 * limit.max(m.bounds().half.x);
+                assert!(
+                    value < limit + rounding,
+                    "{m:?} {p}, {most}: {value} {limit}"
+                );
+            }
+        }
+    }
+}
+
+/// Steps are at least those of the growth factor for all directions: no part of the chain may get
+/// lost.
+#[test]
+fn steps_are_not_shorter_than_those_of_the_scalar_estimate() {
+    let random = &mut Random::new(7);
+    for m in settings() {
+        let scalar = Mandelbox {
+            estimate: Estimate::Scalar,
+            ..m.clone()
+        };
+        let points = of_the_set(&m, 300, random);
+        let [tight, scalar] = [&m, &scalar].map(|m| m.evaluator());
+        for set in points {
+            let off = m.fold_limit * 10.0_f64.powf(random.between(-4.0, 0.0));
+            let p = set + off * random.direction();
+            let (step, old) = (tight.step(p, MANY, 0.0).radius, scalar.value(p, MANY).0);
+            let least = 0.9 * old / m.lipschitz() - 1e-9;
+            assert!(step > least, "{m:?} {p}: {step} {old}");
+        }
+    }
+}
