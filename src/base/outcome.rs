@@ -1,5 +1,14 @@
 //! The result of a step, the state of a pixel, and counters of work.
 
+/// The result of one step of a cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Advance {
+    /// The new front: the distance up to which every ray of the cone is proven free.
+    pub front: f64,
+    /// Whether another step is worth its cost.
+    pub going: bool,
+}
+
 /// What one step of a ray came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Step {

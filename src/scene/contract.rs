@@ -4,18 +4,9 @@ use glam::DVec3;
 
 use crate::base::array::SceneArray;
 use crate::base::outcome::Counts;
-pub use crate::base::outcome::Step;
+pub use crate::base::outcome::{Advance, Step};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
-
-/// The result of one step of a cone.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Advance {
-    /// The new front: the distance up to which every ray of the cone is proven free.
-    pub front: f64,
-    /// Whether another step is worth its cost.
-    pub going: bool,
-}
 
 /// Where a ray met the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
