@@ -11,6 +11,7 @@ mod boxes;
 #[path = "../common"]
 #[allow(dead_code, reason = "other crates use the rest")]
 mod common {
+    pub mod cones;
     pub mod exact;
     pub mod plans;
     pub mod random;
@@ -18,6 +19,7 @@ mod common {
 mod cones;
 mod sights;
 
+use common::cones::{claimed, cone};
 use common::exact::{Exact, balls, distance, first_hit};
 use common::random::Random;
 use conemarch::base::cone::ConeRule;
@@ -29,7 +31,7 @@ use conemarch::pass::trace::trace;
 use conemarch::scene::distance::{Distance, Relaxation, Stepping};
 use conemarch::scene::slab::{Slab, SlabSettings};
 use conemarch::scene::{Hit, Solid};
-use cones::{beyond, claimed, cone, sampled_anywhere};
+use cones::{beyond, sampled_anywhere};
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
