@@ -1,5 +1,30 @@
 //! The result of a step, the state of a pixel, and counters of work.
 
+/// A cone between two steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Advance {
+    /// Every ray of the cone is proven free up to here.
+    pub front: f64,
+    /// Where the next sample is taken; not below the front.
+    pub sample: f64,
+    /// The radius of the last ball; 0 before the first.
+    pub radius: f64,
+    /// Whether another step is worth its cost.
+    pub going: bool,
+}
+
+impl Advance {
+    /// A cone at a front, with nothing known about what is ahead.
+    pub fn at(front: f64, going: bool) -> Self {
+        Self {
+            front,
+            sample: front,
+            radius: 0.0,
+            going,
+        }
+    }
+}
+
 /// What one step of a ray came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Step {

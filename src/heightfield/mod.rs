@@ -6,7 +6,7 @@
 //! - [`file_error`]: why a file of heights or cones cannot be used
 //! - [`heights`], [`patch`]: samples, and the surface between them
 //! - [`height_surface`]: heights with their pyramid of maxima ([`max_mip`]); [`region_max`]:
-//!   the maximum over a rectangle
+//!   the maximum over a rectangle; [`maxima_cone`]: how far a cone passes above the surface
 //! - [`placement`]: from the world to texels and heights, and back
 //! - [`conemap`]: cone maps, their generators and their files
 //! - [`tracer`]: ways to find where a ray meets the surface
@@ -19,6 +19,7 @@ pub mod height_surface;
 pub mod heights;
 pub mod load;
 pub mod max_mip;
+pub mod maxima_cone;
 pub mod paint;
 pub mod patch;
 pub mod pattern;

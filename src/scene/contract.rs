@@ -4,34 +4,9 @@ use glam::DVec3;
 
 use crate::base::array::SceneArray;
 use crate::base::outcome::Counts;
-pub use crate::base::outcome::Step;
+pub use crate::base::outcome::{Advance, Step};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
-
-/// A cone between two steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Advance {
-    /// Every ray of the cone is proven free up to here.
-    pub front: f64,
-    /// Where the next sample is taken; not below the front.
-    pub sample: f64,
-    /// The radius of the last ball; 0 before the first.
-    pub radius: f64,
-    /// Whether another step is worth its cost.
-    pub going: bool,
-}
-
-impl Advance {
-    /// A cone at a front, with nothing known about what is ahead.
-    pub fn at(front: f64, going: bool) -> Self {
-        Self {
-            front,
-            sample: front,
-            radius: 0.0,
-            going,
-        }
-    }
-}
 
 /// Where a ray met the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

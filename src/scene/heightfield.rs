@@ -2,14 +2,14 @@
 //!
 //! A tracer of [`crate::heightfield::tracer`] follows the rays, in local units: texels along
 //! the sides of the block, and heights from 0 to 1. Cones and empty balls are tested against
-//! the highest point of the map below them, so nothing finer than a cell limits them.
+//! the highest point of the map below them ([`maxima_cone`], [`region_max`]), so nothing finer
+//! than a cell limits them.
 //! Twin: `wgsl/scene/heightfield.wgsl`.
 
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::base::array::SceneArray;
-use crate::base::cone::ConeRule;
 use crate::base::key::{Fault, Key};
 use crate::base::outcome::Counts;
 use crate::base::shader::Module;
@@ -17,6 +17,7 @@ use crate::base::view::Beam;
 use crate::heightfield::assets::{Assets, Ready};
 use crate::heightfield::height_surface::HeightmapUniform;
 use crate::heightfield::heights::Patches;
+use crate::heightfield::maxima_cone::{self, CONE_WINDOWS, LocalCone, maxima_cone};
 use crate::heightfield::paint::Colors;
 use crate::heightfield::region_max::{self, region_max};
 use crate::heightfield::settings::HeightfieldSettings;
@@ -27,17 +28,16 @@ use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::scene::{AnySolid, SceneSettings, Viewpoint};
 use crate::wgsl;
 
-/// How often the longest sweep is halved, and the smallest ball doubled. This spans a map of
-/// 8192 texels down to a quarter of one.
-const HEIGHTFIELD_HALVINGS: u32 = 15;
+/// How often the smallest ball is doubled. This spans half a texel up to a map of 8192.
+const HEIGHTFIELD_DOUBLINGS: u32 = 15;
 /// Weight of the height above the surface in a guess of the free room; the rest is the proven
 /// clearance.
 const HEIGHTFIELD_GUESS: f64 = 0.5;
 /// Linear grey of the walls of a textured block: earth.
 const HEIGHTFIELD_WALL: f64 = 0.06;
-/// An upper bound of the loop rounds in one step: `advance` makes so many sweeps, and each
-/// visits up to 16 levels of the pyramid in up to four runs.
-const HEIGHTFIELD_ROUNDS: u32 = HEIGHTFIELD_HALVINGS * 4 * 16;
+/// An upper bound of the loop rounds in one step: the windows of a cone. The last step of a ray
+/// has fewer: up to 32 refinements and those that settle a box.
+const HEIGHTFIELD_ROUNDS: u32 = CONE_WINDOWS;
 
 /// The scene as WGSL reads it.
 #[repr(C)]
@@ -82,13 +82,13 @@ impl SceneSettings for HeightfieldSettings {
 
     fn solid(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
         let ready = assets.ready(self, from.grain)?;
-        let solid = Heightfield::new(ready, from.eye, from.stepping.rule);
+        let solid = Heightfield::new(ready, from.eye);
         Ok(AnySolid::Heightfield(solid))
     }
 
     fn outline(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
         let ready = assets.outline(self, from.grain)?;
-        let solid = Heightfield::new(ready, from.eye, from.stepping.rule);
+        let solid = Heightfield::new(ready, from.eye);
         Ok(AnySolid::Heightfield(solid))
     }
 
@@ -105,17 +105,22 @@ pub struct Heightfield {
     made: Ready,
     eye: DVec3,
     far: f64,
-    rule: ConeRule,
+    /// An upper bound of the rounding error of local coordinates in f32: a few roundings of
+    /// numbers as large as the block and the distance of the eye.
+    slack: DVec3,
 }
 
 impl Heightfield {
     /// A heightfield seen from an eye.
-    pub fn new(made: Ready, eye: DVec3, rule: ConeRule) -> Self {
+    pub fn new(made: Ready, eye: DVec3) -> Self {
+        let place = &made.placement;
+        let far = place.farthest(eye);
+        let sum = place.position(eye).abs() + place.sides.extend(1.0) + far / place.units();
         Self {
-            far: made.placement.farthest(eye),
+            slack: 5e-7 * sum,
+            far,
             made,
             eye,
-            rule,
         }
     }
 
@@ -138,16 +143,6 @@ impl Heightfield {
         DVec3::new(hue, up, 0.5)
     }
 
-    /// Whether a ball of a world radius that moves between two local positions meets nothing
-    /// solid.
-    fn sweep_is_free(&self, one: DVec3, two: DVec3, radius: f64, work: &mut Counts) -> bool {
-        work.evaluations += 1;
-        let room = radius / self.made.placement.units();
-        let (low, high) = (one.min(two) - room, one.max(two) + room);
-        let top = || region_max(&self.made.surface, low.truncate(), high.truncate());
-        high.z < 0.0 || low.z > 1.0 || low.z > top()
-    }
-
     /// The world distance from a local position to the surface straight below it. Beside the
     /// block it is the distance to the edge of the top, or to the wall below that edge.
     fn surface_gap(&self, p: DVec3) -> f64 {
@@ -160,14 +155,6 @@ impl Heightfield {
         let above = ((p.z - height) * place.depth).max(0.0);
         let off = (xy - inside) * place.texel;
         off.extend(above).length()
-    }
-
-    /// An upper bound of the rounding error of local coordinates in f32: a few roundings of
-    /// numbers as large as the block and the distance of the eye.
-    fn slack(&self) -> DVec3 {
-        let eye = self.made.placement.position(self.eye).abs();
-        let sides = self.made.placement.sides.extend(1.0);
-        5e-7 * (eye + sides + self.far / self.made.placement.units())
     }
 }
 
@@ -193,11 +180,11 @@ fn box_side(axis: DVec3, uv: [f64; 2]) -> DVec3 {
 impl Twin for Heightfield {
     fn modules(&self) -> Vec<Module> {
         let mut all = vec![
-            self.rule.module(),
             region_max::module(),
+            maxima_cone::module(),
             wgsl!(
                 "scene/heightfield.wgsl",
-                "HEIGHTFIELD_HALVINGS" = f64::from(HEIGHTFIELD_HALVINGS),
+                "HEIGHTFIELD_DOUBLINGS" = f64::from(HEIGHTFIELD_DOUBLINGS),
                 "HEIGHTFIELD_GUESS" = HEIGHTFIELD_GUESS,
                 "HEIGHTFIELD_COLORED" = f64::from(u8::from(self.is_colored())),
                 "HEIGHTFIELD_WALL" = HEIGHTFIELD_WALL,
@@ -220,7 +207,7 @@ impl Twin for Heightfield {
             // Rounded up: the farthest corner must not lie beyond it.
             far: (self.far * (1.0 + 1e-6)) as f32,
             eye: self.made.placement.position(self.eye).as_vec3(),
-            slack: self.slack().as_vec3(),
+            slack: self.slack.as_vec3(),
             map: self.made.tracer.uniform(),
             ..Zeroable::zeroed()
         };
@@ -251,30 +238,18 @@ impl Solid for Heightfield {
     type Walk = Trace;
 
     fn advance(&self, cone: &Beam, at: Advance, work: &mut Counts) -> Advance {
-        let free_to = |front| Advance::at(front, true);
-        let front = at.front;
-        let ray = self.local(cone);
-        let here = ray.at(front);
-        let away = self.made.placement.distance(here) - cone.r0;
-        // Far outside the block, the distance to it is enough.
-        let carried = self.rule.cone_front(front, front, away, cone.k);
-        if away > 0.0 && carried - front > 0.5 * away {
-            return free_to(carried);
-        }
-        let thick = cone.r0 + cone.k * front;
-        let mut length = self.far * 1.0001 - front;
-        for _ in 0..HEIGHTFIELD_HALVINGS {
-            let end = front + length;
-            if self.sweep_is_free(here, ray.at(end), cone.r0 + cone.k * end, work) {
-                return free_to(end);
-            }
-            length *= 0.5;
-            // The four thinner children gain more.
-            if length < 0.5 * thick {
-                break;
-            }
-        }
-        Advance::at(front.max(carried), false)
+        let LocalRay { origin, axis } = self.local(cone);
+        let units = self.made.placement.units();
+        let cone = LocalCone {
+            origin,
+            axis,
+            radius: cone.r0 / units + 2.0 * self.slack,
+            growth: cone.k / units,
+            slack: self.slack,
+        };
+        // Nothing is as far as that.
+        let end = self.far * 1.0001;
+        maxima_cone(&self.made.surface, &cone, at.front, end, work)
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Counts) -> Trace {
@@ -300,7 +275,7 @@ impl Solid for Heightfield {
         let p = self.made.placement.position(self.eye + q);
         let mut free = self.made.placement.distance(p);
         let mut radius = 0.5 * self.made.placement.texel;
-        for _ in 0..HEIGHTFIELD_HALVINGS {
+        for _ in 0..HEIGHTFIELD_DOUBLINGS {
             let room = DVec2::splat(radius / self.made.placement.texel);
             let top = region_max(&self.made.surface, p.truncate() - room, p.truncate() + room);
             let gap = (p.z - top) * self.made.placement.depth;
@@ -348,7 +323,7 @@ impl Solid for Heightfield {
         let ray = self.local(ray);
         let z = ray.height(hit.s);
         // Below the top of its box by more than rounding: the hit is on a side.
-        if surface.patches() == Patches::Boxes && z < a - self.slack().z {
+        if surface.patches() == Patches::Boxes && z < a - self.slack.z {
             return Surface {
                 normal: place.side(box_side(ray.axis, hit.uv)),
                 pigment: self.pigment(cell, hit.uv, z, 0.0),

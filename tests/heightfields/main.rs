@@ -12,6 +12,7 @@ mod closed_forms;
 #[path = "../common"]
 #[allow(dead_code, reason = "other crates use the rest")]
 mod common {
+    pub mod cones;
     pub mod folder;
     pub mod overclaims;
     pub mod pictures;
@@ -20,6 +21,7 @@ mod common {
     pub mod reference_maps;
 }
 mod boxes;
+mod cones;
 mod distant;
 mod first_hits;
 mod limits;

@@ -189,6 +189,7 @@ fn the_mandelbox_is_explained() {
         wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_AHEAD=0  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/folds.wgsl  FOLDS_JULIA=0
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
+        wgsl/formula/jacobian_diagonal.wgsl
         wgsl/base/view.wgsl
         wgsl/pass/shared.wgsl
         wgsl/pass/turn.wgsl
@@ -200,6 +201,7 @@ fn the_mandelbox_is_explained() {
         wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_AHEAD=0  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/folds.wgsl  FOLDS_JULIA=0
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
+        wgsl/formula/jacobian_diagonal.wgsl
         wgsl/base/view.wgsl
         wgsl/pass/shared.wgsl
         wgsl/pass/turn.wgsl
@@ -211,6 +213,7 @@ fn the_mandelbox_is_explained() {
         wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_AHEAD=0  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/folds.wgsl  FOLDS_JULIA=0
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
+        wgsl/formula/jacobian_diagonal.wgsl
         wgsl/base/view.wgsl
         wgsl/pass/shared.wgsl
         wgsl/pass/turn.wgsl

@@ -12,6 +12,7 @@ mod boxes;
 #[allow(dead_code, reason = "other crates use the rest")]
 mod common {
     pub mod climbs;
+    pub mod cones;
     pub mod exact;
     pub mod plans;
     pub mod random;
@@ -20,6 +21,7 @@ mod cones;
 mod oversteps;
 mod sights;
 
+use common::cones::{claimed, cone};
 use common::exact::{Exact, balls, distance, first_hit};
 use common::random::Random;
 use conemarch::base::cone::ConeRule;
@@ -31,7 +33,7 @@ use conemarch::pass::trace::trace;
 use conemarch::scene::distance::{Distance, Relaxation, Stepping};
 use conemarch::scene::slab::{Slab, SlabSettings};
 use conemarch::scene::{Hit, Solid};
-use cones::{beyond, claimed, cone, sampled_anywhere};
+use cones::{beyond, sampled_anywhere};
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

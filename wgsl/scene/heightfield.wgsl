@@ -22,8 +22,8 @@ struct HeightfieldUniform {
     map: HeightmapUniform,
 }
 
-/// How often the sweep of a cone is halved, and an empty ball doubled.
-override HEIGHTFIELD_HALVINGS: u32;
+/// How often an empty ball is doubled.
+override HEIGHTFIELD_DOUBLINGS: u32;
 /// Weight of the height above the surface in a guess of the free room.
 override HEIGHTFIELD_GUESS: f32;
 override HIT_CARRIES_MARK: bool;
@@ -66,42 +66,18 @@ fn block_distance(p: vec3<f32>) -> f32 {
     return length(max(o, vec3<f32>(0.0))) + min(max(o.x, max(o.y, o.z)), 0.0);
 }
 
-/// Whether a ball of a world radius that moves between two local positions meets nothing solid.
-fn sweep_is_free(one: vec3<f32>, two: vec3<f32>, radius: f32) -> bool {
-    count_evaluation();
-    let room = radius / local_units() + heightfield.slack;
-    let low = min(one, two) - room;
-    let high = max(one, two) + room;
-    return high.z < 0.0 || low.z > 1.0 || low.z > region_max(low.xy, high.xy);
-}
-
-/// One step of a cone: the longest of several lengths, each half the one before, whose whole
-/// sweep is free. At t the rays of the cone are within r0 + k t of the axis.
+/// The way of a cone over the maxima. At t the rays of the cone are within r0 + k t of the axis.
 fn advance(cone: Beam, at: Advance) -> Advance {
-    let front = at.front;
-    let origin = heightfield.eye + to_local(cone.origin);
-    let axis = to_local(cone.axis);
-    let here = origin + front * axis;
-    let away = block_distance(here) - cone.r0;
-    // Far outside the block, the distance to it is enough.
-    let carried = cone_front(front, front, away, cone.k);
-    if away > 0.0 && carried - front > 0.5 * away {
-        return advance_at(carried, true);
-    }
-    let thick = cone.r0 + cone.k * front;
-    var length = heightfield.far * 1.0001 - front;
-    for (var i = 0u; i < HEIGHTFIELD_HALVINGS; i++) {
-        let end = front + length;
-        if sweep_is_free(here, origin + end * axis, cone.r0 + cone.k * end) {
-            return advance_at(end, true);
-        }
-        length *= 0.5;
-        // The four thinner children gain more.
-        if length < 0.5 * thick {
-            break;
-        }
-    }
-    return advance_at(max(front, carried), false);
+    let units = local_units();
+    let own = LocalCone(
+        heightfield.eye + to_local(cone.origin),
+        to_local(cone.axis),
+        cone.r0 / units + 2.0 * heightfield.slack,
+        cone.k / units,
+        heightfield.slack,
+    );
+    // Nothing is as far as that.
+    return maxima_cone(own, at.front, heightfield.far * 1.0001);
 }
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
@@ -145,7 +121,7 @@ fn clearance(q: vec3<f32>) -> f32 {
     let p = heightfield.eye + to_local(q);
     var free = block_distance(p);
     var radius = 0.5 * heightfield.texel;
-    for (var i = 0u; i < HEIGHTFIELD_HALVINGS; i++) {
+    for (var i = 0u; i < HEIGHTFIELD_DOUBLINGS; i++) {
         count_evaluation();
         let room = radius / heightfield.texel + heightfield.slack.xy;
         let top = region_max(p.xy - room, p.xy + room);
