@@ -94,23 +94,20 @@ impl Pattern {
 }
 
 /// Scales heights so that the lowest is 0 and the highest is 1. A constant map becomes 0.
-fn stretched(raw: &[f64]) -> Vec<f32> {
-    let low = raw.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = raw.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+pub(super) fn stretched<T: Copy + Into<f64>>(raw: &[T]) -> Vec<f32> {
+    let all = || raw.iter().map(|z| (*z).into());
+    let low = all().fold(f64::INFINITY, f64::min);
+    let high = all().fold(f64::NEG_INFINITY, f64::max);
     let range = if high > low { high - low } else { 1.0 };
-    raw.iter().map(|z| ((z - low) / range) as f32).collect()
+    // The cast may round a share just under 1 up to 1, never beyond.
+    all().map(|z| ((z - low) / range) as f32).collect()
 }
 
 /// Gaussian waves whose power falls as `k^-power`, k being cycles per map, summed by an
 /// inverse FFT.
 fn spectral([w, h]: [usize; 2], power: f64, random: &mut Random) -> Vec<f64> {
-    let wave = |i: usize, n: usize| {
-        if 2 * i > n {
-            i as f64 - n as f64
-        } else {
-            i as f64
-        }
-    };
+    // The last waves go the other way, with as many cycles.
+    let wave = |i: usize, n: usize| i.min(n - i) as f64;
     let mut waves: Vec<Complex<f64>> = Vec::with_capacity(w * h);
     for y in 0..h {
         for x in 0..w {

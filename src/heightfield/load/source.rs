@@ -11,7 +11,8 @@ use std::path::Path;
 
 use crate::heightfield::load::file::read;
 use crate::heightfield::load::pattern_spec::PatternSpec;
-use crate::heightfield::{FileError, Heights, pattern::Pattern};
+use crate::heightfield::pattern::{Pattern, stretched};
+use crate::heightfield::{FileError, Heights};
 
 /// How heights are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,23 +97,20 @@ fn in_file(path: &Path, options: &LoadOptions) -> Result<Loaded, String> {
 }
 
 /// Normalizes numbers, or checks that they are in 0..=1.
-fn into_range(values: &mut [f32], width: usize, normalize: bool) -> Result<(), String> {
+fn into_range(values: &mut Vec<f32>, width: usize, normalize: bool) -> Result<(), String> {
     if let Some(i) = values.iter().position(|z| !z.is_finite()) {
         let (x, y, z) = (i % width, i / width, values[i]);
         return Err(format!(
             "the height at column {x}, row {y} is {z}; fill such places first"
         ));
     }
+    if normalize {
+        *values = stretched(values);
+        return Ok(());
+    }
     let low = values.iter().copied().fold(f32::INFINITY, f32::min);
     let high = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    if normalize {
-        let (low, range) = (f64::from(low), f64::from(high) - f64::from(low));
-        let range = if range > 0.0 { range } else { 1.0 };
-        for z in values {
-            // The cast may round a share just under 1 up to 1, never beyond.
-            *z = ((f64::from(*z) - low) / range) as f32;
-        }
-    } else if low < 0.0 || high > 1.0 {
+    if low < 0.0 || high > 1.0 {
         return Err(format!(
             "its heights reach from {low} to {high}, and heights must be 0 to 1; --normalize (in a preset, normalize = true) scales them to that range"
         ));
