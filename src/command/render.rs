@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint, value_parser};
 
-use crate::command::arguments::{size, words};
+use crate::command::arguments::{bits, size, words};
 use crate::command::bench::common::of_how_many;
 use crate::command::bench::runner::{Runner, TIMED};
 use crate::command::executor::{Executor, device};
@@ -69,7 +69,7 @@ pub struct Render {
     pub(crate) layer: Layer,
 
     /// Bits of each colour of a PNG; 16 leave no steps in smooth shades [default: 8]
-    #[arg(long, value_name = "BITS", value_parser = depths())]
+    #[arg(long, value_name = "BITS", value_parser = bits())]
     pub(crate) depth: Option<BitDepth>,
 
     /// Quality of a JPEG, from 1 to 100 [default: 92]
@@ -87,10 +87,6 @@ pub struct Render {
 
 fn layers() -> impl TypedValueParser<Value = Layer> {
     words(Layer::ALL.map(|layer| (layer, layer.name(), layer.facts())))
-}
-
-fn depths() -> impl TypedValueParser<Value = BitDepth> {
-    words([(BitDepth::Eight, "8", ""), (BitDepth::Sixteen, "16", "")])
 }
 
 /// Renders a preset.

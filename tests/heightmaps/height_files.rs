@@ -1,12 +1,11 @@
 //! Height maps from files: every format, and a sentence for everything that is wrong.
 
-use conemarch::heightfield::conemap::file::{
-    Bits, Layout, MapFile, MapFormat, decode_bytes, encode,
-};
+use conemarch::heightfield::conemap::file::{Layout, MapFile, MapFormat, decode_bytes, encode};
 use conemarch::heightfield::conemap::generate::generator::Generator;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::load::{LoadOptions, Loaded, load};
 use conemarch::heightfield::pattern::Pattern;
+use conemarch::raster::png::BitDepth as Bits;
 use exr::prelude::FlatSamples;
 use png::{BitDepth, ColorType};
 use tiff::encoder::colortype::{Gray8, Gray16, Gray32Float, GrayI16, RGB8};

@@ -54,7 +54,7 @@ pub fn run(args: &Inspect) -> Result<()> {
     let mut progress = Reporter::start("inspecting");
     progress.report(0.0, "reading");
     // Fields have no file. The reader of heights reports a file that is neither.
-    let is_map = args.foreign.is_given() || has_map(path).unwrap_or(false);
+    let is_map = args.foreign.is_given() || has_map(path);
     let name = path.display().to_string();
     let (text, panels) = if is_map {
         let needless = args.reading.given(args.foreign.is_given());
