@@ -55,13 +55,11 @@ impl HeightfieldSettings {
         let wrap = self.source.options.wrap;
         let cells = pattern.map_or([1, 1], |p| cells(p.size, wrap, self.patches));
         check_tiles(cells, wrap, self.tiles).map_err(tiles_fault)?;
-        if self.is_textured() && self.paint.is_some() {
-            return Err(Fault::new(
-                "scene.texture",
-                "scene.paint colours the surface already; set paint = \"height\"",
-            ));
-        }
-        Ok(())
+        Fault::unless(
+            !self.is_textured() || self.paint.is_none(),
+            "scene.texture",
+            "scene.paint colours the surface already; set paint = \"height\"",
+        )
     }
 
     /// Whether the heights come from a file.

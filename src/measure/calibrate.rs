@@ -142,22 +142,20 @@ pub fn calibrate(
         }
     }
     let levels = best.levels().len();
-    let mut fudge = vec![1.0; levels];
+    best.march.fudge = vec![1.0; levels.max(1)];
     let exact = lost(&best, PROBING)?;
     for level in 0..levels {
         let share = (level + 1) as f64 / levels as f64;
         let allowed = exact + (budget - exact).max(0.0) * share;
         for f in FUDGES {
-            fudge[level] = f64::from(f) / 20.0;
-            best.march.fudge.clone_from(&fudge);
+            best.march.fudge[level] = f64::from(f) / 20.0;
             let share = PROBING + (1.0 - PROBING) * level as f64 / levels as f64;
             if lost(&best, share)? <= allowed {
                 break;
             }
-            fudge[level] = 1.0;
+            best.march.fudge[level] = 1.0;
         }
     }
-    best.march.fudge = if fudge.is_empty() { vec![1.0] } else { fudge };
     let held = lost(&best, 1.0)? <= budget;
     let lost = lost_share(&best, assets, &others)?;
     Ok(Calibration {
