@@ -93,8 +93,7 @@ pub fn run(args: &Make) -> Result<()> {
     }
     let mut progress = Reporter::start("making cones");
     progress.report(0.0, "heights");
-    let loaded = args.reading.load(&args.heights)?;
-    interrupt::check()?;
+    let loaded = args.reading.load(&args.heights, &mut progress)?;
     let heights = &loaded.heights;
     check_memory(generator, heights.size())?;
     // The default name is never that of the heights, and its format keeps everything.

@@ -10,7 +10,9 @@ use clap::builder::TypedValueParser;
 
 use crate::command::arguments::{bits, samples, words};
 use crate::command::failure::usage;
+use crate::command::interrupt;
 use crate::command::print::say;
+use crate::command::progress::Reporter;
 use crate::command::sink::{Sink, ending, is_stdout};
 use crate::heightfield::conemap::MapKind;
 use crate::heightfield::conemap::file::{
@@ -43,14 +45,17 @@ pub struct Reading {
 
 impl Reading {
     /// Reads heights, and says what was left out of them.
-    pub fn load(&self, argument: &OsStr) -> Result<Loaded> {
+    pub fn load(&self, argument: &OsStr, progress: &mut Reporter) -> Result<Loaded> {
         let options = LoadOptions {
             wrap: self.wrap,
             invert: self.invert,
             normalize: self.normalize,
             size: self.size,
         };
-        let loaded = load(argument, &options)?;
+        let watch = &mut |share| progress.report(share, "heights");
+        let loaded = load(argument, &options, watch);
+        interrupt::check()?;
+        let loaded = loaded?;
         if let Some(note) = &loaded.note {
             say(&format!("note: {note}"));
         }
