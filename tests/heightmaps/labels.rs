@@ -205,6 +205,7 @@ fn a_label_that_contradicts_its_file_is_refused() {
     floats[at..at + 6].copy_from_slice(b"\"pair\"");
     let why = decode_bytes(&floats).expect_err("an EXR of numbers");
     assert!(why.contains("PNG") && why.contains("EXR"), "{why}");
+    let later = "version = 2\nkind = \"new\"\nold";
     let from_cube = "from_ratio = \"cube\"\nslopes";
     let from_sqrt = "from_ratio = \"sqrt\"\nslopes";
     let with_slopes = "slopes = \"half\"\nsamples = ";
@@ -213,10 +214,17 @@ fn a_label_that_contradicts_its_file_is_refused() {
         (&dummer, "\"samples\"", "\"walk\"", "kind"),
         (&dummer, "\"dummer\"", "\"quad\"", "layout quad"),
         (&quad, "\"quad\"\nlayout", "\"samples\"\nlayout", "kind"),
+        (&dummer, "version = 1\nkind", later, "has version 2"),
         (&dummer, "scale = 8.0", "scale = 16.0", "scale"),
         (&dummer, "scale = 8.0", "scale = nan", "scale"),
         (&dummer, "\"whole\"", "\"most\"", "slopes"),
-        (&dummer, "\"sqrt\"", "\"cube\"", "ratio"),
+        (&dummer, "\"sqrt\"", "\"cube\"", "(ratio = \"cube\": "),
+        (
+            &dummer,
+            "samples = ",
+            "sample = ",
+            "(missing field `samples`)",
+        ),
         (&dummer, "slopes", from_cube, "from_ratio"),
         (&dummer, "slopes", from_sqrt, "from_ratio"),
         (&dummer, "offset = 0.0", "offset = 2.0", "offset"),

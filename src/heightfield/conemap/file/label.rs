@@ -37,6 +37,12 @@ struct Text {
     label: Label,
 }
 
+/// What is read first: a later version may have other words.
+#[derive(Deserialize)]
+struct Version {
+    version: u32,
+}
+
 /// The only version of the text so far.
 const VERSION: u32 = 1;
 
@@ -73,10 +79,17 @@ fn wrong(key: &str, value: &str) -> String {
 /// # Errors
 /// In words: the text is not a label, or contradicts itself.
 pub(crate) fn read(text: &str) -> Result<MapFile, String> {
+    let Version { version } = toml::from_str(text).map_err(|e| broken(e.message()))?;
+    if version != VERSION {
+        return Err(format!(
+            "was written by a later conemarch (its label has version {version}, and only {VERSION} is known); make the map again"
+        ));
+    }
     let text: Text = toml::from_str(text).map_err(|e| {
-        let end = e.span().map_or(0, |s| s.end);
+        let end = e.span().filter(|s| s.start > 0).map_or(0, |s| s.end);
         let line = text[..end].lines().next_back().unwrap_or_default();
-        broken(&format!("{line}: {}", e.message()))
+        // What is missing is on no line.
+        broken(format!("{line}: {}", e.message()).trim_start_matches(": "))
     })?;
     let Text {
         kind,
@@ -84,12 +97,6 @@ pub(crate) fn read(text: &str) -> Result<MapFile, String> {
         label,
         ..
     } = text;
-    if text.version != VERSION {
-        return Err(format!(
-            "was written by a later conemarch (its label has version {}, and only {VERSION} is known); make the map again",
-            text.version
-        ));
-    }
     let wrap = wrap_named(&text.wrap).ok_or_else(|| wrong("wrap", &text.wrap))?;
     if layout.lacks(kind).is_some() {
         let both = format!("{} in the layout {}", kind.name(), layout.name());
