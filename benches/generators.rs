@@ -11,6 +11,7 @@ use std::fs;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use conemarch::base::parallel::collect;
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::conemap::generate::Maker;
 use conemarch::gpu::device::Device;
@@ -18,6 +19,7 @@ use conemarch::heightfield::conemap::ConeMap;
 use conemarch::heightfield::conemap::generate::cpu;
 use conemarch::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
 use conemarch::heightfield::conemap::generate::pyramid::Tiles;
+use conemarch::heightfield::conemap::generate::task::MapTask;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::max_mip::MaxMip;
 use conemarch::heightfield::pattern::Pattern;
@@ -98,17 +100,18 @@ fn nodes() -> Result<Vec<NodesRow>> {
             for size in [64, 128, 256, 512] {
                 let heights = field(f, size)?;
                 let (patches, options) = (Patches::default(), Options::default());
-                let made =
-                    cpu::generate_counted(generator, &heights, patches, &options, &mut |_| true);
-                let (map, count) = made?;
-                let mean = count.total as f64 / map.ratios.len() as f64;
-                row += &format!(" {mean:.1} ({}) |", count.most);
+                let task = MapTask::new(generator, &heights, patches, &options)?;
+                let nodes = collect(0..task.values.len(), 64, |place| task.find(place).nodes);
+                let total: u64 = nodes.iter().map(|n| u64::from(*n)).sum();
+                let mean = total as f64 / (nodes.len() * generator.channels()) as f64;
+                let worst = nodes.into_iter().max().unwrap_or(0);
+                row += &format!(" {mean:.1} ({worst}) |");
                 rows.push(NodesRow {
                     generator: name.into(),
                     field: f.name().into(),
                     size,
                     mean,
-                    worst: count.most,
+                    worst,
                 });
             }
             println!("{row}");

@@ -15,6 +15,7 @@
 mod distances;
 mod frames;
 mod pictures;
+mod presets;
 mod tables;
 
 #[path = "../common/markdown.rs"]
@@ -44,7 +45,7 @@ fn main() -> Result<()> {
     match args[..] {
         ["presets"] => {
             let page = format!("{DOCS}/presets.md");
-            fs::write(&page, conemarch::preset::reference()).context(page)
+            fs::write(&page, presets::reference()).context(page)
         }
         ["benchmarks", folder, date] => benchmarks(Path::new(folder), date),
         ["heightfields", folder, date] => heightfields(Path::new(folder), date),

@@ -123,36 +123,48 @@ macro_rules! keys {
 /// Declares one part of a Plan: the struct, its defaults and its keys.
 ///
 /// A line has the form `field: Type = default, slot(limits), "help";` or ends with
-/// `"help" => Redo;` ([`Redo`](crate::base::key::Redo)). The key is called like the field, and
-/// the help text also documents the field.
+/// `"help" => Redo;` ([`Redo`](crate::base::key::Redo)). The key is called like the field, or by
+/// another name after it: `field as "name": Type`. The help text also documents the field.
+/// Lines `..field: Type;` before and after them are settings of their own, with their keys.
 #[macro_export]
 macro_rules! settings {
     (
         $(#[$doc:meta])*
         pub struct $part:ident {
-            $($name:ident: $type:ty = $default:expr, $slot:ident($($limit:expr),*), $help:literal $(=> $redo:ident)?;)*
+            $($(#[$first_doc:meta])* ..$first:ident: $first_type:ty;)*
+            $($name:ident $(as $key:literal)?: $type:ty = $default:expr, $slot:ident($($limit:expr),*), $help:literal $(=> $redo:ident)?;)+
+            $($(#[$last_doc:meta])* ..$last:ident: $last_type:ty;)*
         }
     ) => {
         $(#[$doc])*
         #[derive(Clone, Debug, PartialEq)]
         pub struct $part {
+            $($(#[$first_doc])* pub $first: $first_type,)*
             $(#[doc = $help] pub $name: $type,)*
+            $($(#[$last_doc])* pub $last: $last_type,)*
         }
 
         impl Default for $part {
             fn default() -> Self {
-                Self { $($name: $default),* }
+                Self {
+                    $($first: Default::default(),)*
+                    $($name: $default,)*
+                    $($last: Default::default(),)*
+                }
             }
         }
 
         impl $part {
             /// Its keys, in the order of its fields.
             pub fn keys(&mut self) -> Vec<$crate::base::key::Key<'_>> {
-                vec![$($crate::base::key::Key::new(
-                    stringify!($name),
+                let own = [$($crate::base::key::Key::new(
+                    // The other name, if there is one.
+                    [$($key,)? stringify!($name)][0],
                     $slot(&mut self.$name $(, $limit)*),
                     $help,
-                )$(.redoing($crate::base::key::Redo::$redo))?),*]
+                )$(.redoing($crate::base::key::Redo::$redo))?),*];
+                let first = std::iter::empty()$(.chain(self.$first.keys()))*;
+                first.chain(own)$(.chain(self.$last.keys()))*.collect()
             }
         }
     };
@@ -225,13 +237,6 @@ pub fn number(at: &mut f64, low: f64, high: f64) -> impl Slot {
     let expects = format!("a number {}", from_to(low, high));
     let read = move |v: &Value| number_in(v, low, high);
     Place::new(at, expects, |x| (*x).into(), read)
-}
-
-/// A whole number in a closed range.
-pub fn count(at: &mut u32, low: u32, high: u32) -> impl Slot {
-    let expects = format!("a whole number from {low} to {high}");
-    let read = move |v: &Value| count_in(v, low, high);
-    Place::new(at, expects, |n| (*n).into(), read)
 }
 
 /// `"auto"`, which is stored as `None`, or a value that `read` reads.

@@ -1,7 +1,7 @@
 //! Enums whose variants are chosen by a word, each listed once.
 
 /// Declares an enum from one list of variants and their words, with `ALL`, `WORDS`, `name` and
-/// `named`.
+/// `named`. Files hold a variant as its word.
 ///
 /// If a type follows the enum's name, each variant also has a value of that type, which
 /// `facts` returns.
@@ -31,9 +31,9 @@ macro_rules! named_enum {
         }
     ) => {
         $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
         pub enum $type {
-            $($(#[$doc])* $variant),*
+            $($(#[$doc])* #[serde(rename = $name)] $variant),*
         }
 
         impl $type {

@@ -5,6 +5,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use crate::base::units;
 use crate::heightfield::heights::MOST_SAMPLES;
 use crate::plan::MOST_PIXELS;
+use crate::raster::png::BitDepth;
 
 /// Reads the size of a picture, like `1280x720`.
 ///
@@ -24,6 +25,11 @@ pub fn samples(text: &str) -> Result<[u32; 2], String> {
     units::size(text, MOST_SAMPLES).ok_or_else(|| {
         format!("must be columns x rows, each from 1 to {MOST_SAMPLES}, like 512x256")
     })
+}
+
+/// Reads how many bits a channel of a PNG has.
+pub fn bits() -> impl TypedValueParser<Value = BitDepth> {
+    words([(BitDepth::Eight, "8", ""), (BitDepth::Sixteen, "16", "")])
 }
 
 /// A parser of words that stand for values; each value comes with its word and its help.

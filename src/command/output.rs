@@ -13,6 +13,7 @@ use crate::picture::frame::Frame;
 use crate::picture::{Layer, OutputError, Shades, write_exr, write_jpeg, write_png, write_webp};
 use crate::plan::{Extras, Plan};
 use crate::preset;
+use crate::raster::{self, open::open};
 
 /// The format of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,10 +124,11 @@ const MOST_SETTINGS: usize = 120;
 
 /// The file that a picture goes to without -o: `NAME.png`, with other settings
 /// `NAME-camera.fov=33.png`, with another size `NAME-640x360.png`, and of another layer
-/// `NAME.depth.png`. A picture with other settings replaces only its own like.
+/// `NAME.depth.png`. Only a picture of this program is replaced. With `--set` or a built-in
+/// preset it must have the same settings. The preset in a file may have been edited since.
 ///
 /// # Errors
-/// The file exists and holds another preset than the one with `--set`.
+/// The file exists and may not be replaced.
 pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<PathBuf> {
     // The bytes of the name are kept, which need not be UTF-8.
     let name = args.preset.file_stem();
@@ -150,12 +152,19 @@ pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<Pa
     }
     file.push(".png");
     let file = PathBuf::from(file);
-    let same = || preset::find(&file).is_ok_and(|found| found.text == preset::write(plan));
-    if !args.set.is_empty() && file.exists() && !same() {
-        return Err(usage(format!(
-            "`{}` exists and has other settings; name the new picture with -o",
-            file.display()
-        )));
+    if !file.exists() {
+        return Ok(file);
     }
-    Ok(file)
+    let is_png = open(&file).is_ok_and(|opened| opened.format == raster::open::Format::Png);
+    let picture = preset::find(&file).ok().filter(|_| is_png);
+    let may_differ = args.set.is_empty() && preset::file(&args.preset).is_some();
+    let why = match picture {
+        None => "is no picture of this program",
+        Some(old) if !may_differ && old.text != preset::write(plan) => "has other settings",
+        Some(_) => return Ok(file),
+    };
+    let name = file.display();
+    Err(usage(format!(
+        "`{name}` exists and {why}; name the new picture with -o"
+    )))
 }

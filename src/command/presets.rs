@@ -1,6 +1,5 @@
 //! `conemarch presets [PRESET]`
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use anyhow::Result;
@@ -8,6 +7,7 @@ use clap::Args;
 
 use crate::command::completions::presets;
 use crate::command::print::print;
+use crate::command::table::columns;
 use crate::preset::{BUILTIN, load, read};
 
 /// What `presets` takes.
@@ -32,11 +32,7 @@ pub fn run(args: &Presets) -> Result<()> {
 
 /// One line for each preset: name, at least two blanks, title.
 fn list() -> Result<String> {
-    let width = BUILTIN.iter().map(|(n, _)| n.len()).max().unwrap_or(0);
-    let mut text = String::new();
-    for (name, source) in BUILTIN {
-        let title = read(source, name)?.title;
-        writeln!(text, "{name:<width$}  {title}")?;
-    }
-    Ok(text)
+    let row = |(name, source): &(&str, &str)| Ok(vec![name.to_string(), read(source, name)?.title]);
+    let rows: Result<_> = BUILTIN.iter().map(row).collect();
+    Ok(columns(rows?))
 }

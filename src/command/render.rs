@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint, value_parser};
 
-use crate::command::arguments::{size, words};
+use crate::command::arguments::{bits, size, words};
 use crate::command::bench::common::of_how_many;
 use crate::command::bench::runner::{Runner, TIMED};
 use crate::command::executor::{Executor, device};
@@ -36,8 +36,8 @@ pub struct Render {
     ///
     /// Without -o the picture goes to the current folder as NAME.png, with --set as
     /// NAME-camera.fov=60.png, with another --size as NAME-640x360.png, and with another
-    /// --layer as NAME.depth.png. With --set a file is replaced only if it has the same
-    /// settings.
+    /// --layer as NAME.depth.png. Only a picture of this program is replaced, and with --set
+    /// or a built-in preset only one with the same settings.
     ///
     /// A PNG carries its preset and can be rendered again; JPEG and WebP carry none. WebP is
     /// without loss. An EXR has the channels R, G, B (linear), A (1), Z (along the view
@@ -69,7 +69,7 @@ pub struct Render {
     pub(crate) layer: Layer,
 
     /// Bits of each colour of a PNG; 16 leave no steps in smooth shades [default: 8]
-    #[arg(long, value_name = "BITS", value_parser = depths())]
+    #[arg(long, value_name = "BITS", value_parser = bits())]
     pub(crate) depth: Option<BitDepth>,
 
     /// Quality of a JPEG, from 1 to 100 [default: 92]
@@ -87,10 +87,6 @@ pub struct Render {
 
 fn layers() -> impl TypedValueParser<Value = Layer> {
     words(Layer::ALL.map(|layer| (layer, layer.name(), layer.facts())))
-}
-
-fn depths() -> impl TypedValueParser<Value = BitDepth> {
-    words([(BitDepth::Eight, "8", ""), (BitDepth::Sixteen, "16", "")])
 }
 
 /// Renders a preset.

@@ -29,6 +29,22 @@ struct Proof {
     ended: Ended,
 }
 
+impl Proof {
+    /// That of a cell whose parent has proven a front.
+    fn of<S: Solid>(
+        (solid, view): (&S, &View),
+        cell: [u32; 2],
+        level: Level,
+        front: f64,
+        work: &mut Counts,
+    ) -> Self {
+        let mut cone = view.view_cone(cell, level.divisor);
+        cone.k *= level.fudge;
+        let (front, ended) = march(solid, &cone, front, level.steps, work);
+        Self { front, ended }
+    }
+}
+
 /// A finished level, row by row.
 struct Proofs {
     width: usize,
@@ -132,10 +148,8 @@ impl<S: Solid> Run<'_, S> {
             if parent.ended == Ended::Sky {
                 return (parent, work);
             }
-            let mut cone = view.view_cone(cell, level.divisor);
-            cone.k *= level.fudge;
-            let (front, ended) = march(solid, &cone, parent.front, level.steps, &mut work);
-            (Proof { front, ended }, work)
+            let proof = Proof::of((solid, view), cell, level, parent.front, &mut work);
+            (proof, work)
         };
         let mut proofs = Vec::with_capacity(cells[0] as usize * cells[1] as usize);
         let mut sum = (0, 0);
@@ -268,7 +282,7 @@ impl Bands<'_> {
     }
 }
 
-/// Traces some pixels of a plan without cones.
+/// Renders some pixels of a plan alone: each goes through the cones above it.
 ///
 /// # Errors
 /// A named file cannot be read or does not fit.
@@ -281,6 +295,7 @@ pub fn sample(
     let sample = Sample {
         view: plan.view(),
         limit: plan.ray_steps(&solid),
+        levels: plan.levels(),
         pixels,
     };
     Ok(solid.run(sample))
@@ -289,6 +304,7 @@ pub fn sample(
 struct Sample<'a> {
     view: View,
     limit: u32,
+    levels: Vec<Level>,
     pixels: &'a [[u32; 2]],
 }
 
@@ -297,8 +313,16 @@ impl Task for Sample<'_> {
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let one = |pixel: &[u32; 2]| {
-            let ray = self.view.view_ray(*pixel);
-            trace::trace(solid, &ray, 0.0, self.limit, &mut Counts::default())
+            let (mut front, work) = (0.0, &mut Counts::default());
+            for level in &self.levels {
+                let cell = pixel.map(|p| p / level.divisor);
+                let proof = Proof::of((solid, &self.view), cell, *level, front, work);
+                if proof.ended == Ended::Sky {
+                    return (Hit::default(), State::Sky);
+                }
+                front = proof.front;
+            }
+            trace::trace(solid, &self.view.view_ray(*pixel), front, self.limit, work)
         };
         self.pixels.par_iter().map(one).collect()
     }

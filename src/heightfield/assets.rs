@@ -10,7 +10,7 @@ use bytemuck::cast_slice;
 use glam::DVec2;
 
 use crate::base::key::Fault;
-use crate::heightfield::conemap::generate::Generator;
+use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, ShareWatch};
 use crate::heightfield::load::PatternSpec;
 use crate::heightfield::paint::{Colors, Paint};
 use crate::heightfield::tracer::settings::{Make, PrepareError, Supply, on_cpu, without_cones};
@@ -96,6 +96,26 @@ impl Assets {
         Ok(())
     }
 
+    /// Makes the heights of a pattern, or loads those of a file.
+    ///
+    /// # Errors
+    /// A file does not fit, or `watch` returns `false`; it is told the share that is made.
+    pub fn make_heights(
+        &self,
+        settings: &HeightfieldSettings,
+        watch: ShareWatch<'_>,
+    ) -> Result<(), PrepareError> {
+        let mut goes_on = true;
+        let made = self.ground(settings, &mut |share| {
+            goes_on = watch(share);
+            goes_on
+        });
+        if !goes_on {
+            return Err(GenerateError::Cancelled.into());
+        }
+        Ok(made.map(|_| ())?)
+    }
+
     /// Makes the cone maps by `make`.
     ///
     /// # Errors
@@ -159,18 +179,17 @@ impl Assets {
 
     /// Notes about the named files: what was ignored in them, and what could not be checked.
     pub fn notes(&self, settings: &HeightfieldSettings) -> Vec<String> {
-        if settings.files().is_empty() {
-            return Vec::new();
-        }
-        // An error here is reported where the heights are needed.
-        let Ok(ground) = self.ground(settings) else {
-            return Vec::new();
-        };
-        let mut notes = Vec::from_iter(ground.note.clone());
-        if settings.reads_cones()
-            && let Ok(supply) = self.cones(settings, &ground.surface, &mut on_cpu)
+        let mut notes = Vec::new();
+        // Errors here are reported where the files are needed. No pattern is made only for notes.
+        if (settings.reads_heights() || settings.reads_cones())
+            && let Ok(ground) = self.ground(settings, &mut |_| true)
         {
-            notes.extend(supply.iter().filter_map(|s| s.note.clone()));
+            notes.extend(ground.note.clone());
+            if settings.reads_cones()
+                && let Ok(supply) = self.cones(settings, &ground.surface, &mut on_cpu)
+            {
+                notes.extend(supply.iter().filter_map(|s| s.note.clone()));
+            }
         }
         if let Ok(Some(texture)) = self.texture(settings) {
             let path = settings.source.folder.join(&settings.texture);
@@ -238,12 +257,16 @@ impl Assets {
     }
 
     fn surface(&self, settings: &HeightfieldSettings) -> Result<Arc<HeightSurface>, Fault> {
-        Ok(self.ground(settings)?.surface.clone())
+        Ok(self.ground(settings, &mut |_| true)?.surface.clone())
     }
 
-    fn ground(&self, settings: &HeightfieldSettings) -> Result<Arc<Ground>, Fault> {
+    fn ground(
+        &self,
+        settings: &HeightfieldSettings,
+        watch: ShareWatch<'_>,
+    ) -> Result<Arc<Ground>, Fault> {
         let make = |(source, patches, tiles): &SurfaceKey| {
-            let loaded = source.load()?;
+            let loaded = source.load(watch)?;
             let made = HeightSurface::new(loaded.heights, *patches, *tiles);
             Ok(Ground {
                 surface: Arc::new(made.map_err(tiles_fault)?),

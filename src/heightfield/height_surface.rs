@@ -40,7 +40,10 @@ pub enum HeightSurfaceError {
     },
     /// Several tiles along an axis that does not wrap: the last cell does not join the first,
     /// and the cones do not know the neighbour.
-    #[error("axis {0} has several tiles but does not wrap; let it wrap, or use one tile")]
+    #[error(
+        "the map is repeated along {}, but it does not wrap there; set wrap = \"xy\"",
+        ["x", "y"][*.0]
+    )]
     Unwrapped(usize),
 }
 
@@ -124,12 +127,19 @@ pub struct HeightSurface {
     maxima: MaxMip,
 }
 
-/// Checks that tiles of so many cells are not too many.
+/// Checks that a map of so many cells can be tiled.
 ///
 /// # Errors
-/// No tiles, or too many.
-pub fn check_tiles(cells: [u32; 2], tiles: [u32; 2]) -> Result<(), HeightSurfaceError> {
+/// No tiles, too many, or several along an axis that does not wrap.
+pub fn check_tiles(
+    cells: [u32; 2],
+    wrap: [bool; 2],
+    tiles: [u32; 2],
+) -> Result<(), HeightSurfaceError> {
     for (axis, (cells, tiles)) in cells.into_iter().zip(tiles).enumerate() {
+        if tiles > 1 && !wrap[axis] {
+            return Err(HeightSurfaceError::Unwrapped(axis));
+        }
         if tiles == 0 || u64::from(cells) * u64::from(tiles) > u64::from(MOST_CELLS) {
             return Err(HeightSurfaceError::Tiles { axis, cells, tiles });
         }
@@ -148,10 +158,7 @@ impl HeightSurface {
         tiles: [u32; 2],
     ) -> Result<Self, HeightSurfaceError> {
         let cells = heights.cells(patches);
-        check_tiles(cells, tiles)?;
-        if let Some(axis) = (0..2).find(|a| tiles[*a] > 1 && !heights.wrap()[*a]) {
-            return Err(HeightSurfaceError::Unwrapped(axis));
-        }
+        check_tiles(cells, heights.wrap(), tiles)?;
         Ok(Self {
             domain: [0, 1].map(|a| (cells[a] * tiles[a]) as i32),
             maxima: MaxMip::new(cells, heights.apexes(patches)),

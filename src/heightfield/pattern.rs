@@ -9,6 +9,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::base::named::named_enum;
+use crate::heightfield::conemap::generate::generator::ShareWatch;
 
 named_enum! {
     /// The patterns.
@@ -39,99 +40,159 @@ impl Pattern {
     /// which the power of `Fbm` and `Ridges`, and of the skin of `Stones` and `Bricks`, falls
     /// with the wave number: 2.6 for rough terrain, more for smoother.
     pub fn heights(self, size: [u32; 2], seed: u32, power: f64) -> Vec<f32> {
-        let mut random = Random::new(seed);
+        let made = self.watched(size, seed, power, &mut |_| true);
+        made.unwrap_or_default()
+    }
+
+    /// As [`Pattern::heights`], for large ones: `None` if `watch` returns `false`, which is told
+    /// the share that is done.
+    pub fn watched(
+        self,
+        size: [u32; 2],
+        seed: u32,
+        power: f64,
+        watch: ShareWatch<'_>,
+    ) -> Option<Vec<f32>> {
         let [w, h] = size.map(|n| n as usize);
-        let places = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
+        let (waves, own) = match self {
+            Self::Fbm | Self::Ridges => (3 * h + w, 0),
+            Self::Stones | Self::Bricks => (3 * h + w, h),
+            _ => (0, h),
+        };
+        let mut making = Making {
+            size: [w, h],
+            power,
+            random: Random::new(seed),
+            done: 0,
+            rows: waves + own,
+            watch,
+        };
         let raw: Vec<f64> = match self {
-            Self::Fbm => spectral([w, h], power, &mut random),
+            Self::Fbm => making.spectral()?,
             Self::Ridges => {
-                let mut heights = spectral([w, h], power, &mut random);
+                let mut heights = making.spectral()?;
                 let mean = heights.iter().sum::<f64>() / heights.len() as f64;
                 for z in &mut heights {
                     *z = -(*z - mean).abs();
                 }
                 heights
             }
-            Self::Spikes => places
-                .map(|_| {
-                    let (spike, height) = (random.unit() < 0.02, random.unit());
-                    if spike {
-                        0.4 + 0.6 * height
-                    } else {
-                        0.15 * height
-                    }
-                })
-                .collect(),
-            Self::Checker => places
-                .map(|(x, y)| ((x * w.min(16) / w + y * h.min(16) / h) % 2) as f64)
-                .collect(),
-            Self::Sine => places
-                .map(|(x, y)| {
-                    let [u, v] =
-                        [(x, w), (y, h)].map(|(i, n)| std::f64::consts::TAU * i as f64 / n as f64);
-                    (3.0 * u).sin()
-                        + (2.0 * v).cos()
-                        + (2.0 * u + 3.0 * v).sin() * 0.5
-                        + (5.0 * u - 4.0 * v).cos() * 0.25
-                })
-                .collect(),
-            Self::Noise => places.map(|_| random.unit()).collect(),
+            Self::Spikes => making.places(|_, _, random| {
+                let (spike, height) = (random.unit() < 0.02, random.unit());
+                match spike {
+                    true => 0.4 + 0.6 * height,
+                    false => 0.15 * height,
+                }
+            })?,
+            Self::Checker => {
+                making.places(|x, y, _| ((x * w.min(16) / w + y * h.min(16) / h) % 2) as f64)?
+            }
+            Self::Sine => making.places(|x, y, _| {
+                let [u, v] =
+                    [(x, w), (y, h)].map(|(i, n)| std::f64::consts::TAU * i as f64 / n as f64);
+                (3.0 * u).sin()
+                    + (2.0 * v).cos()
+                    + (2.0 * u + 3.0 * v).sin() * 0.5
+                    + (5.0 * u - 4.0 * v).cos() * 0.25
+            })?,
+            Self::Noise => making.places(|_, _, random| random.unit())?,
             Self::Stones => {
-                let points = Scattered::new(STONES, &mut random);
-                let skin = spectral([w, h], power, &mut random);
-                let stone = |(x, y)| points.stone([x as f64 / w as f64, y as f64 / h as f64]);
-                rough(places.map(stone).collect(), &skin)
+                let points = Scattered::new(STONES, &mut making.random);
+                making.rough(|place| points.stone(place))?
             }
             Self::Bricks => {
-                let shade: Vec<f64> = (0..BRICKS[0] * BRICKS[1]).map(|_| random.unit()).collect();
-                let skin = spectral([w, h], power, &mut random);
-                let one = |(x, y)| brick([x as f64 / w as f64, y as f64 / h as f64], &shade);
-                rough(places.map(one).collect(), &skin)
+                let mut shade = [0.0; BRICKS[0] * BRICKS[1]];
+                shade.fill_with(|| making.random.unit());
+                making.rough(|place| brick(place, &shade))?
             }
         };
-        stretched(&raw)
+        Some(stretched(&raw))
+    }
+}
+
+/// A pattern while it is made, row by row.
+struct Making<'a> {
+    size: [usize; 2],
+    power: f64,
+    random: Random,
+    /// Rows of work that are done, in all steps, and their number.
+    done: usize,
+    rows: usize,
+    watch: ShareWatch<'a>,
+}
+
+impl Making<'_> {
+    /// One more row is done; `None` to stop.
+    fn next(&mut self) -> Option<()> {
+        self.done += 1;
+        (self.watch)(self.done as f64 / self.rows as f64).then_some(())
+    }
+
+    /// The values of all places, row by row.
+    fn places(&mut self, one: impl Fn(usize, usize, &mut Random) -> f64) -> Option<Vec<f64>> {
+        let [w, h] = self.size;
+        let mut all = Vec::with_capacity(w * h);
+        for y in 0..h {
+            all.extend((0..w).map(|x| one(x, y, &mut self.random)));
+            self.next()?;
+        }
+        Some(all)
+    }
+
+    /// Gaussian waves whose power falls as `k^-power`, k being cycles per map, summed by an
+    /// inverse FFT.
+    fn spectral(&mut self) -> Option<Vec<f64>> {
+        let [w, h] = self.size;
+        // The last waves go the other way, with as many cycles.
+        let wave = |i: usize, n: usize| i.min(n - i) as f64;
+        let mut waves: Vec<Complex<f64>> = Vec::with_capacity(w * h);
+        for y in 0..h {
+            for x in 0..w {
+                let k = wave(x, w).hypot(wave(y, h));
+                let amplitude = if k > 0.0 {
+                    k.powf(-0.5 * self.power)
+                } else {
+                    0.0
+                };
+                let (a, b) = self.random.gauss();
+                waves.push(amplitude * Complex::new(a, b));
+            }
+            self.next()?;
+        }
+        let mut planner = FftPlanner::new();
+        let [along, across] = [w, h].map(|n| planner.plan_fft_inverse(n));
+        for row in waves.chunks_mut(w) {
+            along.process(row);
+            self.next()?;
+        }
+        let mut turned: Vec<Complex<f64>> = Vec::with_capacity(w * h);
+        for x in 0..w {
+            turned.extend(waves[x..].iter().step_by(w));
+            across.process(&mut turned[x * h..]);
+            self.next()?;
+        }
+        // The real part of waves without symmetry is a field of its own.
+        self.places(|x, y, _| turned[x * h + y].re)
+    }
+
+    /// Heights by a place of the map in 0..1, with a rough skin whose mean height is 0.
+    fn rough(&mut self, one: impl Fn([f64; 2]) -> f64) -> Option<Vec<f64>> {
+        let [w, h] = self.size;
+        let skin = self.spectral()?;
+        let largest = skin.iter().fold(1e-30_f64, |m, s| m.max(s.abs()));
+        let one = |x, y| one([x as f64 / w as f64, y as f64 / h as f64]);
+        self.places(|x, y, _| one(x, y) + SKIN * skin[y * w + x] / largest)
     }
 }
 
 /// Scales heights so that the lowest is 0 and the highest is 1. A constant map becomes 0.
-fn stretched(raw: &[f64]) -> Vec<f32> {
-    let low = raw.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = raw.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+pub(super) fn stretched<T: Copy + Into<f64>>(raw: &[T]) -> Vec<f32> {
+    let all = || raw.iter().map(|z| (*z).into());
+    let low = all().fold(f64::INFINITY, f64::min);
+    let high = all().fold(f64::NEG_INFINITY, f64::max);
     let range = if high > low { high - low } else { 1.0 };
-    raw.iter().map(|z| ((z - low) / range) as f32).collect()
-}
-
-/// Gaussian waves whose power falls as `k^-power`, k being cycles per map, summed by an
-/// inverse FFT.
-fn spectral([w, h]: [usize; 2], power: f64, random: &mut Random) -> Vec<f64> {
-    let wave = |i: usize, n: usize| {
-        if 2 * i > n {
-            i as f64 - n as f64
-        } else {
-            i as f64
-        }
-    };
-    let mut waves: Vec<Complex<f64>> = Vec::with_capacity(w * h);
-    for y in 0..h {
-        for x in 0..w {
-            let k = wave(x, w).hypot(wave(y, h));
-            let amplitude = if k > 0.0 { k.powf(-0.5 * power) } else { 0.0 };
-            let (a, b) = random.gauss();
-            waves.push(amplitude * Complex::new(a, b));
-        }
-    }
-    let mut planner = FftPlanner::new();
-    let rows = planner.plan_fft_inverse(w);
-    let columns = planner.plan_fft_inverse(h);
-    rows.process(&mut waves);
-    let mut turned: Vec<Complex<f64>> = (0..w)
-        .flat_map(|x| (0..h).map(move |y| (x, y)))
-        .map(|(x, y)| waves[y * w + x])
-        .collect();
-    columns.process(&mut turned);
-    // The real part of waves without symmetry is a field of its own.
-    let places = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
-    places.map(|(x, y)| turned[x * h + y].re).collect()
+    // The cast may round a share just under 1 up to 1, never beyond.
+    all().map(|z| ((z - low) / range) as f32).collect()
 }
 
 /// Stones along a side of the map.
@@ -140,15 +201,6 @@ const STONES: usize = 9;
 const BRICKS: [usize; 2] = [4, 8];
 /// Height of a rough skin, of the whole.
 const SKIN: f64 = 0.05;
-
-/// Adds a rough skin whose mean height is 0.
-fn rough(mut heights: Vec<f64>, skin: &[f64]) -> Vec<f64> {
-    let largest = skin.iter().fold(1e-30_f64, |m, s| m.max(s.abs()));
-    for (z, s) in heights.iter_mut().zip(skin) {
-        *z += SKIN * s / largest;
-    }
-    heights
-}
 
 /// From 0 to 1 between two values of x, smoothly.
 fn smooth(from: f64, to: f64, x: f64) -> f64 {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::{DVec2, DVec3};
 
-use crate::base::key::{Fault, Key, counts, number, text, triple, word};
+use crate::base::key::{Fault, counts, number, text, triple, word};
 use crate::heightfield::conemap::generate::Generator;
 use crate::heightfield::load::PatternSpec;
 use crate::heightfield::tracer::{TracerKind, settings::TracerSettings};
@@ -12,110 +12,54 @@ use crate::heightfield::{
     Patches, assets::tiles_fault, height_surface::check_tiles, heights::cells, paint::PAINTS,
     placement::Placement,
 };
-use crate::keys;
+use crate::settings;
 
 pub use super::source::Source;
 
 /// The value of `texture` for none.
 const NO_TEXTURE: &str = "none";
 
-/// A heightfield: heights, their place in the world, and how they are traced.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HeightfieldSettings {
-    /// Where its heights come from.
-    pub source: Source,
-    /// What lies between the samples.
-    pub patches: Patches,
-    /// Number of copies of the map along x and y.
-    pub tiles: [u32; 2],
-    /// World length of the block's longer side, with all tiles.
-    pub width: f64,
-    /// World length of the height 1.
-    pub depth: f64,
-    /// The middle of the block's base.
-    pub centre: DVec3,
-    /// Rotation in degrees about x, then y, then z.
-    pub turn: DVec3,
-    /// How rays are traced.
-    pub tracer_settings: TracerSettings,
-    /// The generator whose cones pick the colour; `None` for the height.
-    pub paint: Option<Generator>,
-    /// The path of a picture that colours each tile; `none` for none.
-    pub texture: String,
-}
-
-impl Default for HeightfieldSettings {
-    fn default() -> Self {
-        Self {
-            source: Source::default(),
-            patches: Patches::Bilinear,
-            tiles: [1, 1],
-            width: 12.0,
-            depth: 2.0,
-            centre: DVec3::ZERO,
-            turn: DVec3::ZERO,
-            tracer_settings: TracerSettings::default(),
-            paint: None,
-            texture: NO_TEXTURE.into(),
-        }
+settings! {
+    /// A heightfield: heights, their place in the world, and how they are traced.
+    pub struct HeightfieldSettings {
+        /// Where its heights come from.
+        ..source: Source;
+        patches as "surface": Patches = Patches::Bilinear, word(&Patches::WORDS),
+            "the surface between the samples: a bilinear patch over each cell, or each sample as a flat box" => Assets;
+        tiles: [u32; 2] = [1, 1], counts(1, 256),
+            "number of copies of the map along x and y" => Assets;
+        width: f64 = 12.0, number(1e-6, 1e6),
+            "world length of the block's longer side";
+        depth: f64 = 2.0, number(1e-6, 1e6),
+            "world length of the height 1";
+        centre: DVec3 = DVec3::ZERO, triple(-1e6, 1e6),
+            "the middle of the block's base";
+        turn: DVec3 = DVec3::ZERO, triple(-360.0, 360.0),
+            "rotation in degrees about x, then y, then z";
+        paint: Option<Generator> = None, word(PAINTS),
+            "what picks the colour from the palette: the height, or the width of the cones that this generator makes" => Assets;
+        texture: String = NO_TEXTURE.into(), text(),
+            "a PNG, JPEG or WebP that colours each tile in place of the palette; \"none\" for none" => Assets;
+        /// How rays are traced.
+        ..tracer_settings: TracerSettings;
     }
 }
 
 impl HeightfieldSettings {
-    /// Its keys in `[scene]`.
-    pub fn keys(&mut self) -> Vec<Key<'_>> {
-        let mut keys = self.source.keys();
-        keys.extend(keys![
-            "surface" = word(&mut self.patches, &Patches::WORDS),
-                "the surface between the samples: a bilinear patch over each cell, or each sample as a flat box" => Assets;
-            "tiles" = counts(&mut self.tiles, 1, 256),
-                "number of copies of the map along x and y" => Assets;
-            "width" = number(&mut self.width, 1e-6, 1e6),
-                "world length of the block's longer side";
-            "depth" = number(&mut self.depth, 1e-6, 1e6),
-                "world length of the height 1";
-            "centre" = triple(&mut self.centre, -1e6, 1e6),
-                "the middle of the block's base";
-            "turn" = triple(&mut self.turn, -360.0, 360.0),
-                "rotation in degrees about x, then y, then z";
-            "paint" = word(&mut self.paint, PAINTS),
-                "what picks the colour from the palette: the height, or the width of the cones that this generator makes" => Assets;
-            "texture" = text(&mut self.texture),
-                "a PNG, JPEG or WebP that colours each tile in place of the palette; \"none\" for none" => Assets;
-        ]);
-        keys.extend(self.tracer_settings.keys());
-        keys
-    }
-
     /// Checks that all settings fit together. No file is read.
     pub fn check(&self) -> Result<(), Fault> {
         self.tracer_settings.check()?;
-        for (axis, name) in [(0, "x"), (1, "y")] {
-            if self.tiles[axis] > 1 && !self.source.options.wrap[axis] {
-                return Err(Fault::new(
-                    "scene.tiles",
-                    format!(
-                        "the map is repeated along {name}, but it does not wrap there; set wrap = \"xy\""
-                    ),
-                ));
-            }
-        }
-        match PatternSpec::read(&self.source.field) {
-            Some(Err(why)) => return Err(Fault::new("scene.field", why)),
-            // Before its heights are made.
-            Some(Ok(pattern)) => {
-                let cells = cells(pattern.size, self.source.options.wrap, self.patches);
-                check_tiles(cells, self.tiles).map_err(tiles_fault)?;
-            }
-            None => {}
-        }
-        if self.is_textured() && self.paint.is_some() {
-            return Err(Fault::new(
-                "scene.texture",
-                "scene.paint colours the surface already; set paint = \"height\"",
-            ));
-        }
-        Ok(())
+        // The size of a file's heights is checked when they are loaded.
+        let pattern = PatternSpec::read(&self.source.field).transpose();
+        let pattern = pattern.map_err(|why| Fault::new("scene.field", why))?;
+        let wrap = self.source.options.wrap;
+        let cells = pattern.map_or([1, 1], |p| cells(p.size, wrap, self.patches));
+        check_tiles(cells, wrap, self.tiles).map_err(tiles_fault)?;
+        Fault::unless(
+            !self.is_textured() || self.paint.is_none(),
+            "scene.texture",
+            "scene.paint colours the surface already; set paint = \"height\"",
+        )
     }
 
     /// Whether the heights come from a file.

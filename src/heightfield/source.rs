@@ -1,8 +1,9 @@
 //! Where the heights of a preset come from: a pattern or a file, and how they are read.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::base::key::{Fault, Key, switch, text, word};
+use crate::heightfield::conemap::generate::generator::ShareWatch;
 use crate::heightfield::heights::WRAPS;
 use crate::heightfield::load::{LoadOptions, Loaded, PatternSpec, load};
 use crate::keys;
@@ -30,12 +31,11 @@ impl Default for Source {
 
 impl Source {
     /// The argument of [`load`]: the pattern, or the file's whole path.
-    pub fn argument(&self) -> String {
-        if PatternSpec::read(&self.field).is_some() {
-            return self.field.clone();
+    pub fn argument(&self) -> PathBuf {
+        match PatternSpec::read(&self.field) {
+            Some(_) => PathBuf::from(&self.field),
+            None => self.folder.join(&self.field),
         }
-        let path = self.folder.join(Path::new(&self.field));
-        path.to_string_lossy().into_owned()
     }
 
     /// Samples along each axis; `None` for a file.
@@ -60,8 +60,9 @@ impl Source {
     /// Loads the heights.
     ///
     /// # Errors
-    /// There is no such pattern, or the file holds no heights.
-    pub fn load(&self) -> Result<Loaded, Fault> {
-        load(self.argument(), &self.options).map_err(|e| Fault::new("scene.field", e.to_string()))
+    /// There is no such pattern, the file holds no heights, or `watch` returns `false`.
+    pub fn load(&self, watch: ShareWatch<'_>) -> Result<Loaded, Fault> {
+        let loaded = load(self.argument(), &self.options, watch);
+        loaded.map_err(|e| Fault::new("scene.field", e.to_string()))
     }
 }

@@ -8,18 +8,17 @@
 //! pixels than a budget allows. The budget is for the whole picture and the probes are few, so
 //! the standard error is added to each counted share, and other probes check the result.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::base::outcome::{Counts, State};
-use crate::base::view::{View, footprint};
+use crate::base::outcome::State;
+use crate::base::view::footprint;
 use crate::cpu;
 use crate::gpu::RenderError;
-use crate::pass::march::{Ended, march};
-use crate::pass::trace::trace;
 use crate::plan::Plan;
 use crate::plan::march::Mode;
-use crate::plan::pyramid::Level;
 use crate::scene::{Assets, Solid, Task};
 
 /// Factor on the steps that find the true hits.
@@ -28,10 +27,8 @@ const STRIDE: f64 = 0.05;
 const BEHIND: f64 = 2.0;
 /// The shells to try.
 const SHELLS: [f64; 10] = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
-/// The factors on cones to try, narrowest first.
-const FUDGES: [f64; 14] = [
-    0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95,
-];
+/// The factors on cones to try, narrowest first, in twentieths.
+const FUDGES: Range<u8> = 6..20;
 
 /// Share of the time that the probes take, for progress: the rest is for trying settings.
 const PROBING: f64 = 0.5;
@@ -130,18 +127,9 @@ pub fn calibrate(
         plan,
         probes: known,
     });
-    let count = |plan: &Plan, probes: &[Probe]| {
-        let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
-        let limit = plan.ray_steps(&solid);
-        Ok::<_, RenderError>(solid.run(Lost {
-            plan,
-            limit,
-            probes,
-        }))
-    };
     let mut lost = |plan: &Plan, share: f64| {
         check(share)?;
-        Ok::<_, RenderError>(at_most(count(plan, &probes)?, probes.len()))
+        Ok::<_, RenderError>(at_most(lost_share(plan, assets, &probes)?, probes.len()))
     };
     let mut best = plan.clone();
     best.march.mode = Mode::Calibrated;
@@ -154,24 +142,22 @@ pub fn calibrate(
         }
     }
     let levels = best.levels().len();
-    let mut fudge = vec![1.0; levels];
+    best.march.fudge = vec![1.0; levels.max(1)];
     let exact = lost(&best, PROBING)?;
     for level in 0..levels {
         let share = (level + 1) as f64 / levels as f64;
         let allowed = exact + (budget - exact).max(0.0) * share;
         for f in FUDGES {
-            fudge[level] = f;
-            best.march.fudge.clone_from(&fudge);
+            best.march.fudge[level] = f64::from(f) / 20.0;
             let share = PROBING + (1.0 - PROBING) * level as f64 / levels as f64;
             if lost(&best, share)? <= allowed {
                 break;
             }
-            fudge[level] = 1.0;
+            best.march.fudge[level] = 1.0;
         }
     }
-    best.march.fudge = if fudge.is_empty() { vec![1.0] } else { fudge };
     let held = lost(&best, 1.0)? <= budget;
-    let lost = count(&best, &others)?;
+    let lost = lost_share(&best, assets, &others)?;
     Ok(Calibration {
         slope,
         slack,
@@ -228,47 +214,15 @@ impl Task for Slopes<'_> {
     }
 }
 
-/// Finds the share of probes that a plan loses: shown too deep, as sky, or unconverged.
-struct Lost<'a> {
-    plan: &'a Plan,
-    limit: u32,
-    probes: &'a [Probe],
-}
-
-impl Task for Lost<'_> {
-    type Output = f64;
-
-    fn run<S: Solid>(self, solid: &S) -> Self::Output {
-        let view = self.plan.view();
-        let levels = self.plan.levels();
-        let one = |probe: &&Probe| {
-            let Some(hit) = probe.hit else { return false };
-            let Some(front) = front(solid, &view, &levels, probe.pixel) else {
-                return true;
-            };
-            let ray = view.view_ray(probe.pixel);
-            let (met, state) = trace(solid, &ray, front, self.limit, &mut Counts::default());
-            state != State::Hit || met.t > hit + BEHIND * probe.grain
-        };
-        let lost = self.probes.par_iter().filter(one).count();
-        lost as f64 / self.probes.len().max(1) as f64
-    }
-}
-
-/// The front of the finest cone above a pixel; `None` if a cone claims sky.
-fn front<S: Solid>(solid: &S, view: &View, levels: &[Level], pixel: [u32; 2]) -> Option<f64> {
-    let mut front = 0.0;
-    for level in levels {
-        let mut cone = view.view_cone(pixel.map(|p| p / level.divisor), level.divisor);
-        cone.k *= level.fudge;
-        let work = &mut Counts::default();
-        let (next, ended) = march(solid, &cone, front, level.steps, work);
-        if ended == Ended::Sky {
-            return None;
-        }
-        front = next;
-    }
-    Some(front)
+/// The share of probes that a plan loses: shown too deep, as sky, or unconverged.
+fn lost_share(plan: &Plan, assets: &Assets, probes: &[Probe]) -> Result<f64, RenderError> {
+    let hits = probes
+        .iter()
+        .filter_map(|p| Some((p.pixel, p.hit? + BEHIND * p.grain)));
+    let (pixels, most): (Vec<_>, Vec<f64>) = hits.unzip();
+    let found = cpu::sample(plan, assets, &pixels)?.into_iter().zip(most);
+    let lost = found.filter(|((met, state), most)| *state != State::Hit || met.t > *most);
+    Ok(lost.count() as f64 / probes.len().max(1) as f64)
 }
 
 #[cfg(test)]

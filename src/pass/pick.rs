@@ -50,21 +50,16 @@ pub struct PickQuestion {
 impl PickQuestion {
     /// The question for a place that is seen from an eye.
     pub fn new(at: At, eye: DVec3, [steps, limit]: [u32; 2]) -> Self {
-        let of_place = match at {
-            At::Pixel(pixel) => Self {
-                traces: 1,
-                pixel,
-                ..Self::zeroed()
-            },
-            At::Point(point) => Self {
-                point: (point - eye).as_vec3(),
-                ..Self::zeroed()
-            },
+        let (traces, pixel, point) = match at {
+            At::Pixel(pixel) => (1, pixel, Vec3::ZERO),
+            At::Point(point) => (0, [0; 2], (point - eye).as_vec3()),
         };
         Self {
+            point,
+            traces,
+            pixel,
             steps,
             limit,
-            ..of_place
         }
     }
 }

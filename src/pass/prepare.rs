@@ -1,4 +1,4 @@
-//! The pass before all others: it makes the cone maps that a scene needs.
+//! The pass before all others: it makes the heights and the cone maps that a scene needs.
 
 use thiserror::Error;
 
@@ -10,7 +10,7 @@ use crate::heightfield::conemap::generate::generator::{GenerateError, Generator,
 use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::plan::Plan;
-use crate::scene::Assets;
+use crate::scene::{Assets, Scene};
 
 /// Why there is no frame, on any executor.
 #[derive(Debug, Error)]
@@ -41,7 +41,7 @@ pub type Maker<'a> = &'a mut dyn FnMut(
     &mut dyn FnMut(f64) -> bool,
 ) -> Result<ConeMap, GenerateError>;
 
-/// Makes the cone maps of a plan by `maker` and keeps them in the assets. Returns the
+/// Makes the heights of a plan, and its cone maps by `maker`, and keeps them in the assets. Returns the
 /// milliseconds by `clock` that each map took; 0 for a map that was kept.
 ///
 /// # Errors
@@ -53,17 +53,20 @@ pub fn prepare(
     clock: Clock,
     watch: Watch<'_>,
 ) -> Result<Vec<(Preparation, f64)>, PrepareError> {
+    let mut tell = |pass: &str, done| {
+        let pass = pass.into();
+        watch(&Progress { pass, done })
+    };
+    if let Scene::Heightfield(settings) = &plan.scene {
+        let pass = format!("heights of {}", settings.source.field);
+        assets.make_heights(settings, &mut |done| tell(&pass, done))?;
+    }
     let mut taken = Vec::new();
     let make = &mut |generator, heights: &Heights, patches, options: &Options| {
         let start = clock();
         let pass = format!("cone map by {}", Generator::name(generator));
-        let mut told = |done| {
-            watch(&Progress {
-                pass: pass.clone(),
-                done,
-            })
-        };
-        let made = maker(generator, heights, patches, options, &mut told);
+        let told = &mut |done| tell(&pass, done);
+        let made = maker(generator, heights, patches, options, told);
         taken.push((generator, clock() - start));
         made
     };

@@ -5,8 +5,8 @@
 pub struct Progress {
     /// The current pass, or the one that has just ended.
     pub pass: String,
-    /// The share of the whole frame that is done, 0 to 1; while a cone map is made before the
-    /// other passes, the share of that map.
+    /// The share of the whole frame that is done, 0 to 1; while heights or a cone map are made
+    /// before the other passes, the share of these.
     pub done: f64,
 }
 

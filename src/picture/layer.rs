@@ -12,6 +12,7 @@ use crate::base::srgb::srgb;
 use crate::pass::look::tone;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
+use crate::raster::png::BitDepth;
 
 named_enum! {
     /// What a picture can show, and its description.
@@ -152,7 +153,7 @@ impl<'a> Shades<'a> {
 
     /// All pixels in 8 bits: red, green and blue, or one number where the layer is grey.
     pub fn bytes(&self) -> Vec<u8> {
-        let samples = self.samples(u16::from(u8::MAX));
+        let samples = self.samples(BitDepth::Eight.most());
         samples.into_iter().map(|s| s.to_le_bytes()[0]).collect()
     }
 

@@ -24,8 +24,10 @@ pub use folder::Folder;
 pub use layer::{Layer, Shades, heat};
 #[cfg(feature = "cli")]
 pub use place::{Place, clear, commit};
-pub use png::{BitDepth, write_png};
+pub use png::write_png;
 pub use web::{write_jpeg, write_webp};
+
+pub use crate::raster::png::BitDepth;
 
 /// The program as pictures name it.
 pub(crate) const SOFTWARE: &str = concat!("conemarch ", env!("CARGO_PKG_VERSION"));

@@ -6,17 +6,7 @@ use crate::picture::SOFTWARE;
 use crate::picture::error::OutputError;
 use crate::picture::layer::Shades;
 use crate::preset::PNG_KEYWORD;
-use crate::raster::png;
-
-/// Bits of one channel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BitDepth {
-    /// 0..255.
-    #[default]
-    Eight,
-    /// 0..65535.
-    Sixteen,
-}
+use crate::raster::png::{self, BitDepth};
 
 /// Writes a layer as PNG. `preset` is the text of the plan that it was rendered from.
 ///
@@ -29,17 +19,20 @@ pub fn write_png(
     title: &str,
     preset: &str,
 ) -> Result<(), OutputError> {
-    let most = match depth {
-        BitDepth::Eight => u16::from(u8::MAX),
-        BitDepth::Sixteen => u16::MAX,
-    };
     let texts = [
         ("Title", title),
         ("Software", SOFTWARE),
         (PNG_KEYWORD, preset),
     ];
     let there = texts.into_iter().filter(|(_, text)| !text.is_empty());
-    let (texts, numbers): (Vec<_>, _) = (there.collect(), shades.samples(most));
-    let written = png::write(to, shades.size(), most, &numbers, shades.is_color(), &texts);
+    let (texts, numbers): (Vec<_>, _) = (there.collect(), shades.samples(depth.most()));
+    let written = png::write(
+        to,
+        shades.size(),
+        depth,
+        &numbers,
+        shades.is_color(),
+        &texts,
+    );
     written.map_err(|e| OutputError::encode("PNG", e))
 }

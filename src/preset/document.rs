@@ -7,7 +7,7 @@ use crate::preset::error::PresetError;
 use crate::preset::nearest::{nearest, perhaps};
 
 /// The sections of a preset, in the order in which they are written.
-pub(crate) const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
+pub const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
 
 /// Where an entry comes from.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,11 +6,30 @@
 use std::io::{BufRead, Seek, Write};
 
 use png::{
-    BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, SrgbRenderingIntent,
-    Transformations,
+    ColorType, Decoder, DecodingError, Encoder, EncodingError, SrgbRenderingIntent, Transformations,
 };
 
 use crate::raster::open::check_size;
+
+/// Bits of a channel, whose whole numbers stand for 0 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BitDepth {
+    /// 0 to 255.
+    #[default]
+    Eight = 8,
+    /// 0 to 65535.
+    Sixteen = 16,
+}
+
+impl BitDepth {
+    /// The number that stands for 1.
+    pub fn most(self) -> u16 {
+        match self {
+            Self::Eight => u8::MAX.into(),
+            Self::Sixteen => u16::MAX,
+        }
+    }
+}
 
 /// The pixels of a file, and what is known of the channels that were left out.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,8 +40,8 @@ pub struct Pixels {
     pub kept_channels: usize,
     /// Channels of the file: 1 grey, 2 with alpha, 3 colour, 4 with alpha.
     pub channels: usize,
-    /// The largest number: 255 or 65535.
-    pub most: u16,
+    /// Bits of each number.
+    pub depth: BitDepth,
     /// Numbers of the kept channels, pixel by pixel, row by row.
     pub numbers: Vec<u16>,
     /// Whether red, green and blue are the same everywhere.
@@ -56,12 +75,14 @@ pub fn read(from: impl BufRead + Seek, most_kept: usize) -> Result<Pixels, Strin
     let bytes = usize::from(depth as u8).div_ceil(8);
     let channels = color.samples();
     let kept_channels = channels.min(most_kept);
-    let most = if bytes == 2 { u16::MAX } else { 255 };
     let mut pixels = Pixels {
         size,
         kept_channels,
         channels,
-        most,
+        depth: match bytes {
+            1 => BitDepth::Eight,
+            _ => BitDepth::Sixteen,
+        },
         numbers: Vec::with_capacity(size[0] as usize * size[1] as usize * kept_channels),
         is_grey: true,
         is_opaque: true,
@@ -80,7 +101,7 @@ pub fn read(from: impl BufRead + Seek, most_kept: usize) -> Result<Pixels, Strin
                 pixels.is_grey &= part(0) == part(1) && part(1) == part(2);
             }
             if has_alpha {
-                pixels.is_opaque &= part(channels - 1) == pixels.most;
+                pixels.is_opaque &= part(channels - 1) == pixels.depth.most();
             }
         }
     };
@@ -117,15 +138,14 @@ fn broken(e: &DecodingError) -> String {
     }
 }
 
-/// Writes whole numbers up to 255 or 65535 with texts by their keywords. `is_light` says that
-/// they are sRGB.
+/// Writes whole numbers with texts by their keywords. `is_light` says that they are sRGB.
 ///
 /// # Errors
 /// What the encoder or the writer said.
 pub fn write(
     to: impl Write,
     [width, height]: [u32; 2],
-    most: u16,
+    depth: BitDepth,
     numbers: &[u16],
     is_light: bool,
     texts: &[(&str, &str)],
@@ -149,12 +169,12 @@ pub fn write(
             encoder.add_itxt_chunk((*keyword).into(), (*text).into())?;
         }
     }
-    let bytes: Vec<u8> = match most > 255 {
-        true => {
-            encoder.set_depth(BitDepth::Sixteen);
+    let bytes: Vec<u8> = match depth {
+        BitDepth::Eight => numbers.iter().map(|n| *n as u8).collect(),
+        BitDepth::Sixteen => {
+            encoder.set_depth(png::BitDepth::Sixteen);
             numbers.iter().flat_map(|n| n.to_be_bytes()).collect()
         }
-        false => numbers.iter().map(|n| *n as u8).collect(),
     };
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&bytes)?;

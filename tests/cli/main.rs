@@ -16,6 +16,8 @@ mod folder;
 #[path = "../common/pictures.rs"]
 #[allow(dead_code, reason = "other files use the rest")]
 mod images;
+#[path = "../../benches/pages/presets.rs"]
+mod page;
 mod pictures;
 mod preset_errors;
 mod presets;

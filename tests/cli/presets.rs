@@ -2,13 +2,14 @@
 
 use conemarch::base::key::Key;
 use conemarch::plan::Plan;
-use conemarch::preset::{BUILTIN, Override, Preset, builtin, load, read, write};
+use conemarch::preset::{BUILTIN, Override, Preset, SECTIONS, builtin, load, read, write};
 use conemarch::scene::Scene;
-use conemarch::scene::distance_settings::DistanceSettings;
+use conemarch::scene::distance_settings::{DistanceSettings, MOST_ITERATIONS};
 use conemarch::scene::slab::SlabSettings;
 use proptest::prelude::*;
 use toml::Value;
 
+use super::page::reference;
 use super::preset_errors::set_error;
 
 /// A plan of every subject there is.
@@ -38,7 +39,7 @@ pub fn get(plan: &Plan, section: &str, name: &str) -> Value {
 pub fn all_keys() -> Vec<(Plan, &'static str, &'static str)> {
     let mut all = Vec::new();
     for plan in subjects() {
-        for section in ["scene", "camera", "march", "look", "image"] {
+        for section in SECTIONS {
             let keys = plan
                 .clone()
                 .keys(section)
@@ -274,4 +275,20 @@ proptest! {
         let again = read(&write(&plan), "written");
         prop_assert_eq!(again.map_err(|e| e.to_string()), Ok(plan));
     }
+}
+
+#[test]
+fn the_page_is_what_would_be_written() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/presets.md");
+    let text = std::fs::read_to_string(page).expect("the page");
+    assert!(
+        text == reference(),
+        "{page} is out of date; `cargo bench --bench pages -- presets` writes it"
+    );
+}
+
+#[test]
+fn the_limit_of_automatic_iterations_is_told() {
+    let help = format!("needs, up to {MOST_ITERATIONS} |");
+    assert!(reference().contains(&help), "{help}");
 }

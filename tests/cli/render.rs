@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use crate::folder::{Folder, holds, output, said, text};
-use crate::images::pixels;
+use crate::images::{grey, pixels};
 use crate::tools::{json, names, number, rendered, tiny};
 
 #[test]
@@ -56,7 +56,7 @@ fn a_picture_without_a_name_replaces_only_its_own_like() {
     folder.done(other);
     assert_eq!(folder.bytes("my.png"), whole);
     assert_ne!(folder.bytes("my-camera.fov=33.png"), whole);
-    folder.write("my-camera.eye=_1_2_3_-6x4.png", "a picture");
+    folder.done(&format!("{other} -o my-camera.eye=_1_2_3_-6x4.png"));
     let another = "render my.toml --device cpu --set camera.eye=[1,2,3] --size 6x4";
     folder.fails(
         another,
@@ -66,6 +66,45 @@ fn a_picture_without_a_name_replaces_only_its_own_like() {
     // -o may replace anything.
     folder.done(&format!("{other} -o my.png"));
     assert_ne!(folder.bytes("my.png"), whole);
+}
+
+/// Nor does it take the place of what this program did not make.
+#[test]
+fn a_picture_without_a_name_replaces_no_other_file() {
+    let folder = Folder::new();
+    let preset = |fov: u32| {
+        format!("[scene]\nkind = \"slab\"\n[camera]\nfov = {fov}\n[image]\nsize = [8, 4]\n")
+    };
+    folder.write("my.toml", preset(40));
+    let mine = "render my.toml --device cpu";
+    let theirs = grey([1, 1], &[7]);
+    for content in [&b"a picture"[..], &theirs, preset(40).as_bytes(), b""] {
+        folder.write("my.png", content);
+        let says = "`my.png` exists and is no picture of this program|-o";
+        folder.fails(mine, 2, says);
+        assert_eq!(folder.bytes("my.png"), content);
+    }
+    folder.done(&format!("{mine} -o my.png"));
+    let old = folder.bytes("my.png");
+    folder.done(mine);
+    assert_eq!(folder.bytes("my.png"), old);
+    // Who edits a preset renders it again and again.
+    folder.write("my.toml", preset(41));
+    folder.done(mine);
+    assert_ne!(folder.bytes("my.png"), old);
+    // A built-in preset stays as it is, so a picture with other settings is another one.
+    let built_in = "render mandelbox --device cpu --size 8x4";
+    folder.done(built_in);
+    folder.done(built_in);
+    let file = "mandelbox-8x4.png";
+    folder.done(&format!("{built_in} --set camera.fov=33 -o {file}"));
+    let other = folder.bytes(file);
+    folder.fails(
+        built_in,
+        2,
+        "`mandelbox-8x4.png` exists and has other settings|-o",
+    );
+    assert_eq!(folder.bytes(file), other);
 }
 
 #[test]

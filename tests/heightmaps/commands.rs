@@ -5,11 +5,12 @@ use std::fs;
 use std::process::Output;
 
 use conemarch::heightfield::conemap::MapKind;
-use conemarch::heightfield::conemap::file::{Bits, Layout, MapFile, RatioScale, Slopes, read_map};
+use conemarch::heightfield::conemap::file::{Layout, MapFile, RatioScale, Slopes, read_map};
 use conemarch::heightfield::conemap::generate::generator::{Generator, Quality};
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::load::{LoadOptions, load};
 use conemarch::heightfield::pattern::Pattern;
+use conemarch::raster::png::BitDepth as Bits;
 use png::{BitDepth, ColorType};
 
 use crate::fields::plain;
@@ -89,7 +90,7 @@ fn a_map_is_what_its_generator_makes_of_the_heights() {
         wrap: [true, false],
         ..LoadOptions::default()
     };
-    let loaded = load(folder.0.join("rock.png"), &options);
+    let loaded = load(folder.0.join("rock.png"), &options, &mut |_| true);
     let heights = loaded.expect("heights").heights;
     let map = plain(Generator::Exact, &heights);
     let made = read(&folder, "rock-cones.exr");

@@ -1,12 +1,17 @@
 //! Height maps from files: every format, and a sentence for everything that is wrong.
 
-use conemarch::heightfield::conemap::file::{
-    Bits, Layout, MapFile, MapFormat, decode_bytes, encode,
-};
-use conemarch::heightfield::conemap::generate::generator::Generator;
+use conemarch::heightfield::FileError;
+use conemarch::heightfield::conemap::file::{Layout, MapFile, MapFormat, decode_bytes, encode};
+use conemarch::heightfield::conemap::generate::generator::{Generator, ShareWatch};
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::load::{LoadOptions, Loaded, load};
 use conemarch::heightfield::pattern::Pattern;
+use conemarch::pass::prepare::FrameError;
+use conemarch::pass::progress::Progress;
+use conemarch::plan::Extras;
+use conemarch::raster::png::BitDepth as Bits;
+use conemarch::scene::{Assets, Scene};
+use conemarch::{cpu, preset};
 use exr::prelude::FlatSamples;
 use png::{BitDepth, ColorType};
 use tiff::encoder::colortype::{Gray8, Gray16, Gray32Float, GrayI16, RGB8};
@@ -17,7 +22,7 @@ use crate::pictures::{exr, grey, png, raw, tiff, wide};
 
 /// Loads a file of a test's folder.
 fn load_as(folder: &Folder, name: &str, options: &LoadOptions) -> Result<Loaded, String> {
-    load(folder.0.join(name), options).map_err(|e| e.to_string())
+    load(folder.0.join(name), options, &mut |_| true).map_err(|e| e.to_string())
 }
 
 /// The heights of a file, and its note.
@@ -282,6 +287,41 @@ fn no_pattern_is_flat_however_few_its_samples() {
 }
 
 #[test]
+fn the_making_of_a_pattern_is_told_and_can_be_stopped() {
+    for pattern in Pattern::ALL {
+        let (mut shares, mut calls) = (Vec::new(), 0);
+        let make = |watch: ShareWatch<'_>| pattern.watched([48, 33], 7, 2.6, watch);
+        let made = make(&mut |share| {
+            shares.push(share);
+            true
+        });
+        assert_eq!(made, Some(pattern.heights([48, 33], 7, 2.6)));
+        assert!(shares.is_sorted_by(|a, b| a < b), "{pattern:?}: {shares:?}");
+        assert!(shares.len() >= 33 && shares.last() == Some(&1.0));
+        let stopped = make(&mut |_| {
+            calls += 1;
+            calls < 5
+        });
+        assert_eq!((stopped, calls), (None, 5), "{pattern:?}");
+    }
+    // A render tells it before its passes.
+    let mut plan = preset::load("terrain", &[]).expect("a preset").plan;
+    let Scene::Heightfield(settings) = &mut plan.scene else {
+        panic!("no heightfield");
+    };
+    settings.source.field = "fbm:64x48".into();
+    let mut told = Vec::new();
+    let watch = &mut |now: &Progress| {
+        told.push(now.clone());
+        now.done < 0.5
+    };
+    let ended = cpu::render(&plan, &Assets::default(), Extras::default(), watch);
+    assert!(matches!(ended, Err(FrameError::Cancelled)));
+    assert!(told.iter().all(|now| now.pass == "heights of fbm:64x48"));
+    assert!(told.len() > 64 && told[0].done < 0.01);
+}
+
+#[test]
 fn the_smallest_maps_are_maps() {
     let folder = Folder::new();
     for size in [[1, 1], [1, 5], [5, 1], [2, 2]] {
@@ -367,6 +407,10 @@ fn a_file_that_claims_too_much_takes_no_memory() {
     }
 }
 
+fn field(argument: &str) -> Result<Loaded, FileError> {
+    load(argument, &LoadOptions::default(), &mut |_| true)
+}
+
 #[test]
 fn an_argument_that_names_no_heights_is_refused() {
     let folder = Folder::new();
@@ -390,11 +434,11 @@ fn an_argument_that_names_no_heights_is_refused() {
         ("fbm:9000x1", "like 512x256"),
         ("noise:4x4,colour=red", "colour=red"),
     ] {
-        let why = load(argument, &LoadOptions::default()).expect_err(argument);
+        let why = field(argument).expect_err(argument);
         assert!(why.is_usage() && why.to_string().contains(words), "{why}");
     }
-    let named = load("noise:9x5,seed=3", &LoadOptions::default()).expect("a field");
+    let named = field("noise:9x5,seed=3").expect("a field");
     assert_eq!(named.heights.data(), Pattern::Noise.heights([9, 5], 3, 2.6));
-    let again = load("stones:power=3,9X9", &LoadOptions::default()).expect("a field");
+    let again = field("stones:power=3,9X9").expect("a field");
     assert_eq!(again.form, "stones:9x9,seed=1,power=3");
 }

@@ -3,10 +3,11 @@
 
 use conemarch::heightfield::conemap::MapKind;
 use conemarch::heightfield::conemap::file::{
-    Bits, Layout, MapFile, MapFormat, RatioScale, Ratios, Slopes, decode_bytes, encode,
+    Layout, MapFile, MapFormat, RatioScale, Ratios, Slopes, decode_bytes, encode,
 };
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::pattern::Pattern;
+use conemarch::raster::png::BitDepth as Bits;
 use png::ColorType;
 use proptest::prelude::*;
 

@@ -2,9 +2,10 @@
 //! minimum, slopes, and the ratios that devices read.
 
 use conemarch::heightfield::conemap::WIDEST;
+use conemarch::heightfield::conemap::file::share_down;
 use conemarch::heightfield::conemap::generate::generator::Generator;
 use conemarch::heightfield::conemap::generate::min3x3::min3x3;
-use conemarch::heightfield::conemap::generate::mips::{self, rounded_down};
+use conemarch::heightfield::conemap::generate::mips;
 use conemarch::heightfield::conemap::generate::planes::Planes;
 use conemarch::heightfield::conemap::generate::slopes::slopes;
 use conemarch::heightfield::height_surface::HeightSurface;
@@ -104,7 +105,7 @@ fn ratios_are_stored_rounded_down() {
     let heights = field(Pattern::Noise, [64, 64], [false, false]);
     let mut below = 0;
     for r in plain(Generator::Exact, &heights).ratios {
-        let stored = rounded_down(r);
+        let stored = share_down(r, 1.0);
         let nearest = f64::from(stored) <= r && f64::from(stored.next_up()) > r;
         assert!(nearest, "{r}");
         below += usize::from(f64::from(stored) < r);
@@ -123,7 +124,7 @@ fn ratios_are_stored_rounded_down() {
     for (there, ratio) in there.iter().zip(&map.ratios) {
         assert!(f64::from(*there) <= *ratio && f64::from(there.next_up()) > *ratio);
     }
-    assert_eq!(f64::from(rounded_down(WIDEST)), WIDEST);
+    assert_eq!(f64::from(share_down(WIDEST, 1.0)), WIDEST);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::{Args, ValueHint};
 
-use crate::command::conemap::options::{Foreign, Output, Writing, wraps, write};
+use crate::command::conemap::options::{Foreign, Writing, wraps, write};
 use crate::command::failure::usage;
 use crate::command::interrupt;
 use crate::command::print::say;
@@ -19,8 +19,9 @@ pub struct Convert {
     #[arg(value_name = "MAP", value_hint = ValueHint::FilePath)]
     map: PathBuf,
 
-    #[command(flatten)]
-    output: Output,
+    /// Where to write: a .png or .exr file, or - for PNG on standard output
+    #[arg(short, long, value_name = "MAP", value_hint = ValueHint::FilePath)]
+    output: Option<PathBuf>,
 
     #[command(flatten)]
     writing: Writing,
@@ -38,7 +39,7 @@ pub struct Convert {
 /// # Errors
 /// There is no map, the layout cannot hold it, or the file cannot be written.
 pub fn run(args: &Convert) -> Result<()> {
-    let Some(output) = &args.output.output else {
+    let Some(output) = &args.output else {
         return Err(usage(
             "the output is missing; give -o MAP.png or -o MAP.exr",
         ));

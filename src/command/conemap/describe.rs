@@ -46,7 +46,7 @@ impl Sorted {
 }
 
 /// A number with about three figures.
-fn figure(x: f64) -> String {
+pub(crate) fn figure(x: f64) -> String {
     let text = match x.abs() {
         0.0 => return "0".into(),
         a if a >= 1000.0 => return format!("{x:.0}"),
@@ -97,7 +97,7 @@ fn report(
 
 /// Describes a cone map.
 pub fn describe_map(name: &str, file: &MapFile) -> String {
-    let (map, label, scale) = (&file.map, &file.label, file.label.scale);
+    let (map, label, scale) = (&file.map, &file.label, file.label.scale());
     let ([w, h], [sw, sh]) = (map.size, label.samples);
     let (word, promise) = (map.kind.name(), map.kind.facts().promise);
     let mut heights = format!("{sw} x {sh} samples, wrap {}", wrap_name(map.wrap));
@@ -143,7 +143,7 @@ fn maker(label: Option<&str>) -> String {
 }
 
 fn format_of(file: &MapFile) -> String {
-    let (format, scale) = (&file.format, figure(file.label.scale));
+    let (format, scale) = (&file.format, figure(file.label.scale()));
     let layout = format.layout.name();
     if format.layout.is_exr() {
         return format!("EXR, 32-bit floats, 1 means {scale} texels");
@@ -158,7 +158,7 @@ fn format_of(file: &MapFile) -> String {
     };
     format!(
         "PNG, layout {layout}, {} bit, {slopes}ratios {ratios}, 1 means {scale} texels",
-        format.bits.count()
+        format.bits as u8
     )
 }
 

@@ -15,6 +15,7 @@ use crate::command::interrupt;
 use crate::command::print::{print, say};
 use crate::command::progress::Reporter;
 use crate::command::sink::{Sink, ending, shown, spared};
+use crate::heightfield::Heights;
 use crate::heightfield::conemap::file::{MapFile, MapUse, has_map};
 
 /// What `inspect` takes.
@@ -54,7 +55,7 @@ pub fn run(args: &Inspect) -> Result<()> {
     let mut progress = Reporter::start("inspecting");
     progress.report(0.0, "reading");
     // Fields have no file. The reader of heights reports a file that is neither.
-    let is_map = args.foreign.is_given() || has_map(path).unwrap_or(false);
+    let is_map = args.foreign.is_given() || has_map(path);
     let name = path.display().to_string();
     let (text, panels) = if is_map {
         let needless = args.reading.given(args.foreign.is_given());
@@ -65,7 +66,8 @@ pub fn run(args: &Inspect) -> Result<()> {
         }
         let file = args.foreign.decode(path, args.reading.wrap)?;
         if let Some(heights) = &args.heights {
-            check_heights(args, &file, path, heights)?;
+            let loaded = args.reading.load(heights, &mut progress)?;
+            check_heights(&file, path, heights, &loaded.heights)?;
         }
         progress.report(0.0, "describing");
         let text = describe_map(&name, &file);
@@ -76,7 +78,7 @@ pub fn run(args: &Inspect) -> Result<()> {
                 "`{name}` is not a cone map, so --heights has nothing to check; leave it out"
             )));
         }
-        let loaded = args.reading.load(&args.file)?;
+        let loaded = args.reading.load(&args.file, &mut progress)?;
         progress.report(0.0, "describing");
         let text = describe_heights(&name, &loaded);
         let panels = picture.is_some().then(|| heights_panels(&loaded.heights));
@@ -105,12 +107,11 @@ fn picture_sink(path: &Path) -> Result<(PathBuf, Sink)> {
 }
 
 /// Checks that a map belongs to heights.
-fn check_heights(args: &Inspect, file: &MapFile, path: &Path, heights: &OsString) -> Result<()> {
-    let loaded = args.reading.load(heights)?;
+fn check_heights(file: &MapFile, path: &Path, name: &OsString, heights: &Heights) -> Result<()> {
     let wanted = MapUse {
         who: "this check",
         kinds: &[],
-        heights: &loaded.heights,
+        heights,
         // Nothing is traced here, so any surface will do.
         patches: file.label.patches,
     };
@@ -122,7 +123,7 @@ fn check_heights(args: &Inspect, file: &MapFile, path: &Path, heights: &OsString
     say(&format!(
         "{} {verb} to {}",
         path.display(),
-        Path::new(heights).display()
+        Path::new(name).display()
     ));
     Ok(())
 }

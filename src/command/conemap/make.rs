@@ -1,7 +1,7 @@
 //! `conemarch conemap make HEIGHTS [-o MAP]`
 
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::Result;
@@ -10,7 +10,7 @@ use clap::{Args, ValueHint};
 
 use crate::command::arguments::words;
 use crate::command::conemap::maker::MapMaker;
-use crate::command::conemap::options::{Output, Reading, Writing, write};
+use crate::command::conemap::options::{Reading, Writing, write};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::print::say;
@@ -35,8 +35,9 @@ pub struct Make {
     #[arg(value_name = "HEIGHTS", value_hint = ValueHint::FilePath)]
     heights: OsString,
 
-    #[command(flatten)]
-    output: Output,
+    /// Where to write: a .png or .exr file, or - for PNG on standard output
+    #[arg(short, long, value_name = "MAP", value_hint = ValueHint::FilePath)]
+    output: Option<PathBuf>,
 
     /// How the map is made
     #[arg(long, value_name = "NAME", default_value = "exact", value_parser = generators())]
@@ -92,14 +93,13 @@ pub fn run(args: &Make) -> Result<()> {
     }
     let mut progress = Reporter::start("making cones");
     progress.report(0.0, "heights");
-    let loaded = args.reading.load(&args.heights)?;
-    interrupt::check()?;
+    let loaded = args.reading.load(&args.heights, &mut progress)?;
     let heights = &loaded.heights;
     check_memory(generator, heights.size())?;
     // The default name is never that of the heights, and its format keeps everything.
     let mut default = loaded.name.clone();
     default.push("-cones.exr");
-    let output = args.output.output.clone().unwrap_or(default.into());
+    let output = args.output.clone().unwrap_or(default.into());
     spared(
         &[("the map", Some(&output))],
         &[("its heights", Path::new(&args.heights).into())],

@@ -2,23 +2,26 @@
 //! program is, and how a map is written.
 
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, Result};
+use clap::Args;
 use clap::builder::TypedValueParser;
-use clap::{Args, ValueHint};
 
-use crate::command::arguments::{samples, words};
+use crate::command::arguments::{bits, samples, words};
 use crate::command::failure::usage;
+use crate::command::interrupt;
 use crate::command::print::say;
+use crate::command::progress::Reporter;
 use crate::command::sink::{Sink, ending, is_stdout};
 use crate::heightfield::conemap::MapKind;
 use crate::heightfield::conemap::file::{
-    Bits, Channel, ForeignFormat, Layout, MapFile, MapFormat, RatioScale, Slopes, decode,
-    decode_bytes, encode, has_map,
+    Channel, ForeignFormat, Layout, MapFile, MapFormat, RatioScale, Slopes, decode, decode_bytes,
+    encode, has_map,
 };
 use crate::heightfield::heights::wrap_name;
 use crate::heightfield::load::{LoadOptions, Loaded, load};
+use crate::raster::png::BitDepth;
 
 /// How heights are read.
 #[derive(Args, Clone, Copy, Debug)]
@@ -42,14 +45,17 @@ pub struct Reading {
 
 impl Reading {
     /// Reads heights, and says what was left out of them.
-    pub fn load(&self, argument: &OsStr) -> Result<Loaded> {
+    pub fn load(&self, argument: &OsStr, progress: &mut Reporter) -> Result<Loaded> {
         let options = LoadOptions {
             wrap: self.wrap,
             invert: self.invert,
             normalize: self.normalize,
             size: self.size,
         };
-        let loaded = load(argument, &options)?;
+        let watch = &mut |share| progress.report(share, "heights");
+        let loaded = load(argument, &options, watch);
+        interrupt::check()?;
+        let loaded = loaded?;
         if let Some(note) = &loaded.note {
             say(&format!("note: {note}"));
         }
@@ -101,7 +107,7 @@ impl Foreign {
     /// Reads a map, and says what is unknown about it. `wrap` is for maps of other programs.
     pub fn decode(&self, path: &Path, wrap: [bool; 2]) -> Result<MapFile> {
         // If the file cannot be read, `decode` reports it below.
-        if self.is_given() && has_map(path).unwrap_or(false) {
+        if self.is_given() && has_map(path) {
             return Err(usage(format!(
                 "{} has a label that says what its cones are, and --from is for the maps of other programs; leave it out",
                 path.display()
@@ -109,7 +115,6 @@ impl Foreign {
         }
         let foreign = self.from.map(|layout| ForeignFormat {
             layout,
-            kind: layout.facts().foreign,
             ratio: self.from_ratio.unwrap_or(MapFormat::new(layout).ratio),
             wrap,
         });
@@ -135,7 +140,7 @@ pub struct Writing {
 
     /// Bits per channel of a PNG [default: 8, for pair 16]
     #[arg(long, value_name = "BITS", value_parser = bits())]
-    bits: Option<Bits>,
+    bits: Option<BitDepth>,
 
     /// Whether a PNG holds the widths of cones as they are or as square roots, which keep narrow
     /// cones more exact [default: sqrt, for relief linear]
@@ -229,22 +234,10 @@ fn layouts() -> impl TypedValueParser<Value = Layout> {
     words(png.map(|l| (l, l.name(), l.facts().about)))
 }
 
-fn bits() -> impl TypedValueParser<Value = Bits> {
-    words([(Bits::Eight, "8", ""), (Bits::Sixteen, "16", "")])
-}
-
 fn slopes() -> impl TypedValueParser<Value = Slopes> {
     words(Slopes::ALL.map(|slopes| (slopes, slopes.name(), slopes.facts())))
 }
 
 fn ratio_scales() -> impl TypedValueParser<Value = RatioScale> {
     words(RatioScale::ALL.map(|scale| (scale, scale.name(), "")))
-}
-
-/// The file option of `make` and `convert`.
-#[derive(Args, Clone, Debug)]
-pub struct Output {
-    /// Where to write: a .png or .exr file, or - for PNG on standard output
-    #[arg(short, long, value_name = "MAP", value_hint = ValueHint::FilePath)]
-    pub output: Option<PathBuf>,
 }

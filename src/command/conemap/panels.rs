@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::command::conemap::describe::steepness;
+use crate::command::conemap::describe::{figure, steepness};
 use crate::command::conemap::sheet::{Bar, Panel};
 use crate::heightfield::conemap::file::{Channel, MapFile};
 use crate::heightfield::conemap::generate::slopes::slopes;
@@ -19,16 +19,6 @@ fn signed(share: f64) -> DVec3 {
     let x = 2.0 * share - 1.0;
     let end = if x < 0.0 { BELOW } else { ABOVE };
     EVEN.lerp(end, x.abs().min(1.0))
-}
-
-/// A number on a bar: about three figures.
-fn mark(x: f64) -> String {
-    match x.abs() {
-        a if a >= 99.95 || x.fract() == 0.0 => format!("{x:.0}"),
-        a if a >= 0.995 => format!("{x:.1}"),
-        a if a >= 0.01 => format!("{x:.3}"),
-        _ => format!("{x:.5}"),
-    }
 }
 
 fn height_panel(size: [u32; 2], heights: &[f32]) -> Panel {
@@ -55,15 +45,15 @@ fn ratio_panel(file: &MapFile, caption: &str, channel: usize) -> Panel {
         false => *sorted.select_nth_unstable_by(at, f64::total_cmp).1,
     };
     // No farther than the papers' channels hold.
-    let high = most.min(file.label.scale).max(1e-9);
+    let high = most.min(file.label.scale()).max(1e-9);
     let color = |i: usize| {
         let ratio = map.ratios[i * channels + channel];
         heat((ratio / high).clamp(0.0, 1.0).sqrt())
     };
-    let most = format!("{} texels +", mark(high));
+    let most = format!("{} texels +", figure(high));
     let bar = Bar {
         color: heat,
-        marks: ["0".into(), mark(high / 4.0), most],
+        marks: ["0".into(), figure(high / 4.0), most],
     };
     Panel::new(caption, map.size, color, Some(bar))
 }
@@ -75,7 +65,7 @@ fn signed_panel(size: [u32; 2], caption: &str, shares: &[f32]) -> Panel {
     let color = |i: usize| signed(0.5 + 0.5 * (f64::from(shares[i]) - 0.5) / far);
     let bar = Bar {
         color: signed,
-        marks: [mark(-far), "0".into(), mark(far)],
+        marks: [figure(-far), "0".into(), figure(far)],
     };
     Panel::new(caption, size, color, Some(bar))
 }

@@ -42,7 +42,7 @@ pub fn read(path: &Path, size: Option<[u32; 2]>) -> Result<Grid, String> {
     if size.is_some() && opened.format != Format::Other {
         return Err("has a size of its own; leave out --size, which is for raw files".into());
     }
-    if has_map(path).unwrap_or(false) {
+    if has_map(path) {
         return of_map(opened);
     }
     match opened.format {
@@ -78,7 +78,7 @@ fn of_map(opened: Opened) -> Result<Grid, String> {
             true => "EXR, cone map".into(),
             false => format!(
                 "PNG, cone map, layout {name}, {} bit",
-                file.format.bits.count()
+                file.format.bits as u8
             ),
         },
         note: Some(format!(
@@ -90,10 +90,8 @@ fn of_map(opened: Opened) -> Result<Grid, String> {
 
 fn read_png(opened: Opened) -> Result<Grid, String> {
     let pixels = png::read(opened.file, 1)?;
-    let most = f64::from(pixels.most);
-    let share = |n: &u16| (f64::from(*n) / most) as f32;
     let colors = ["grey", "grey and alpha", "colour", "colour and alpha"];
-    let bits = if pixels.most > 255 { 16 } else { 8 };
+    let bits = pixels.depth as u8;
     let note = if !pixels.is_grey {
         Some("has colours: red is taken as the height")
     } else if !pixels.is_opaque {
@@ -103,7 +101,7 @@ fn read_png(opened: Opened) -> Result<Grid, String> {
     };
     Ok(Grid {
         size: pixels.size,
-        values: pixels.numbers.iter().map(share).collect(),
+        values: pixels.channel(0).map(|n| pixels.depth.height(n)).collect(),
         form: format!("PNG, {}, {bits} bit", colors[(pixels.channels - 1).min(3)]),
         note: note.map(str::to_string),
     })

@@ -9,9 +9,11 @@
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
+use crate::heightfield::conemap::generate::generator::ShareWatch;
 use crate::heightfield::load::file::read;
 use crate::heightfield::load::pattern_spec::PatternSpec;
-use crate::heightfield::{FileError, Heights, pattern::Pattern};
+use crate::heightfield::pattern::{Pattern, stretched};
+use crate::heightfield::{FileError, Heights};
 
 /// How heights are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,15 +41,21 @@ pub struct Loaded {
     pub note: Option<String>,
 }
 
-/// Loads the heights that an argument names: a pattern, or a file by its path.
+/// Loads the heights that an argument names: a pattern, or a file by its path. `watch` is told the
+/// share of a pattern that is made.
 ///
 /// # Errors
-/// The argument names nothing, or the file cannot be read or holds no heights.
-pub fn load(argument: impl AsRef<OsStr>, options: &LoadOptions) -> Result<Loaded, FileError> {
+/// The argument names nothing, the file cannot be read or holds no heights, or `watch` returns
+/// `false`.
+pub fn load(
+    argument: impl AsRef<OsStr>,
+    options: &LoadOptions,
+    watch: ShareWatch<'_>,
+) -> Result<Loaded, FileError> {
     let path = Path::new(argument.as_ref());
     let shown = path.display().to_string();
     if let Some(named) = path.to_str().and_then(PatternSpec::read) {
-        return generated(named, options).map_err(|why| wrong(&shown, &why));
+        return generated(named, options, watch).map_err(|why| wrong(&shown, &why));
     }
     let is_path = shown.contains(['/', '\\', '.']) || (!shown.is_empty() && path.exists());
     if !is_path {
@@ -67,7 +75,11 @@ fn wrong(argument: &str, why: &str) -> FileError {
     FileError::Usage(format!("{argument}: {why}"))
 }
 
-fn generated(named: Result<PatternSpec, String>, options: &LoadOptions) -> Result<Loaded, String> {
+fn generated(
+    named: Result<PatternSpec, String>,
+    options: &LoadOptions,
+    watch: ShareWatch<'_>,
+) -> Result<Loaded, String> {
     let named = named?;
     let name = named.field.name();
     if options.size.is_some() {
@@ -75,10 +87,11 @@ fn generated(named: Result<PatternSpec, String>, options: &LoadOptions) -> Resul
             "is a field; give its size after a colon like {name}:512x512 (--size is for raw files)"
         ));
     }
-    let values = named.field.heights(named.size, named.seed, named.power);
+    let (size, seed, power) = (named.size, named.seed, named.power);
+    let values = named.field.watched(size, seed, power, watch);
     Ok(Loaded {
         name: name.into(),
-        heights: finished(named.size, values, options)?,
+        heights: finished(size, values.ok_or("cancelled")?, options)?,
         form: named.to_string(),
         note: None,
     })
@@ -96,23 +109,20 @@ fn in_file(path: &Path, options: &LoadOptions) -> Result<Loaded, String> {
 }
 
 /// Normalizes numbers, or checks that they are in 0..=1.
-fn into_range(values: &mut [f32], width: usize, normalize: bool) -> Result<(), String> {
+fn into_range(values: &mut Vec<f32>, width: usize, normalize: bool) -> Result<(), String> {
     if let Some(i) = values.iter().position(|z| !z.is_finite()) {
         let (x, y, z) = (i % width, i / width, values[i]);
         return Err(format!(
             "the height at column {x}, row {y} is {z}; fill such places first"
         ));
     }
+    if normalize {
+        *values = stretched(values);
+        return Ok(());
+    }
     let low = values.iter().copied().fold(f32::INFINITY, f32::min);
     let high = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    if normalize {
-        let (low, range) = (f64::from(low), f64::from(high) - f64::from(low));
-        let range = if range > 0.0 { range } else { 1.0 };
-        for z in values {
-            // The cast may round a share just under 1 up to 1, never beyond.
-            *z = ((f64::from(*z) - low) / range) as f32;
-        }
-    } else if low < 0.0 || high > 1.0 {
+    if low < 0.0 || high > 1.0 {
         return Err(format!(
             "its heights reach from {low} to {high}, and heights must be 0 to 1; --normalize (in a preset, normalize = true) scales them to that range"
         ));

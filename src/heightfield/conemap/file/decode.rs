@@ -8,36 +8,30 @@ use std::path::Path;
 
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
 use crate::heightfield::conemap::file::{
-    Bits, Channel, Label, Layout, MapFile, MapFormat, RatioScale, Ratios, ShadingChannel, Slopes,
-    encode::SIDES, map_file::scale,
+    Channel, Label, Layout, MapFile, MapFormat, RatioScale, Ratios, ShadingChannel, Slopes,
+    encode::SIDES,
 };
-use crate::heightfield::{ConeMap, FileError, MapKind, Patches, conemap::WIDEST};
+use crate::heightfield::{ConeMap, FileError, Patches, conemap::WIDEST};
+use crate::raster::exr;
 use crate::raster::open::{Format, format_of, open};
+use crate::raster::png::{self, BitDepth};
 use crate::raster::text_chunk::{self, SIGNATURE};
-use crate::raster::{exr, png};
 
 /// What a file without a label contains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForeignFormat {
     /// Its channels; not [`Layout::Full`].
     pub layout: Layout,
-    /// What its cones promise; not a kind over cells, which no other program makes.
-    pub kind: MapKind,
     /// How its numbers stand for ratios.
     pub ratio: RatioScale,
     /// Which axes wrap.
     pub wrap: [bool; 2],
 }
 
-/// Whether a file is a cone map of this program.
-///
-/// # Errors
-/// The file cannot be read at all.
-pub fn has_map(path: &Path) -> Result<bool, FileError> {
-    let fail = |why: String| FileError::file(path, why);
-    let mut opened = open(path).map_err(fail)?;
-    Ok(match opened.format {
-        // A broken file is not a map; reading it as heights reports what is broken.
+/// Whether a file is a cone map of this program. One that is broken or cannot be read is not;
+/// reading it as heights reports what is wrong.
+pub fn has_map(path: &Path) -> bool {
+    open(path).is_ok_and(|mut opened| match opened.format {
         Format::Png => text_of(&mut opened.file).is_ok_and(|text| text.is_some()),
         Format::Exr => exr::head(&mut opened.file, KEYWORD).is_ok_and(|h| h.text.is_some()),
         _ => false,
@@ -113,7 +107,7 @@ fn from_png(
     let pixels = png::read(file, 4)?;
     let mut map_file = match (text?, foreign) {
         (Some(text), _) => label::read(&text)?,
-        (None, Some(foreign)) => assumed(foreign, pixels.size)?,
+        (None, Some(foreign)) => assumed(foreign, pixels.size),
         (None, None) => return Err(unlabelled(true)),
     };
     let layout = map_file.format.layout;
@@ -130,15 +124,11 @@ fn from_png(
         ));
     }
     check_places(&map_file, pixels.size)?;
-    let bits = match pixels.most {
-        255 => Bits::Eight,
-        _ => Bits::Sixteen,
-    };
-    let ratio = map_file.format.ratio;
+    let (bits, ratio) = (pixels.depth, map_file.format.ratio);
     let numbers = Ratios {
         bits,
         scaling: ratio,
-        scale: map_file.label.scale,
+        scale: map_file.label.scale(),
         reread: true,
     };
     let held = pixels.numbers.iter().zip(channels.iter().cycle());
@@ -166,15 +156,9 @@ fn from_png(
 }
 
 /// What the label of a foreign file would say.
-fn assumed(foreign: &ForeignFormat, size: [u32; 2]) -> Result<MapFile, String> {
-    if foreign.kind.over_cells() || foreign.layout.lacks(foreign.kind).is_some() {
-        return Err(format!(
-            "has no label, and cannot be read as such a map in the layout `{}`",
-            foreign.layout.name()
-        ));
-    }
+fn assumed(foreign: &ForeignFormat, size: [u32; 2]) -> MapFile {
     let map = ConeMap {
-        kind: foreign.kind,
+        kind: foreign.layout.facts().foreign,
         size,
         wrap: foreign.wrap,
         offset: 0.0,
@@ -189,11 +173,10 @@ fn assumed(foreign: &ForeignFormat, size: [u32; 2]) -> Result<MapFile, String> {
     let label = Label {
         samples: size,
         patches: Patches::Bilinear,
-        scale: scale(size),
         digest: None,
         generator: None,
     };
-    Ok(MapFile::bare(map, format, label))
+    MapFile::bare(map, format, label)
 }
 
 fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
@@ -224,7 +207,7 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
         }
         Ok(values)
     };
-    let (kind, scale) = (map_file.map.kind, map_file.label.scale);
+    let (kind, scale) = (map_file.map.kind, map_file.label.scale());
     let ratio = |v: f32| (f64::from(v) * scale).min(WIDEST);
     let names = if kind.channels() == 1 {
         &["ratio"][..]
@@ -243,7 +226,7 @@ fn from_exr(mut file: impl BufRead + Seek) -> Result<MapFile, String> {
     if map_file.heights.iter().flatten().any(|z| *z > 1.0) {
         return Err("holds a height above 1; make the map again".into());
     }
-    map_file.format.bits = Bits::Sixteen;
+    map_file.format.bits = BitDepth::Sixteen;
     Ok(map_file)
 }
 

@@ -7,11 +7,12 @@ use ::exr::prelude::WritableImage;
 use crate::heightfield::conemap::file::label::{self, KEYWORD};
 use crate::heightfield::conemap::file::shading::{half, normal_shares, whole};
 use crate::heightfield::conemap::file::{
-    Bits, Channel, MapFile, MapFormat, RatioScale, Ratios, Slopes, narrowed, rounding::share_down,
+    Channel, MapFile, MapFormat, RatioScale, Ratios, Slopes, narrowed, share_down,
 };
 use crate::heightfield::conemap::generate::slopes::slopes;
 use crate::heightfield::{FileError, Heights};
-use crate::raster::{exr, png};
+use crate::raster::exr;
+use crate::raster::png::{self, BitDepth};
 
 /// Names of the ratios of the four sides in an EXR: east is +x, south +y, as rows go
 /// down.
@@ -38,9 +39,9 @@ pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, FileError> 
         written.map_err(|e| e.to_string())
     } else {
         let numbers = numbers(file, &format).map_err(fail)?;
-        let (size, most) = (file.map.size, format.bits.most());
         let label = [(KEYWORD, text.as_str())];
-        let written = png::write(&mut bytes, size, most, &numbers, false, &label);
+        let size = file.map.size;
+        let written = png::write(&mut bytes, size, format.bits, &numbers, false, &label);
         written.map_err(|e| e.to_string())
     };
     written.map_err(|e| fail(format!("could not be encoded: {e}")))?;
@@ -50,7 +51,7 @@ pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, FileError> 
 /// The channels of an EXR. Heights are kept bit for bit. Ratios are shares of the scale,
 /// rounded down to the next f32.
 fn floats(file: &MapFile) -> Vec<(String, Vec<f32>)> {
-    let share = |r: &f64| share_down(*r, file.label.scale);
+    let share = |r: &f64| share_down(*r, file.label.scale());
     let ratios = &file.map.ratios;
     let mut channels = Vec::new();
     if let Some(heights) = &file.heights {
@@ -73,7 +74,7 @@ fn numbers(file: &MapFile, format: &MapFormat) -> Result<Vec<u16>, String> {
     let ratios = Ratios {
         bits,
         scaling: format.ratio,
-        scale: file.label.scale,
+        scale: file.label.scale(),
         reread: file.origin == Some(format.ratio),
     };
     let map = &file.map;
@@ -100,7 +101,7 @@ fn numbers(file: &MapFile, format: &MapFormat) -> Result<Vec<u16>, String> {
         surface.map(|s| slopes(&s)).map_err(|e| e.to_string())
     };
     let shading: Vec<[u16; 2]> = if layout.has(Channel::NormalX) {
-        let depth = format.depth * file.label.scale;
+        let depth = format.depth * file.label.scale();
         let normal = |slope| normal_shares(slope, depth).map(|n| bits.nearest(n));
         slopes()?.into_iter().map(normal).collect()
     } else if !layout.has(Channel::SlopeX) {
@@ -124,7 +125,7 @@ fn numbers(file: &MapFile, format: &MapFormat) -> Result<Vec<u16>, String> {
 }
 
 /// Ratios of cones that stay empty when heights rise to their numbers.
-fn narrowed_all(file: &MapFile, heights: &[f32], up: &[u16], bits: Bits) -> Vec<f64> {
+fn narrowed_all(file: &MapFile, heights: &[f32], up: &[u16], bits: BitDepth) -> Vec<f64> {
     let rise = |i: usize| f64::from(bits.height(up[i])) - f64::from(heights[i]);
     let most = (0..up.len()).map(rise).fold(0.0, f64::max);
     let top = heights.iter().copied().fold(0.0, f32::max);

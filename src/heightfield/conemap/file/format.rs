@@ -18,6 +18,7 @@
 
 use crate::base::named::named_enum;
 use crate::heightfield::{FileError, MapKind};
+use crate::raster::png::BitDepth;
 
 named_enum! {
     /// What a channel of a PNG holds. Slopes and normals are only used for shading.
@@ -51,7 +52,7 @@ pub struct LayoutFacts {
     /// What the cones of other programs promise in this layout.
     pub foreign: MapKind,
     /// Bits by default.
-    pub bits: Bits,
+    pub bits: BitDepth,
     /// How numbers stand for ratios by default.
     pub ratio: RatioScale,
 }
@@ -64,7 +65,7 @@ const USUAL: LayoutFacts = LayoutFacts {
     channels: &[],
     heights: "red",
     foreign: MapKind::Samples,
-    bits: Bits::Eight,
+    bits: BitDepth::Eight,
     ratio: RatioScale::Sqrt,
 };
 
@@ -92,7 +93,7 @@ named_enum! {
             about: "grey and alpha: height, ratio",
             channels: &[Height, Ratio],
             heights: "grey",
-            bits: Bits::Sixteen,
+            bits: BitDepth::Sixteen,
             ..USUAL
         },
         /// Four ratios.
@@ -150,25 +151,6 @@ impl Layout {
     }
 }
 
-/// Bits of a PNG channel, whose whole numbers stand for 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bits {
-    /// 0 to 255.
-    Eight,
-    /// 0 to 65535.
-    Sixteen,
-}
-
-impl Bits {
-    /// The number of bits.
-    pub fn count(self) -> u32 {
-        match self {
-            Self::Eight => 8,
-            Self::Sixteen => 16,
-        }
-    }
-}
-
 named_enum! {
     /// What slopes mean.
     pub enum Slopes: &'static str {
@@ -197,7 +179,7 @@ pub struct MapFormat {
     /// The channels.
     pub layout: Layout,
     /// Their bits, where they are whole numbers.
-    pub bits: Bits,
+    pub bits: BitDepth,
     /// How they stand for ratios.
     pub ratio: RatioScale,
     /// Height of 1 in texture widths, for normals.

@@ -4,13 +4,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::heightfield::conemap::file::map_file::scale;
 use crate::heightfield::conemap::file::{
     Channel, Label, Layout, MapFile, MapFormat, RatioScale, Slopes,
 };
 use crate::heightfield::conemap::generate::generator::{LEAST_OFFSET, MOST_OFFSET};
 use crate::heightfield::heights::{MOST_SAMPLES, wrap_name, wrap_named};
-use crate::heightfield::{ConeMap, MapKind, Patches};
+use crate::heightfield::{ConeMap, MapKind};
 
 /// Keyword of the text chunk and name of the attribute.
 pub(crate) const KEYWORD: &str = "conemarch cone map";
@@ -20,28 +19,28 @@ pub(crate) const KEYWORD: &str = "conemarch cone map";
 struct Text {
     /// Of the text itself.
     version: u32,
-    kind: String,
-    layout: String,
-    /// `linear` or `sqrt`.
-    ratio: String,
+    kind: MapKind,
+    layout: Layout,
+    ratio: RatioScale,
     /// Texels that a ratio of 1 means.
     scale: f64,
     wrap: String,
     /// Texels of room that a walk's cones leave.
     offset: f64,
-    samples: [u32; 2],
-    /// `bilinear` or `boxes`.
-    surface: String,
-    /// `linear` or `sqrt`: whole numbers that the ratios of an EXR were read from.
+    /// The whole numbers that the ratios of an EXR were read from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    from_ratio: Option<String>,
-    /// `whole` or `half`, where the layout has slopes.
+    from_ratio: Option<RatioScale>,
+    /// Where the layout has slopes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    slopes: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    heights_sha256: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    generator: Option<String>,
+    slopes: Option<Slopes>,
+    #[serde(flatten)]
+    label: Label,
+}
+
+/// What is read first: a later version may have other words.
+#[derive(Deserialize)]
+struct Version {
+    version: u32,
 }
 
 /// The only version of the text so far.
@@ -50,24 +49,19 @@ const VERSION: u32 = 1;
 /// Writes the text for a map in a format.
 pub(crate) fn write(file: &MapFile, format: &MapFormat) -> Result<String, String> {
     let map = &file.map;
-    let label = &file.label;
-    // The numbers of a PNG are their own origin.
-    let origin = file.origin.filter(|_| format.layout.is_exr());
     let has_slopes = format.layout.has(Channel::SlopeX);
     let text = Text {
         version: VERSION,
-        kind: map.kind.name().into(),
-        layout: format.layout.name().into(),
-        ratio: format.ratio.name().into(),
-        scale: label.scale,
+        kind: map.kind,
+        layout: format.layout,
+        ratio: format.ratio,
+        scale: file.label.scale(),
         wrap: wrap_name(map.wrap).into(),
         offset: map.offset,
-        samples: label.samples,
-        surface: label.patches.name().into(),
-        from_ratio: origin.map(|origin| origin.name().into()),
-        slopes: has_slopes.then(|| format.slopes.name().into()),
-        heights_sha256: label.digest.clone(),
-        generator: label.generator.clone(),
+        // The numbers of a PNG are their own origin.
+        from_ratio: file.origin.filter(|_| format.layout.is_exr()),
+        slopes: has_slopes.then_some(format.slopes),
+        label: file.label.clone(),
     };
     toml::to_string(&text).map_err(|e| e.to_string())
 }
@@ -80,35 +74,32 @@ fn wrong(key: &str, value: &str) -> String {
     broken(&format!("{key} = {value}"))
 }
 
-/// The value of a word under a key.
-fn word<T>(key: &str, word: &str, named: impl Fn(&str) -> Option<T>) -> Result<T, String> {
-    named(word).ok_or_else(|| wrong(key, word))
-}
-
 /// Reads a text: a map that still lacks its numbers.
 ///
 /// # Errors
 /// In words: the text is not a label, or contradicts itself.
 pub(crate) fn read(text: &str) -> Result<MapFile, String> {
-    let text: Text = toml::from_str(text).map_err(|e| broken(e.message()))?;
-    if text.version != VERSION {
+    let Version { version } = toml::from_str(text).map_err(|e| broken(e.message()))?;
+    if version != VERSION {
         return Err(format!(
-            "was written by a later conemarch (its label has version {}, and only {VERSION} is known); make the map again",
-            text.version
+            "was written by a later conemarch (its label has version {version}, and only {VERSION} is known); make the map again"
         ));
     }
-    let kind = word("kind", &text.kind, MapKind::named)?;
-    let layout = word("layout", &text.layout, Layout::named)?;
-    let wrap = word("wrap", &text.wrap, wrap_named)?;
-    let ratio = word("ratio", &text.ratio, RatioScale::named)?;
-    let origin = text.from_ratio.as_deref();
-    let origin = origin.map(|w| word("from_ratio", w, RatioScale::named));
-    let origin = origin.transpose()?;
-    let patches = word("surface", &text.surface, Patches::named)?;
-    let slopes = text.slopes.as_deref().unwrap_or(Slopes::Whole.name());
-    let slopes = word("slopes", slopes, Slopes::named)?;
+    let text: Text = toml::from_str(text).map_err(|e| {
+        let end = e.span().filter(|s| s.start > 0).map_or(0, |s| s.end);
+        let line = text[..end].lines().next_back().unwrap_or_default();
+        // What is missing is on no line.
+        broken(format!("{line}: {}", e.message()).trim_start_matches(": "))
+    })?;
+    let Text {
+        kind,
+        layout,
+        label,
+        ..
+    } = text;
+    let wrap = wrap_named(&text.wrap).ok_or_else(|| wrong("wrap", &text.wrap))?;
     if layout.lacks(kind).is_some() {
-        let both = format!("{} in the layout {}", text.kind, text.layout);
+        let both = format!("{} in the layout {}", kind.name(), layout.name());
         return Err(wrong("kind", &both));
     }
     let room = if kind.over_cells() {
@@ -122,37 +113,31 @@ pub(crate) fn read(text: &str) -> Result<MapFile, String> {
     if text.slopes.is_some() && !layout.has(Channel::SlopeX) {
         return Err(wrong("slopes", "for a layout without"));
     }
-    if origin.is_some() && !layout.is_exr() {
+    if text.from_ratio.is_some() && !layout.is_exr() {
         return Err(wrong("from_ratio", "for a layout of numbers"));
     }
-    if text.samples.iter().any(|n| !(1..=MOST_SAMPLES).contains(n)) {
-        return Err(wrong("samples", &format!("{:?}", text.samples)));
+    let samples = label.samples;
+    if samples.iter().any(|n| !(1..=MOST_SAMPLES).contains(n)) {
+        return Err(wrong("samples", &format!("{samples:?}")));
     }
     // Only this scale is ever written. Another one would make all cones wider or narrower.
-    if text.scale != scale(text.samples) {
+    if text.scale != label.scale() {
         return Err(wrong("scale", &text.scale.to_string()));
     }
     let map = ConeMap {
         kind,
-        size: kind.places(text.samples, wrap, patches),
+        size: kind.places(samples, wrap, label.patches),
         wrap,
         offset: text.offset,
         ratios: Vec::new(),
     };
     let format = MapFormat {
-        ratio,
-        slopes,
+        ratio: text.ratio,
+        slopes: text.slopes.unwrap_or(Slopes::Whole),
         ..MapFormat::new(layout)
     };
-    let label = Label {
-        samples: text.samples,
-        patches,
-        scale: text.scale,
-        digest: text.heights_sha256,
-        generator: text.generator,
-    };
     Ok(MapFile {
-        origin,
+        origin: text.from_ratio,
         ..MapFile::bare(map, format, label)
     })
 }

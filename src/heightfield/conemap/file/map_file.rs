@@ -1,5 +1,6 @@
 //! A cone map together with what its file knows of it.
 
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::heightfield::conemap::file::{Layout, MapFormat, RatioScale};
@@ -15,18 +16,30 @@ pub struct ShadingChannel {
 }
 
 /// What the numbers of a map do not say.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Label {
     /// Samples of the heights along each axis.
     pub samples: [u32; 2],
     /// What lies between them; only maps over cells depend on it.
+    #[serde(rename = "surface")]
     pub patches: Patches,
-    /// Texels that a ratio of 1 in the file means.
-    pub scale: f64,
     /// [`digest`] of the heights; unknown if another program wrote the file.
+    #[serde(
+        rename = "heights_sha256",
+        default,
+        skip_serializing_if = "Option::is_none"
+    )]
     pub digest: Option<String>,
     /// What made the map; unknown if another program wrote the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub generator: Option<String>,
+}
+
+impl Label {
+    /// Texels that a ratio of 1 in the file means: the longer axis.
+    pub fn scale(&self) -> f64 {
+        f64::from(self.samples[0].max(self.samples[1]))
+    }
 }
 
 /// SHA-256 of the size and the bits of heights, in hexadecimal, which identifies them.
@@ -81,7 +94,6 @@ impl MapFile {
         let label = Label {
             samples: heights.size(),
             patches,
-            scale: scale(heights.size()),
             digest: Some(digest(heights)),
             generator: Some(generator.into()),
         };
@@ -95,12 +107,7 @@ impl MapFile {
     /// the whole texture are of no use, and would outweigh all others.
     pub fn mean_share(&self) -> f64 {
         let ratios = self.map.ratios.iter();
-        let shares: f64 = ratios.map(|r| (r / self.label.scale).min(1.0)).sum();
+        let shares: f64 = ratios.map(|r| (r / self.label.scale()).min(1.0)).sum();
         shares / self.map.ratios.len().max(1) as f64
     }
-}
-
-/// Texels that a ratio of 1 in a file means: the longer axis.
-pub(crate) fn scale(samples: [u32; 2]) -> f64 {
-    f64::from(samples[0].max(samples[1]))
 }

@@ -20,6 +20,6 @@ pub use compatibility::MapUse;
 pub(crate) use decode::decode_as;
 pub use decode::{ForeignFormat, decode, decode_bytes, has_map, read_map};
 pub use encode::encode;
-pub use format::{Bits, Channel, Layout, MapFormat, RatioScale, Slopes};
+pub use format::{Channel, Layout, MapFormat, RatioScale, Slopes};
 pub use map_file::{Label, MapFile, ShadingChannel, digest};
-pub use rounding::{Ratios, narrowed};
+pub use rounding::{Ratios, narrowed, share_down};

@@ -26,17 +26,10 @@
 //! know. Over the heights that they were made from, relaxed maps stay what they were; over
 //! those in the file, which the papers trace them with, a ray may cross more than once.
 
-use crate::heightfield::conemap::file::{Bits, RatioScale};
+use crate::heightfield::conemap::file::RatioScale;
+use crate::raster::png::BitDepth;
 
-impl Bits {
-    /// The number that stands for 1.
-    pub fn most(self) -> u16 {
-        match self {
-            Self::Eight => u16::from(u8::MAX),
-            Self::Sixteen => u16::MAX,
-        }
-    }
-
+impl BitDepth {
     /// The height that a number stands for: the same as a height map reads.
     pub fn height(self, number: u16) -> f32 {
         (f64::from(number) / f64::from(self.most())) as f32
@@ -67,7 +60,7 @@ impl Bits {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratios {
     /// The numbers.
-    pub bits: Bits,
+    pub bits: BitDepth,
     /// How they stand for ratios.
     pub scaling: RatioScale,
     /// Texels that a ratio of 1 in the file means.
@@ -114,7 +107,7 @@ impl Ratios {
 }
 
 /// The largest f32 share whose ratio `share * scale` is no more than a ratio.
-pub(crate) fn share_down(ratio: f64, scale: f64) -> f32 {
+pub fn share_down(ratio: f64, scale: f64) -> f32 {
     let mut share = (ratio / scale) as f32;
     // The nearest f32 is at most one off.
     while share > 0.0 && f64::from(share) * scale > ratio {

@@ -1,17 +1,17 @@
 //! Slopes and normals as shading channels hold them.
 
-use crate::heightfield::conemap::file::Bits;
+use crate::raster::png::BitDepth;
 
 /// Slopes as Dummer's text and shader take them: 0.5 flat, 0 and 1 half the height down or up
 /// over one texel, which is what `(share - 0.5) * texture size` makes a slope per texture again
 /// (Dummer 2006). His rows are in the order of OpenGL, where y goes up.
-pub(crate) fn whole([x, y]: [f32; 2], bits: Bits) -> [u16; 2] {
+pub(crate) fn whole([x, y]: [f32; 2], bits: BitDepth) -> [u16; 2] {
     [x, -y].map(|slope| bits.nearest(0.5 + f64::from(slope)))
 }
 
 /// Slopes of heights as Dummer's program stores them: `127 + (a - b) / 2 / 2` in whole
 /// numbers, a and b being the neighbours along an axis, or at a border the sample itself.
-pub(crate) fn half(heights: &[u16], size: [u32; 2], bits: Bits) -> Vec<[u16; 2]> {
+pub(crate) fn half(heights: &[u16], size: [u32; 2], bits: BitDepth) -> Vec<[u16; 2]> {
     let [w, h] = size.map(|n| n as usize);
     let number = |x: usize, y: usize| i32::from(heights[y * w + x]);
     let middle = i32::from(bits.most() / 2);

@@ -1,7 +1,7 @@
 //! Cone maps in f64 on the CPU, places over threads.
 
 use crate::base::parallel::collect;
-use crate::heightfield::conemap::generate::generator::{NodeCount, ShareWatch};
+use crate::heightfield::conemap::generate::generator::ShareWatch;
 use crate::heightfield::conemap::generate::{
     GenerateError, Generator, MapTask, Options, min3x3::min3x3, task::Found,
 };
@@ -29,46 +29,30 @@ pub fn generate(
     options: &Options,
     watch: ShareWatch<'_>,
 ) -> Result<ConeMap, GenerateError> {
-    generate_counted(generator, heights, patches, options, watch).map(|(map, _)| map)
-}
-
-/// Makes a cone map, and counts the nodes that the searches looked up.
-///
-/// # Errors
-/// As [`generate`].
-pub fn generate_counted(
-    generator: Generator,
-    heights: &Heights,
-    patches: Patches,
-    options: &Options,
-    watch: ShareWatch<'_>,
-) -> Result<(ConeMap, NodeCount), GenerateError> {
     let task = MapTask::new(generator, heights, patches, options)?;
     let places = task.values.len();
     let channels = generator.channels();
     let mut ratios = Vec::with_capacity(places * channels);
-    let mut count = NodeCount::default();
     let (mut start, mut length) = (0, BAND);
     while start < places {
-        let before = count.total;
         let band = start..places.min(start + length);
         let band: Vec<Found> = collect(band, TAKEN, |index| task.find(index));
+        let mut nodes = 0;
         for found in &band {
             ratios.extend_from_slice(&found.ratios[..channels]);
-            count.total += u64::from(found.nodes);
-            count.most = count.most.max(found.nodes);
+            nodes += u64::from(found.nodes);
         }
         start += band.len();
         if !watch(start as f64 / places as f64) {
             return Err(GenerateError::Cancelled);
         }
-        if count.total - before < FEW_NODES {
+        if nodes < FEW_NODES {
             length *= 2;
         }
     }
-    let mut map = task.map(ratios);
-    if options.min3x3 {
-        map = min3x3(&map);
-    }
-    Ok((map, count))
+    let map = task.map(ratios);
+    Ok(match options.min3x3 {
+        true => min3x3(&map),
+        false => map,
+    })
 }

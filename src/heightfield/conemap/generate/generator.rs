@@ -164,12 +164,3 @@ pub enum GenerateError {
 
 /// Receives the share of places that are done, now and then; `false` cancels.
 pub type ShareWatch<'a> = &'a mut dyn FnMut(f64) -> bool;
-
-/// How many nodes the searches of a map looked up. Nodes are samples, or maxima of any level.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct NodeCount {
-    /// Nodes of all places together.
-    pub total: u64,
-    /// Nodes of the place that took most.
-    pub most: u32,
-}

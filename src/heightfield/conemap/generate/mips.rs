@@ -8,6 +8,7 @@
 
 use crate::base::parallel::collect;
 use crate::heightfield::ConeMap;
+use crate::heightfield::conemap::file::share_down;
 
 /// One level.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,18 +70,8 @@ fn halved(below: &ConeLevel) -> ConeLevel {
     }
 }
 
-/// The largest number of 32 bits that is not more: what a ratio may be stored as.
-pub fn rounded_down(ratio: f64) -> f32 {
-    let nearest = ratio as f32;
-    if f64::from(nearest) > ratio {
-        nearest.next_down()
-    } else {
-        nearest
-    }
-}
-
 /// Ratios as bytes to bind, each rounded down.
 pub fn stored<'a>(ratios: impl IntoIterator<Item = &'a f64>) -> Vec<u8> {
-    let stored = ratios.into_iter().map(|r| rounded_down(*r));
+    let stored = ratios.into_iter().map(|r| share_down(*r, 1.0));
     stored.flat_map(f32::to_ne_bytes).collect()
 }

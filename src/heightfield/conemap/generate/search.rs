@@ -18,35 +18,22 @@ use crate::heightfield::conemap::generate::{
 use crate::heightfield::{Heights, MaxMip, Patches};
 use crate::wgsl;
 
-/// Branch and bound.
-pub struct BranchAndBound {
-    /// Which places each search looks at.
-    sectors: &'static [Sector],
-    /// Whether a cone is only limited by places behind which the surface falls.
-    falling_only: bool,
-}
+/// Branch and bound: which places each search looks at.
+pub struct BranchAndBound(&'static [Sector]);
 
 /// One search for places in all directions.
-pub const ALL: BranchAndBound = BranchAndBound {
-    sectors: &[Sector::All],
-    falling_only: false,
-};
+pub const ALL: BranchAndBound = BranchAndBound(&[Sector::All]);
 /// A search for each side, one cone each.
-pub const SIDES: BranchAndBound = BranchAndBound {
-    sectors: &Sector::SIDES,
-    falling_only: false,
-};
-/// A search for each quadrant, where the places that limit relaxed cones differ.
-pub const FALLING: BranchAndBound = BranchAndBound {
-    sectors: &Sector::QUADRANTS,
-    falling_only: true,
-};
+pub const SIDES: BranchAndBound = BranchAndBound(&Sector::SIDES);
+/// A search for each quadrant. Only places behind which the surface falls limit its cones, and
+/// these differ between the quadrants.
+pub const FALLING: BranchAndBound = BranchAndBound(&Sector::QUADRANTS);
 
 impl BranchAndBound {
     fn distance(&self, task: &MapTask<'_>, search: usize) -> GridDistance {
         GridDistance {
             axes: task.axes(),
-            sector: self.sectors[search],
+            sector: self.0[search],
             cells: task.generator.over_cells(),
         }
     }
@@ -54,22 +41,23 @@ impl BranchAndBound {
 
 impl ConeSearch for BranchAndBound {
     fn sectors(&self) -> &'static [Sector] {
-        self.sectors
+        self.0
     }
 
     fn pyramids(&self, heights: &Heights, cells: Option<Patches>, values: &[f32]) -> Vec<Vec<f32>> {
-        if !self.falling_only {
-            return vec![values.to_vec()];
-        }
-        let quadrants = self.sectors.iter().filter_map(|sector| match sector {
+        let quadrants = self.0.iter().filter_map(|sector| match sector {
             Sector::Quadrant(up) => Some(falling::limits(heights, cells, values, *up)),
             _ => None,
         });
-        quadrants.collect()
+        let quadrants: Vec<_> = quadrants.collect();
+        match quadrants.is_empty() {
+            true => vec![values.to_vec()],
+            false => quadrants,
+        }
     }
 
     fn uses_planes(&self) -> bool {
-        self.sectors == [Sector::All]
+        self.0 == [Sector::All]
     }
 
     fn modules(&self, task: &MapTask<'_>) -> Vec<Module> {

@@ -35,7 +35,7 @@ pub struct MapTask<'a> {
 pub struct Found {
     /// Ratios, as many as the map has channels.
     pub ratios: [f64; 4],
-    /// Nodes that were looked up.
+    /// Nodes that were looked up: samples, or maxima of any level.
     pub nodes: u32,
 }
 
