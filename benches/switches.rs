@@ -25,7 +25,7 @@ const SWITCHES: &[Switch] = &[
     ("work counted", |_, e| e.count = true),
     ("levels kept", |_, e| e.levels = true),
     ("relaxation off", |p, _| {
-        p.march.relaxation = conemarch::scene::distance::Relaxation::Off;
+        p.march.relaxation = conemarch::scene::stepping::Relaxation::Off;
     }),
     ("no cones", |p, _| p.march.coarsest = 1),
     ("cones from 1/32", |p, _| p.march.coarsest = 32),

@@ -5,8 +5,6 @@
 pub struct Advance {
     /// Every ray of the cone is proven free up to here.
     pub front: f64,
-    /// Where the next sample is taken; not below the front.
-    pub sample: f64,
     /// The radius of the last ball; 0 before the first.
     pub radius: f64,
     /// Whether another step is worth its cost.
@@ -18,7 +16,6 @@ impl Advance {
     pub fn at(front: f64, going: bool) -> Self {
         Self {
             front,
-            sample: front,
             radius: 0.0,
             going,
         }

@@ -91,10 +91,6 @@ impl DistanceEstimate for Balls {
         (p - p.round()).abs() * 2.0
     }
 
-    fn lipschitz(&self) -> f64 {
-        1.0
-    }
-
     fn bounds(&self) -> Bounds {
         Bounds::cuboid(DVec3::splat(EXTENT))
     }

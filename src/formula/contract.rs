@@ -63,7 +63,7 @@ pub trait Evaluate: Send + Sync {
     /// most 0.
     fn value(&self, p: DVec3, most: u32) -> (f64, u32);
 
-    /// The Lipschitz constant: a bound of the estimate's slope.
+    /// The Lipschitz constant: a bound of the estimate's slope. Steps of rays divide by it.
     fn lipschitz(&self) -> f64 {
         1.0
     }
@@ -147,8 +147,10 @@ pub trait DistanceEstimate {
     /// comes to three sets.
     fn trap(&self, p: DVec3, most: u32) -> DVec3;
 
-    /// The Lipschitz constant: a bound of the estimate's slope. Steps divide by it.
-    fn lipschitz(&self) -> f64;
+    /// See [`Evaluate::lipschitz`].
+    fn lipschitz(&self) -> f64 {
+        self.evaluator().lipschitz()
+    }
 
     /// A region that holds the whole shape.
     fn bounds(&self) -> Bounds;

@@ -67,28 +67,37 @@ impl Jacobian for DMat3 {
 #[derive(Clone, Debug)]
 pub struct Orbits(pub Folds);
 
-/// A ball about the point and what it has spread to in the orbit.
-struct Trial {
-    trial: f64,
-    /// How far the edge of escape may move within the trial ball.
-    shift: f64,
-    radius: f64,
-    /// The largest share of the trial ball that is proven empty.
-    share: f64,
+/// How distances grow along an orbit. As long as all folds are linear, the Jacobian tells.
+#[derive(Clone, Copy)]
+struct Growth<J> {
+    jacobian: J,
+    /// Its norm.
+    norm: f64,
+    /// The growth factor for all directions.
+    scalar: f64,
+    /// The radius of a ball about the starting point in which the folds are linear.
+    free: f64,
+    /// What later iterations do to a growth factor w: it becomes `product w + sum`.
+    product: f64,
+    sum: f64,
 }
 
-impl Trial {
-    fn test(&mut self, top: f64) {
-        self.share = self.share.max(top / (self.radius + self.shift));
+impl<J: Jacobian> Growth<J> {
+    const START: Self = Self {
+        jacobian: J::START,
+        norm: 1.0,
+        scalar: 1.0,
+        free: f64::INFINITY,
+        product: 1.0,
+        sum: 0.0,
+    };
+
+    /// Goes on by an iteration of any kind.
+    fn grow(&mut self, growth: f64) {
+        // Kept finite. The estimate is zero in f64 long before this limit.
+        self.product = (growth * self.product).min(1e300);
+        self.sum = (growth * self.sum + 1.0).min(1e300);
     }
-}
-
-/// All that an orbit tells.
-struct Orbit {
-    value: f64,
-    chain: f64,
-    ball: f64,
-    iterations: u32,
 }
 
 impl Orbits {
@@ -109,105 +118,126 @@ impl Orbits {
         sides.min(low).min(high)
     }
 
-    /// What a ball of a radius about a point spreads to in one iteration.
-    fn spread(&self, fold: &Fold, trial: &Trial) -> f64 {
-        let [low, high] = self.0.radii;
-        let near = (fold.length - trial.radius).clamp(low, high);
-        let growth = high * high / (fold.length.clamp(low, high) * near);
-        (self.0.scale.abs() * growth * trial.radius + trial.trial).min(MOST_RADIUS)
+    /// Goes on by one iteration from z.
+    fn follow<J: Jacobian>(&self, grown: &mut Growth<J>, z: DVec3, fold: &Fold) {
+        let Self(folds) = self;
+        grown.free = grown.free.min(self.clearance(z, fold) / grown.norm);
+        let mirrored = self.beyond(z).cmpgt(DVec3::ZERO);
+        let mirror = DVec3::select(mirrored, DVec3::NEG_ONE, DVec3::ONE);
+        let rotation = folds.rotation.as_ref();
+        grown.jacobian = grown.jacobian.next(mirror, rotation, folds.scale * fold.m);
+        grown.norm = grown.jacobian.norm();
+        grown.scalar = folds.growth(fold) * grown.scalar + 1.0;
     }
 
-    /// Follows the orbit of a point. What the caller does not read is not computed.
-    #[inline(always)]
-    fn orbit<J: Jacobian>(&self, p: DVec3, most: u32, clear: f64, trial: f64) -> Orbit {
-        let exit = self.0.exit(p);
-        let (mut z, mut n) = (p, 0);
-        // W(k): the growth, if the Jacobian is followed for k iterations, and the radius of the
-        // ball in which these are linear.
-        let (mut w, mut room) = ([1.0_f64; 4], [f64::INFINITY; 4]);
-        let (mut jacobian, mut norm, mut free) = (J::START, 1.0_f64, f64::INFINITY);
-        let mut ball = Trial {
-            trial,
-            shift: self.0.kappa.abs() * trial,
-            radius: trial,
-            share: 0.0,
+    /// What a ball of a radius about a point spreads to in one iteration; `trial` is the radius
+    /// that it started with.
+    fn spread(&self, fold: &Fold, radius: f64, trial: f64) -> f64 {
+        let [low, high] = self.0.radii;
+        let near = (fold.length - radius).clamp(low, high);
+        let growth = high * high / (fold.length.clamp(low, high) * near);
+        (self.0.scale.abs() * growth * radius + trial).min(MOST_RADIUS)
+    }
+
+    /// The estimate at the end of an orbit, with the norm of the Jacobian, and with one growth
+    /// factor for all directions. At negative scales the Jacobian has next to no slack.
+    fn estimates<J>(&self, past: f64, grown: &Growth<J>) -> [f64; 2] {
+        let sharp = if self.0.scale > 0.0 {
+            grown.norm
+        } else {
+            grown.scalar
         };
-        ball.test(self.0.top(z, p));
-        while n < most.min(PREFIX) && !self.0.ended(z, exit) {
-            let fold = self.0.fold(z);
+        let end = |w| grown.product * w + grown.sum + self.0.tail;
+        [sharp, grown.scalar].map(|w| past / end(w))
+    }
+
+    /// The estimate, and a radius for steps of rays.
+    #[inline(always)]
+    fn chain<J: Jacobian>(&self, p: DVec3, most: u32, clear: f64) -> Reading {
+        let Self(folds) = self;
+        let exit = folds.exit(p);
+        let (mut z, mut n) = (p, 0);
+        let mut grown = Growth::<J>::START;
+        while n < most.min(PREFIX) && !folds.ended(z, exit) {
+            let fold = folds.fold(z);
             if self.inverts(&fold) {
                 break;
             }
-            free = free.min(self.clearance(z, &fold) / norm);
-            let mirror = DVec3::select(
-                self.beyond(z).cmpgt(DVec3::ZERO),
-                DVec3::NEG_ONE,
-                DVec3::ONE,
-            );
-            jacobian = jacobian.next(mirror, self.0.rotation.as_ref(), self.0.scale * fold.m);
-            norm = jacobian.norm();
-            ball.radius = match free >= trial {
-                true => norm * trial,
-                false => self.spread(&fold, &ball),
-            };
-            let growth = self.0.growth(&fold);
-            w = std::array::from_fn(|k| match k as u32 <= n {
-                true => growth * w[k] + 1.0,
-                false => norm,
-            });
-            room = std::array::from_fn(|k| if k as u32 <= n { room[k] } else { free });
-            z = self.0.next(&fold, p);
+            self.follow(&mut grown, z, &fold);
+            z = folds.next(&fold, p);
             n += 1;
-            ball.test(self.0.top(z, p));
         }
-        let (mut product, mut sum) = (1.0, 0.0);
-        while n < most && !self.0.ended(z, exit) {
-            let fold = self.0.fold(z);
-            ball.radius = self.spread(&fold, &ball);
-            let growth = self.0.growth(&fold);
-            // Kept finite. The estimate is zero in f64 long before this limit.
-            (product, sum) = (
-                (growth * product).min(1e300),
-                (growth * sum + 1.0).min(1e300),
-            );
-            z = self.0.next(&fold, p);
+        while n < most && !folds.ended(z, exit) {
+            let fold = folds.fold(z);
+            grown.grow(folds.growth(&fold));
+            z = folds.next(&fold, p);
             n += 1;
-            ball.test(self.0.top(z, p));
         }
-        let top = self.0.past(z, p, exit);
-        let estimates = w.map(|w| top / (product * w + sum + self.0.tail));
-        // At negative scales the Jacobian has next to no slack.
-        let last = if self.0.scale > 0.0 { 3 } else { 0 };
-        let step = |k: usize| ((estimates[k] - clear) / self.0.lipschitz).min(room[k]);
-        Orbit {
-            value: estimates[last],
-            chain: (0..=last).map(step).fold(f64::NEG_INFINITY, f64::max),
-            ball: trial * ball.share.min(1.0),
+        let [sharp, scalar] = self.estimates(folds.past(z, p, exit), &grown);
+        let [long, short] = [sharp, scalar].map(|e| (e - clear) / folds.lipschitz);
+        Reading {
+            value: sharp,
+            radius: short.max(long.min(grown.free)),
             iterations: n,
         }
     }
 
+    /// The estimate, and the radius of an empty ball: the largest part of a trial ball for which
+    /// some iteration shows that all of it escapes.
     #[inline(always)]
-    fn follow(&self, p: DVec3, most: u32, clear: f64, trial: f64) -> Orbit {
-        match self.0.rotation {
-            None => self.orbit::<DVec3>(p, most, clear, trial),
-            Some(_) => self.orbit::<DMat3>(p, most, clear, trial),
+    fn trial_ball<J: Jacobian>(&self, p: DVec3, most: u32, trial: f64) -> Reading {
+        let Self(folds) = self;
+        let exit = folds.exit(p);
+        let (mut z, mut n) = (p, 0);
+        let (mut grown, mut follows) = (Growth::<J>::START, true);
+        let mut radius = trial;
+        // By so much the place where orbits escape differs within the trial ball.
+        let shift = trial
+            * folds
+                .rotation
+                .as_ref()
+                .map_or(folds.kappa.abs(), |_| folds.tail);
+        let share = |z, radius: f64| folds.top(z, p) / (radius + shift);
+        let mut best = share(z, radius);
+        while n < most && !folds.ended(z, exit) {
+            let fold = folds.fold(z);
+            follows &= n < PREFIX && !self.inverts(&fold);
+            if follows {
+                self.follow(&mut grown, z, &fold);
+            } else {
+                grown.grow(folds.growth(&fold));
+            }
+            // As long as the trial ball meets no fold, its image is an ellipsoid.
+            radius = match follows && grown.free >= trial {
+                true => grown.norm * trial,
+                false => self.spread(&fold, radius, trial),
+            };
+            z = folds.next(&fold, p);
+            n += 1;
+            best = best.max(share(z, radius));
+        }
+        Reading {
+            value: self.estimates(folds.past(z, p, exit), &grown)[0],
+            radius: trial * best.min(1.0),
+            iterations: n,
         }
     }
 }
 
 impl Evaluate for Orbits {
     fn value(&self, p: DVec3, most: u32) -> (f64, u32) {
-        let orbit = self.follow(p, most, 0.0, 1.0);
-        (orbit.value, orbit.iterations)
+        let all = self.step(p, most, 0.0);
+        (all.value, all.iterations)
+    }
+
+    fn lipschitz(&self) -> f64 {
+        self.0.lipschitz
     }
 
     fn step(&self, p: DVec3, most: u32, clear: f64) -> Reading {
-        let orbit = self.follow(p, most, clear, 1.0);
-        Reading {
-            value: orbit.value,
-            radius: orbit.chain,
-            iterations: orbit.iterations,
+        match self.0.rotation {
+            None => self.chain::<DVec3>(p, most, clear),
+            Some(_) => self.chain::<DMat3>(p, most, clear),
         }
     }
 
@@ -226,11 +256,9 @@ impl Evaluate for Orbits {
     }
 
     fn ball(&self, p: DVec3, most: u32, trial: f64) -> Reading {
-        let orbit = self.follow(p, most, 0.0, trial);
-        Reading {
-            value: orbit.value,
-            radius: orbit.ball,
-            iterations: orbit.iterations,
+        match self.0.rotation {
+            None => self.trial_ball::<DVec3>(p, most, trial),
+            Some(_) => self.trial_ball::<DMat3>(p, most, trial),
         }
     }
 }

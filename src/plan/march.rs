@@ -8,7 +8,7 @@ use crate::base::key::{
 };
 use crate::base::named::named_enum;
 use crate::plan::pyramid::{Level, levels};
-use crate::scene::distance::{Relaxation, Stepping};
+use crate::scene::stepping::{Relaxation, Stepping};
 use crate::settings;
 
 /// What sets a mode apart.

@@ -10,12 +10,12 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3};
 
-use crate::base::cone::ConeRule;
 use crate::base::outcome::Counts;
 use crate::base::shader::Module;
 use crate::base::view::{Beam, footprint};
 use crate::formula::{Bounds, Evaluator, Formula, Reading};
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
+use crate::scene::stepping::{Relaxation, Stepping};
 use crate::wgsl;
 
 /// A cone that gains less than this share of its ball stops and leaves the rest to its four
@@ -23,8 +23,6 @@ use crate::wgsl;
 /// that rays would hit. At 0.3 some pixels start behind the surface, at 0.8 none does on the
 /// five bench presets.
 const DISTANCE_ENOUGH: f64 = 0.8;
-/// How far ahead of its front a cone takes the next sample, in parts of its last gain.
-const DISTANCE_AHEAD: f64 = 0.0;
 /// The ball that is tried, in radii of the last one. From 1.25 to 1.7 this makes no difference.
 const DISTANCE_TRIAL: f64 = 1.5;
 /// The least step of a ray, in hit thresholds.
@@ -74,48 +72,6 @@ pub struct DistanceUniform {
     pub pad1: u32,
     /// Unused.
     pub pad2: u32,
-}
-
-/// How rays stretch their steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Relaxation {
-    /// Steps are the radius of the empty ball.
-    Off,
-    /// Steps follow the measured slope of the radius.
-    #[default]
-    Auto,
-    /// Steps are this many radii, 1 to 2.
-    Factor(f64),
-}
-
-impl Relaxation {
-    /// The number in the WGSL struct.
-    fn code(self) -> f64 {
-        match self {
-            Self::Off => 1.0,
-            Self::Auto => 0.0,
-            Self::Factor(f) => f,
-        }
-    }
-}
-
-/// How a scene takes its steps. A ray's *hit threshold* at a distance is `detail` footprints.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stepping {
-    /// A ray hits where the estimate is at most so many footprints.
-    pub detail: f64,
-    /// Share of the hit threshold that steps keep clear of, from 0 to less than 1.
-    pub shell: f64,
-    /// How rays stretch their steps.
-    pub relaxation: Relaxation,
-    /// Factor on ray steps; less than 1 for the truth.
-    pub stride: f64,
-    /// The rule of the cones.
-    pub rule: ConeRule,
-    /// Whether rays start where they enter the bounds.
-    pub clip: bool,
-    /// Whether rays go by proven balls, as cones do.
-    pub proven: bool,
 }
 
 /// A formula seen from an eye, with all settings resolved to numbers.
@@ -240,7 +196,6 @@ impl Twin for Distance {
             wgsl!(
                 "scene/distance.wgsl",
                 "DISTANCE_ENOUGH" = DISTANCE_ENOUGH,
-                "DISTANCE_AHEAD" = DISTANCE_AHEAD,
                 "DISTANCE_TRIAL" = DISTANCE_TRIAL,
                 "DISTANCE_LEAST" = DISTANCE_LEAST,
                 "DISTANCE_PROVEN" = f64::from(u8::from(self.stepping.proven)),
@@ -306,7 +261,7 @@ impl Solid for Distance {
     type Walk = Walk;
 
     fn advance(&self, cone: &Beam, at: Advance, work: &mut Counts) -> Advance {
-        let t = at.sample;
+        let t = at.front;
         let q = cone.at(t);
         let eps = self.threshold(cone, t);
         let shell = self.stepping.shell * eps;
@@ -324,16 +279,12 @@ impl Solid for Distance {
             work.iterations += ball.iterations;
             d = d.max(ball.radius - shell - cone.r0);
         }
-        let front = self.stepping.rule.cone_front(at.front, t, d, cone.k);
-        let gain = front - at.front;
-        // After a short gain, or without a ball, the four thinner children go on.
-        let pays = gain > DISTANCE_ENOUGH * d.max(0.0);
+        let front = self.stepping.rule.cone_front(t, t, d, cone.k);
         Advance {
             front,
-            // A sample ahead that gains little is taken again at the front.
-            sample: front + if pays { DISTANCE_AHEAD * gain } else { 0.0 },
             radius: d.max(0.0),
-            going: pays || t > at.front,
+            // After a short gain, or without a ball, the four thinner children go on.
+            going: front - t > DISTANCE_ENOUGH * d.max(0.0),
         }
     }
 
@@ -406,8 +357,8 @@ impl Solid for Distance {
     }
 
     fn clearance(&self, q: DVec3) -> f64 {
-        let trial = self.far;
-        self.field(q, 0.0, trial, &mut Counts::default()).1.max(0.0)
+        let step = self.evaluator.step(self.eye + q, self.iterations, 0.0);
+        self.read(q, step, 0.0, &mut Counts::default()).1.max(0.0)
     }
 
     fn room(&self, q: DVec3) -> f64 {

@@ -1,6 +1,7 @@
 //! Scenes: what there is to see.
 //!
-//! - [`distance`]: a formula; [`distance_settings`]: its keys
+//! - [`distance`]: a formula; [`distance_settings`]: its keys; [`stepping`]: how it takes its
+//!   steps
 //! - [`heightfield`]: a block with heights on top
 //! - [`slab`]: a slab between two planes, the smallest complete scene
 //! - `contract`: [`Solid`], what passes ask a scene; [`Twin`], what a GPU needs of it
@@ -16,6 +17,7 @@ pub mod distance_settings;
 pub mod heightfield;
 mod settings;
 pub mod slab;
+pub mod stepping;
 
 use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};

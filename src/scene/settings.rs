@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::AnySolid;
-use super::distance::Stepping;
+use super::stepping::Stepping;
 use crate::base::key::{Fault, Key};
 use crate::heightfield::assets::Assets;
 use crate::heightfield::tracer::settings::PrepareError;

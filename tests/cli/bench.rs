@@ -52,7 +52,7 @@ fn error_rows_files_and_the_cache() {
     holds(&table, &["| slides-fast", "FLIP"]);
     let first = rows(&folder, "a.json");
     let modes: Vec<&str> = first.iter().map(|r| word(r, "mode")).collect();
-    let of_one = "ray ray-relaxed safe calibrated slides-even slides-deep slides-fast";
+    let of_one = "ray ray-relaxed safe proven calibrated slides-even slides-deep slides-fast";
     assert_eq!(modes.join(" "), format!("{of_one} {of_one}"));
     for row in &first {
         assert!(names(row).join(" ").starts_with(FIELDS), "{row}");

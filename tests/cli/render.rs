@@ -155,7 +155,7 @@ fn the_command_that_is_given_is_explained() {
     let folder = Folder::new();
     let explained = text(&folder.done("render mandelbox --explain --size 64x64"));
     assert!(explained.starts_with("64 x 64, mode safe"), "{explained}");
-    holds(&explained, &["wgsl/formula/mandelbox.wgsl"]);
+    holds(&explained, &["wgsl/formula/folds.wgsl"]);
     let has = |more: &str, part: &str| {
         let explain = format!("{} --explain", tiny("mandelbox", more));
         text(&folder.done(&explain)).contains(part)

@@ -186,7 +186,7 @@ fn the_mandelbox_is_explained() {
       march
         wgsl/base/real.wgsl
         wgsl/base/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
-        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_AHEAD=0  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
+        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/folds.wgsl  FOLDS_JULIA=0
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
@@ -198,7 +198,7 @@ fn the_mandelbox_is_explained() {
       trace
         wgsl/base/real.wgsl
         wgsl/base/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
-        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_AHEAD=0  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
+        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/folds.wgsl  FOLDS_JULIA=0
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
@@ -210,7 +210,7 @@ fn the_mandelbox_is_explained() {
       color
         wgsl/base/real.wgsl
         wgsl/base/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
-        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_AHEAD=0  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
+        wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
         wgsl/formula/folds.wgsl  FOLDS_JULIA=0
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl

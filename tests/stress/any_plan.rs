@@ -9,7 +9,7 @@ use conemarch::plan::camera::Camera;
 use conemarch::plan::look::Look;
 use conemarch::plan::march::{Marching, Mode};
 use conemarch::scene::Scene;
-use conemarch::scene::distance::Relaxation;
+use conemarch::scene::stepping::Relaxation;
 use glam::DVec3;
 use proptest::prelude::*;
 

@@ -45,7 +45,7 @@ use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::Plan;
 use conemarch::preset::{read, write};
-use conemarch::scene::distance::Relaxation;
+use conemarch::scene::stepping::Relaxation;
 use glam::DVec3;
 use proptest::test_runner::{Config, TestRng, TestRunner};
 

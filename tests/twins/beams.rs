@@ -3,7 +3,7 @@
 use conemarch::base::outcome::Counts;
 use conemarch::base::view::Beam;
 use conemarch::plan::Plan;
-use conemarch::scene::distance::Relaxation;
+use conemarch::scene::stepping::Relaxation;
 use conemarch::scene::{Advance, Solid, Step, Task};
 use glam::DVec3;
 

@@ -16,6 +16,7 @@ mod beams;
 #[path = "../common"]
 #[allow(dead_code, reason = "other crates use the rest")]
 mod common {
+    pub mod climbs;
     pub mod plans;
     pub mod probe;
     pub mod random;
@@ -23,6 +24,7 @@ mod common {
 }
 mod compare;
 mod looks;
+mod oversteps;
 
 use common::plans::{mandelbox, scene};
 use common::probe::{Numbers, Probe, probe};

@@ -15,8 +15,6 @@ const STATE_MOVING = 3u;
 struct Advance {
     /// Every ray of the cone is proven free up to here.
     front: f32,
-    /// Where the next sample is taken; not below the front.
-    sample: f32,
     /// The radius of the last ball; 0 before the first.
     radius: f32,
     /// 1 if another step is worth its cost.
@@ -25,7 +23,7 @@ struct Advance {
 
 /// A cone at a front, with nothing known about what is ahead.
 fn advance_at(front: f32, going: bool) -> Advance {
-    return Advance(front, front, 0.0, u32(going));
+    return Advance(front, 0.0, u32(going));
 }
 
 /// Where a ray met the scene: the distance, the part that it met, and the place on it.

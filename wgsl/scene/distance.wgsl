@@ -41,7 +41,6 @@ struct Walk {
 }
 
 override DISTANCE_ENOUGH: f32;
-override DISTANCE_AHEAD: f32;
 override DISTANCE_TRIAL: f32;
 override DISTANCE_LEAST: f32;
 override DISTANCE_PROVEN: bool;
@@ -149,7 +148,7 @@ fn bounds_interval(ray: Beam) -> vec2<f32> {
 
 /// One step of a cone.
 fn advance(cone: Beam, at: Advance) -> Advance {
-    let t = at.sample;
+    let t = at.front;
     let q = cone.origin + t * cone.axis;
     let eps = distance_scene.detail * footprint(cone, t);
     let shell = distance_scene.shell * eps;
@@ -160,13 +159,10 @@ fn advance(cone: Beam, at: Advance) -> Advance {
         let ball = estimate_cone(scene_point(q), distance_scene.iterations, real(trial + 2.0 * eps));
         d = max(d, f32(ball.y) - shell - cone.r0);
     }
-    let front = cone_front(at.front, t, d, cone.k);
-    let gain = front - at.front;
+    let front = cone_front(t, t, d, cone.k);
     // After a short gain, or without a ball, the four thinner children go on.
-    let pays = gain > DISTANCE_ENOUGH * max(d, 0.0);
-    // A sample ahead that gains little is taken again at the front.
-    let sample = front + select(0.0, DISTANCE_AHEAD * gain, pays);
-    return Advance(front, sample, max(d, 0.0), u32(pays || t > at.front));
+    let going = front - t > DISTANCE_ENOUGH * max(d, 0.0);
+    return Advance(front, max(d, 0.0), u32(going));
 }
 
 fn begin(ray: Beam, front: f32, t_max: f32) -> Walk {
@@ -242,7 +238,8 @@ fn walk_radius(ray: Beam, walk: Walk) -> f32 {
 
 /// The radius of a ball about a point that should be empty.
 fn clearance(q: vec3<f32>) -> f32 {
-    return max(0.0, field(q, 0.0, distance_scene.far).y);
+    let ball = estimate_step(scene_point(q), distance_scene.iterations, real(0.0)).y;
+    return max(0.0, max(f32(ball), bounds_distance(q)));
 }
 
 /// The free room about a point, for occlusion.
