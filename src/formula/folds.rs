@@ -169,15 +169,6 @@ impl Folds {
         }
     }
 
-    /// How far the end of an orbit is past where points escape. Before an orbit has escaped for
-    /// good, one large coordinate proves nothing; then the result may be negative.
-    pub fn past(&self, z: DVec3, c: DVec3, exit: f64) -> f64 {
-        match self.ended(z, exit) {
-            true => self.top(z, c),
-            false => z.length() - self.k(c),
-        }
-    }
-
     /// How far a point is past where points escape; 0 before.
     pub fn top(&self, z: DVec3, c: DVec3) -> f64 {
         match self.rotation {

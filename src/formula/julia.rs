@@ -49,7 +49,11 @@ impl Julia {
             z = folds.next(&fold, c);
             n += 1;
         }
-        let top = folds.past(z, c, exit);
+        // Before an orbit has escaped for good, one large coordinate proves nothing.
+        let top = match folds.ended(z, exit) {
+            true => folds.top(z, c),
+            false => z.length() - folds.k(c),
+        };
         let outside = self.outside(z);
         Reading {
             value: top / w,

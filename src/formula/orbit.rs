@@ -173,7 +173,7 @@ impl Orbits {
             z = folds.next(&fold, p);
             n += 1;
         }
-        let [sharp, scalar] = self.estimates(folds.past(z, p, exit), &grown);
+        let [sharp, scalar] = self.estimates(folds.top(z, p), &grown);
         let [long, short] = [sharp, scalar].map(|e| (e - clear) / folds.lipschitz);
         Reading {
             value: sharp,
@@ -217,7 +217,7 @@ impl Orbits {
             best = best.max(share(z, radius));
         }
         Reading {
-            value: self.estimates(folds.past(z, p, exit), &grown)[0],
+            value: self.estimates(folds.top(z, p), &grown)[0],
             radius: trial * best.min(1.0),
             iterations: n,
         }

@@ -268,13 +268,15 @@ impl Solid for Distance {
         let mut d = self.bounds.distance(self.eye + q) - cone.r0 - shell;
         // Far from the bounds their distance is enough.
         if d <= 2.0 * cone.k * t {
-            let trial = match at.radius > 0.0 {
-                true => DISTANCE_TRIAL * at.radius,
-                false => 4.0 * cone.k * t,
+            let (p, most) = (self.eye + q, self.iterations);
+            let trial = if at.radius > 0.0 {
+                DISTANCE_TRIAL * at.radius
+            } else if t > 0.0 {
+                4.0 * cone.k * t
+            } else {
+                self.evaluator.value(p, most).0.max(0.0)
             };
-            let ball = self
-                .evaluator
-                .cone(self.eye + q, self.iterations, trial + 2.0 * eps);
+            let ball = self.evaluator.cone(p, most, trial + 2.0 * eps);
             work.evaluations += 1;
             work.iterations += ball.iterations;
             d = d.max(ball.radius - shell - cone.r0);

@@ -35,11 +35,11 @@ impl DistanceSettings {
     /// nearest point that a ray could hit.
     fn finest_footprint(&self, from: &Viewpoint) -> f64 {
         let bounds = self.formula.bounds();
-        let (raw, _) = self.formula.estimate(from.eye, MOST_ITERATIONS);
-        let inside = raw / self.formula.lipschitz();
+        let evaluator = self.formula.evaluator();
+        let inside = evaluator.step(from.eye, MOST_ITERATIONS, 0.0).radius;
         let clear = bounds.distance(from.eye).max(inside);
         // On the surface the footprint would be zero.
-        let least = 1e-7 * bounds.farthest(from.eye);
+        let least = 1e-10 * bounds.farthest(from.eye);
         from.grain * clear.max(least)
     }
 }

@@ -44,7 +44,8 @@ fn proven_balls_are_empty_in_julia_mode_and_with_a_rotation() {
         m.julia_constant = m.fold_limit * DVec3::new(0.7, -0.4, 1.1);
         m.julia = true;
         let evaluator = m.evaluator();
-        let worst = search(&m, 2000, |p, _| evaluator.step(p, MANY, 0.0).radius);
+        let ball = |p, off: f64| evaluator.ball(p, MANY, 1.2 * off).radius;
+        let worst = search(&m, 2000, ball);
         assert!(worst.ratio < ROUNDED, "{m:?}: {worst:?}");
         m.julia = false;
         m.rotation = DVec3::new(12.0, -8.0, 25.0);

@@ -109,15 +109,6 @@ fn fold_ended(z: real3, exit: real) -> bool {
     return max(a.x, max(a.y, a.z)) > exit;
 }
 
-/// How far the end of an orbit is past where points escape. Before an orbit has escaped for good,
-/// one large coordinate proves nothing; then the result may be negative.
-fn fold_past(z: real3, c: real3, exit: real) -> real {
-    if fold_ended(z, exit) {
-        return fold_top(z, c);
-    }
-    return length(z) - fold_k(c);
-}
-
 /// How far a point is past where points escape; 0 before.
 fn fold_top(z: real3, c: real3) -> real {
     if ROTATES {

@@ -32,7 +32,11 @@ fn julia_follow(p: real3, most: u32, trial: real) -> real2 {
     }
     count_evaluation();
     count_iterations(n);
-    let top = fold_past(z, c, exit);
+    // Before an orbit has escaped for good, one large coordinate proves nothing.
+    var top = length(z) - fold_k(c);
+    if fold_ended(z, exit) {
+        top = fold_top(z, c);
+    }
     var outside = max(length(z) - fold_k(c), real(0.0));
     if !ROTATES {
         let half = real3(real(folds.lead)) + real(folds.tail) * abs(c);

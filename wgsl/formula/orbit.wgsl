@@ -110,7 +110,7 @@ fn estimate_step(p: real3, most: u32, clear: real) -> real2 {
     }
     count_evaluation();
     count_iterations(n);
-    let all = orbit_estimates(fold_past(z, p, exit), grown);
+    let all = orbit_estimates(fold_top(z, p), grown);
     let lipschitz = real(formula_lipschitz());
     let long = (all.sharp - clear) / lipschitz;
     let short = (all.scalar - clear) / lipschitz;
@@ -153,7 +153,7 @@ fn estimate_ball(p: real3, most: u32, trial: real) -> real2 {
     }
     count_evaluation();
     count_iterations(n);
-    let all = orbit_estimates(fold_past(z, p, exit), grown);
+    let all = orbit_estimates(fold_top(z, p), grown);
     return real2(all.sharp, trial * min(share, real(1.0)));
 }
 

@@ -155,8 +155,13 @@ fn advance(cone: Beam, at: Advance) -> Advance {
     var d = bounds_distance(q) - cone.r0 - shell;
     // Far from the bounds their distance is enough.
     if d <= 2.0 * cone.k * t {
-        let trial = select(4.0 * cone.k * t, DISTANCE_TRIAL * at.radius, at.radius > 0.0);
-        let ball = estimate_cone(scene_point(q), distance_scene.iterations, real(trial + 2.0 * eps));
+        let p = scene_point(q);
+        let most = distance_scene.iterations;
+        var trial = select(4.0 * cone.k * t, DISTANCE_TRIAL * at.radius, at.radius > 0.0);
+        if t == 0.0 {
+            trial = max(f32(estimate(p, most)), 0.0);
+        }
+        let ball = estimate_cone(p, most, real(trial + 2.0 * eps));
         d = max(d, f32(ball.y) - shell - cone.r0);
     }
     let front = cone_front(t, t, d, cone.k);
