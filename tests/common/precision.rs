@@ -91,10 +91,12 @@ pub fn samples(m: &Mandelbox) -> Vec<Sample> {
     let singles = ask(false);
     let doubles = has_f64().then(|| ask(true));
     let sum = |a: &Numbers| f64::from(a[0][0]) + f64::from(a[0][1]);
-    let error = |got: f64, want: f64| (got - want).abs() / want.abs().max(f64::MIN_POSITIVE);
     let of = |(i, (power, p, most)): (usize, &(i32, DVec3, u32))| {
         let (wanted, spent) = m.estimate(*p, *most);
         let single = sum(&singles[i]);
+        // A point that is rounded to f32 may lie in the set, where the estimate is 0.
+        let least = 0.01 * 10.0_f64.powi(*power);
+        let error = |got: f64, want: f64| (got - want).abs() / want.abs().max(least);
         Sample {
             power: *power,
             spent,
