@@ -54,20 +54,20 @@ macro_rules! groups {
 }
 
 groups! {
-    cameras_near_the_surface: "1e-1 to 1e-9 from the surface", hard::near, 0.001, 0.02, warned_in_time;
+    cameras_near_the_surface: "1e-1 to 1e-9 from the surface", hard::near, 0.001, 0.0325, warned_in_time;
     eyes_in_odd_places: "eye in the set, on folds, at the origin, far away", hard::eyes, 0.001, 0.004;
     // Within the plane of a face every point of it is within a rounding of the threshold.
     planes_that_are_grazed: "planes seen at 0.1 to 0 above them", hard::grazing, 0.012, 0.0;
     rods_thinner_than_a_pixel: "rods of 1e-2 to 1e-6", hard::rods, 0.001, 0.0;
     // The more the scale, the more of the set is dust: -5 is the worst.
     scales_from_next_to_1_to_10: "scales of 1.01 to 10, both signs", hard::scales, 0.001, 0.042;
-    scales_with_a_thick_shell: "the same with a shell of 0.9", || shelled(hard::scales()), 0.001, 0.004;
-    radii_from_nothing_to_all: "min radius 1e-6 to fixed radius, lengths 1e-3 to 1e3", hard::radii, 0.001, 0.0085, alike_at_every_length;
-    iterations_from_1_to_500: "1 to 500 iterations", hard::iterations, 0.001, 0.009;
+    scales_with_a_thick_shell: "the same with a shell of 0.9", || shelled(hard::scales()), 0.001, 0.0072;
+    radii_from_nothing_to_all: "min radius 1e-6 to fixed radius, lengths 1e-3 to 1e3", hard::radii, 0.001, 0.0155, alike_at_every_length;
+    iterations_from_1_to_500: "1 to 500 iterations", hard::iterations, 0.001, 0.0066;
     lenses_from_1_to_170_degrees: "fields of view of 1 to 170 degrees", hard::lenses, 0.001, 0.001;
     // One pixel of a picture of 500 may be apart.
     sizes_from_1_pixel_to_a_line: "1x1 to 1x4096 and 4096x1 pixels", hard::sizes, 0.002, 0.0075;
-    limits_of_a_few_steps: "1 to 4 steps per level", hard::limits, 0.001, 0.001, one_step_hits_nothing;
+    limits_of_a_few_steps: "1 to 4 steps per level", hard::limits, 0.001, 0.0014, one_step_hits_nothing;
     a_lipschitz_constant_twice_its_size: "lipschitz twice as large as it should be", || hard::sloped(2.0), 0.001, 0.0105;
     // Not a claim that the picture is good: it bounds how bad a wrong constant makes it, by an
     // eighth more than was measured, as twice that would be everything.
