@@ -2,7 +2,7 @@
 //!
 //! A tracer of [`crate::heightfield::tracer`] follows the rays, in local units: texels along
 //! the sides of the block, and heights from 0 to 1. Cones and empty balls are tested against
-//! the highest point of the map below them ([`maxima_cone`], [`region_max`]), so nothing finer
+//! the highest point of the map below them ([`maxima_cone()`], [`region_max()`]), so nothing finer
 //! than a cell limits them.
 //! Twin: `wgsl/scene/heightfield.wgsl`.
 
