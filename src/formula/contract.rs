@@ -115,7 +115,8 @@ impl fmt::Debug for Evaluator {
 }
 
 /// A shape given by an estimate of the distance to it. Its WGSL twin has the functions
-/// `formula_load`, `estimate`, `estimate_step`, `estimate_ball` and `trap`.
+/// `formula_load`, `formula_lipschitz`, `estimate` and `trap`. Those of [`Evaluate::step`],
+/// `cone` and `ball` are in `wgsl/formula/plain.wgsl`, or its own.
 pub trait DistanceEstimate {
     /// Name in presets, and of the two files.
     fn name(&self) -> &'static str;

@@ -158,7 +158,9 @@ impl Orbits {
         let exit = folds.exit(p);
         let (mut z, mut n) = (p, 0);
         let mut grown = Growth::<J>::START;
-        while n < most.min(PREFIX) && !folds.ended(z, exit) {
+        // Where the Jacobian is not used, it is not followed.
+        let prefix = if folds.scale > 0.0 { PREFIX } else { 0 };
+        while n < most.min(prefix) && !folds.ended(z, exit) {
             let fold = folds.fold(z);
             if self.inverts(&fold) {
                 break;

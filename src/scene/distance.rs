@@ -276,7 +276,11 @@ impl Solid for Distance {
             } else {
                 self.evaluator.value(p, most).0.max(0.0)
             };
-            let ball = self.evaluator.cone(p, most, trial + 2.0 * eps);
+            let trial = trial + 2.0 * eps;
+            let ball = match self.stepping.proven {
+                true => self.evaluator.ball(p, most, trial),
+                false => self.evaluator.cone(p, most, trial),
+            };
             work.evaluations += 1;
             work.iterations += ball.iterations;
             d = d.max(ball.radius - shell - cone.r0);

@@ -6,8 +6,8 @@ override ORBIT_ROTATED_SLOPE: f32;
 /// Iterations in which the Jacobian is followed.
 const ORBIT_PREFIX = 3u;
 
-/// Products stay below this, as their products could overflow. The estimate is zero in f32
-/// before this limit.
+/// Factors and radii stay below this, as products of two could overflow. The estimate is zero in
+/// f32 before this limit.
 const ORBIT_MOST = 1e15;
 
 /// In f32 a ball spreads by so much more than its computed radius in one iteration.
@@ -93,7 +93,8 @@ fn estimate_step(p: real3, most: u32, clear: real) -> real2 {
     var z = p;
     var n = 0u;
     var grown = growth_start();
-    while n < min(most, ORBIT_PREFIX) && !fold_ended(z, exit) {
+    // Where the Jacobian is not used, it is not followed.
+    while n < min(most, ORBIT_PREFIX * folds.followed) && !fold_ended(z, exit) {
         let f = fold(z);
         if orbit_inverts(f) {
             break;

@@ -161,8 +161,14 @@ fn advance(cone: Beam, at: Advance) -> Advance {
         if t == 0.0 {
             trial = max(f32(estimate(p, most)), 0.0);
         }
-        let ball = estimate_cone(p, most, real(trial + 2.0 * eps));
-        d = max(d, f32(ball.y) - shell - cone.r0);
+        trial += 2.0 * eps;
+        var ball = 0.0;
+        if DISTANCE_PROVEN {
+            ball = f32(estimate_ball(p, most, real(trial)).y);
+        } else {
+            ball = f32(estimate_cone(p, most, real(trial)).y);
+        }
+        d = max(d, ball - shell - cone.r0);
     }
     let front = cone_front(t, t, d, cone.k);
     // After a short gain, or without a ball, the four thinner children go on.
