@@ -63,8 +63,8 @@ pub struct Ready {
     pub colors: Colors,
     /// The place in the world.
     pub placement: Placement,
-    /// The tracer's name.
-    pub name: &'static str,
+    /// The tracer's kind.
+    pub kind: TracerKind,
     /// The most steps that a ray can take.
     pub most_steps: u32,
 }
@@ -238,7 +238,7 @@ impl Assets {
             colors,
             placement,
             surface,
-            name: settings.tracer_settings.tracer.name(),
+            kind: settings.tracer_settings.tracer,
             most_steps: settings
                 .tracer_settings
                 .most_steps(domain.map(i32::unsigned_abs)),

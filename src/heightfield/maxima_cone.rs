@@ -49,12 +49,14 @@ pub struct LocalCone {
     pub slack: DVec3,
 }
 
-/// Two by two nodes of a level, and their edges.
-struct Window {
-    low: DVec2,
-    high: DVec2,
+/// Two by two nodes of a level.
+pub struct Window {
+    /// Its lower edges, in texels.
+    pub low: DVec2,
+    /// Its upper edges.
+    pub high: DVec2,
     /// The highest point under it.
-    maximum: f64,
+    pub maximum: f64,
 }
 
 /// The WGSL module.
@@ -104,7 +106,7 @@ impl LocalCone {
 
 /// The window of a level whose node at the rear, seen along the cone's way, holds a place. Each
 /// tile begins nodes of its own.
-fn window(surface: &HeightSurface, level: u32, rear: DVec2, back: BVec2) -> Window {
+pub fn window(surface: &HeightSurface, level: u32, rear: DVec2, back: BVec2) -> Window {
     let (domain, cells) = (surface.domain(), surface.cells());
     let last = DVec2::from_array(domain.map(|n| f64::from(n - 1)));
     let inside = rear.floor().clamp(DVec2::ZERO, last);

@@ -5,8 +5,8 @@
 //! - [`pattern`]: heights made from numbers; [`load`]: heights read from files
 //! - [`file_error`]: why a file of heights or cones cannot be used
 //! - [`heights`], [`patch`]: samples, and the surface between them
-//! - [`height_surface`]: heights with their pyramid of maxima ([`max_mip`]); [`region_max`]:
-//!   the maximum over a rectangle; [`maxima_cone`]: how far a cone passes above the surface
+//! - [`height_surface`]: heights with their pyramid of maxima ([`max_mip`]);
+//!   [`maxima_cone`]: how far a cone passes above the surface
 //! - [`placement`]: from the world to texels and heights, and back
 //! - [`conemap`]: cone maps, their generators and their files
 //! - [`tracer`]: ways to find where a ray meets the surface
@@ -24,7 +24,6 @@ pub mod paint;
 pub mod patch;
 pub mod pattern;
 pub mod placement;
-pub mod region_max;
 pub mod settings;
 pub mod source;
 pub mod texture;

@@ -18,7 +18,7 @@ pub fn occlusion<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, gr
     }
     let mut h = (light.look.occlusion_reach / 16.0).max(2.0 * grain);
     for _ in 0..OCCLUSION_TAPS {
-        let free = (solid.room(q + h * normal) / h).clamp(0.0, 1.0);
+        let free = (solid.room(q + h * normal, h) / h).clamp(0.0, 1.0);
         open *= 1.0 - 0.4 * light.look.occlusion * (1.0 - free).powi(2);
         h *= 2.0;
     }

@@ -33,8 +33,7 @@ pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain
         return Shadow::NONE;
     }
     let ray = Beam {
-        // Off the surface, whose hit threshold would end the ray at once.
-        origin: q + 4.0 * grain * normal,
+        origin: q + solid.shadow_lift(grain) * normal,
         axis: light.look.light,
         r0: 0.0,
         k: 0.0,

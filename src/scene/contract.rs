@@ -50,12 +50,19 @@ pub trait Solid: Sync {
     /// The free room about the ray's current place, for soft shadows. It may be a guess.
     fn walk_radius(&self, ray: &Beam, walk: &Self::Walk) -> f64;
 
+    /// How far from the surface shadow rays start, along the normal. `grain` is half a pixel's
+    /// width at the point.
+    fn shadow_lift(&self, grain: f64) -> f64 {
+        // Beyond the threshold that would end the ray at once.
+        4.0 * grain
+    }
+
     /// The radius of a ball about a point that is proven empty.
     fn clearance(&self, q: DVec3) -> f64;
 
     /// The free room about a point, for occlusion. It may be a guess that exceeds the
-    /// clearance.
-    fn room(&self, q: DVec3) -> f64 {
+    /// clearance. Where it is more than `enough`, any number from `enough` on will do.
+    fn room(&self, q: DVec3, _enough: f64) -> f64 {
         self.clearance(q)
     }
 

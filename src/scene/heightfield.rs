@@ -2,12 +2,12 @@
 //!
 //! A tracer of [`crate::heightfield::tracer`] follows the rays, in local units: texels along
 //! the sides of the block, and heights from 0 to 1. Cones and empty balls are tested against
-//! the highest point of the map below them ([`maxima_cone()`], [`region_max()`]), so nothing finer
-//! than a cell limits them.
+//! the highest point of the map below them ([`mod@maxima_cone`]), so nothing finer than a cell
+//! limits them.
 //! Twin: `wgsl/scene/heightfield.wgsl`.
 
 use bytemuck::{Pod, Zeroable, bytes_of};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{BVec2, DVec2, DVec3, Vec3};
 
 use crate::base::array::SceneArray;
 use crate::base::key::{Fault, Key};
@@ -17,19 +17,22 @@ use crate::base::view::Beam;
 use crate::heightfield::assets::{Assets, Ready};
 use crate::heightfield::height_surface::HeightmapUniform;
 use crate::heightfield::heights::Patches;
-use crate::heightfield::maxima_cone::{self, CONE_WINDOWS, LocalCone, maxima_cone};
+use crate::heightfield::maxima_cone::{self, CONE_WINDOWS, LocalCone, maxima_cone, window};
 use crate::heightfield::paint::Colors;
-use crate::heightfield::region_max::{self, region_max};
 use crate::heightfield::settings::HeightfieldSettings;
 use crate::heightfield::tracer::grid::{FAR, FLAT};
 use crate::heightfield::tracer::settings::PrepareError;
-use crate::heightfield::tracer::{self, LocalRay, Trace, TraceHit};
+use crate::heightfield::tracer::{self, Accuracy, LocalRay, Trace, TraceHit};
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::scene::{AnySolid, SceneSettings, Viewpoint};
 use crate::wgsl;
 
-/// How often the smallest ball is doubled. This spans half a texel up to a map of 8192.
-const HEIGHTFIELD_DOUBLINGS: u32 = 15;
+/// The most windows in the search of an empty ball: it halves the levels of the pyramid, of which
+/// a map of 8192 has 14.
+const HEIGHTFIELD_SEARCHES: u32 = 6;
+/// Shadow rays start off the surface by this share of a texel, or by a few roundings if these are
+/// larger.
+const HEIGHTFIELD_LIFT: f64 = 1e-3;
 /// Weight of the height above the surface in a guess of the free room; the rest is the proven
 /// clearance.
 const HEIGHTFIELD_GUESS: f64 = 0.5;
@@ -57,8 +60,8 @@ pub struct HeightfieldUniform {
     pub far: f32,
     /// The eye in local units.
     pub eye: Vec3,
-    /// Unused.
-    pub pad0: f32,
+    /// Shadow rays start at this distance from exact hits.
+    pub lift: f32,
     /// More than the rounding error of local coordinates.
     pub slack: Vec3,
     /// Unused.
@@ -108,6 +111,8 @@ pub struct Heightfield {
     /// An upper bound of the rounding error of local coordinates in f32: a few roundings of
     /// numbers as large as the block and the distance of the eye.
     slack: DVec3,
+    /// Shadow rays start at this distance from exact hits.
+    lift: f64,
 }
 
 impl Heightfield {
@@ -116,8 +121,10 @@ impl Heightfield {
         let place = &made.placement;
         let far = place.farthest(eye);
         let sum = place.position(eye).abs() + place.sides.extend(1.0) + far / place.units();
+        let slack = 5e-7 * sum;
         Self {
-            slack: 5e-7 * sum,
+            lift: (HEIGHTFIELD_LIFT * place.texel).max(4.0 * (slack * place.units()).length()),
+            slack,
             far,
             made,
             eye,
@@ -131,6 +138,10 @@ impl Heightfield {
         }
     }
 
+    fn is_exact(&self) -> bool {
+        self.made.kind.facts().accuracy == Accuracy::Exact
+    }
+
     /// The pigment at a place in a cell, where the surface has a height and its normal an
     /// upward part `up`.
     fn pigment(&self, cell: [i32; 2], uv: [f64; 2], height: f64, up: f64) -> DVec3 {
@@ -141,6 +152,39 @@ impl Heightfield {
         };
         // Steep ground is darker.
         DVec3::new(hue, up, 0.5)
+    }
+
+    /// The radius of a ball about a local position that is proven empty, from windows of maxima.
+    /// The search ends where the radius is at least `enough`.
+    fn empty_radius(&self, p: DVec3, enough: f64) -> f64 {
+        let (surface, place) = (&self.made.surface, &self.made.placement);
+        let slack = self.slack.truncate().max_element();
+        let mut free = place.distance(p);
+        // The least level whose nodes are wider than such a ball.
+        let wide = 2.0 * (enough.max(0.0) / place.texel + slack);
+        let fits = u32::BITS - (wide.min(1e6) as u32).leading_zeros();
+        let mut level = fits.min(surface.maxima().coarsest());
+        // Balls in windows of the levels below `low` are proven, those from `high` on are not.
+        let (mut low, mut high) = (0, level + 1);
+        for _ in 0..HEIGHTFIELD_SEARCHES {
+            if low >= high || free >= enough {
+                break;
+            }
+            // The point is at least half a node from every side of the window.
+            let corner = p.truncate() - 0.5 * f64::from(1 << level);
+            let window = window(surface, level, corner, BVec2::FALSE);
+            let sides = (p.truncate() - window.low).min(window.high - p.truncate());
+            let room = (sides.min_element() - slack) * place.texel;
+            let gap = (p.z - self.slack.z - window.maximum) * place.depth;
+            free = free.max(room.min(gap));
+            if gap < room {
+                high = level;
+            } else {
+                low = level + 1;
+            }
+            level = (low + high) / 2;
+        }
+        free.max(0.0)
     }
 
     /// The world distance from a local position to the surface straight below it. Beside the
@@ -180,11 +224,11 @@ fn box_side(axis: DVec3, uv: [f64; 2]) -> DVec3 {
 impl Twin for Heightfield {
     fn modules(&self) -> Vec<Module> {
         let mut all = vec![
-            region_max::module(),
             maxima_cone::module(),
             wgsl!(
                 "scene/heightfield.wgsl",
-                "HEIGHTFIELD_DOUBLINGS" = f64::from(HEIGHTFIELD_DOUBLINGS),
+                "HEIGHTFIELD_SEARCHES" = f64::from(HEIGHTFIELD_SEARCHES),
+                "HEIGHTFIELD_EXACT" = f64::from(u8::from(self.is_exact())),
                 "HEIGHTFIELD_GUESS" = HEIGHTFIELD_GUESS,
                 "HEIGHTFIELD_COLORED" = f64::from(u8::from(self.is_colored())),
                 "HEIGHTFIELD_WALL" = HEIGHTFIELD_WALL,
@@ -207,6 +251,7 @@ impl Twin for Heightfield {
             // Rounded up: the farthest corner must not lie beyond it.
             far: (self.far * (1.0 + 1e-6)) as f32,
             eye: self.made.placement.position(self.eye).as_vec3(),
+            lift: self.lift as f32,
             slack: self.slack.as_vec3(),
             map: self.made.tracer.uniform(),
             ..Zeroable::zeroed()
@@ -221,7 +266,7 @@ impl Twin for Heightfield {
     }
 
     fn describe(&self) -> String {
-        let ([w, h], name) = (self.made.surface.heights().size(), self.made.name);
+        let ([w, h], name) = (self.made.surface.heights().size(), self.made.kind.name());
         format!("heightfield: {w} x {h} samples, traced by {name}")
     }
 
@@ -271,28 +316,25 @@ impl Solid for Heightfield {
         self.surface_gap(self.local(ray).at(t))
     }
 
-    fn clearance(&self, q: DVec3) -> f64 {
-        let p = self.made.placement.position(self.eye + q);
-        let mut free = self.made.placement.distance(p);
-        let mut radius = 0.5 * self.made.placement.texel;
-        for _ in 0..HEIGHTFIELD_DOUBLINGS {
-            let room = DVec2::splat(radius / self.made.placement.texel);
-            let top = region_max(&self.made.surface, p.truncate() - room, p.truncate() + room);
-            let gap = (p.z - top) * self.made.placement.depth;
-            free = free.max(radius.min(gap));
-            if gap < radius {
-                break;
-            }
-            radius *= 2.0;
+    fn shadow_lift(&self, grain: f64) -> f64 {
+        if self.is_exact() {
+            return self.lift;
         }
-        free.max(0.0)
+        // The hit may be below the surface.
+        self.lift.max(4.0 * grain)
     }
 
-    /// A mean of two values: the proven clearance is far too small over steep ground, and the
-    /// height above the surface ignores what stands beside the point.
-    fn room(&self, q: DVec3) -> f64 {
-        let gap = self.surface_gap(self.made.placement.position(self.eye + q));
-        let proven = self.clearance(q);
+    fn clearance(&self, q: DVec3) -> f64 {
+        self.empty_radius(self.made.placement.position(self.eye + q), self.far)
+    }
+
+    /// A mean of two values: the proven radius is far too small over steep ground, and the height
+    /// above the surface ignores what stands beside the point.
+    fn room(&self, q: DVec3, enough: f64) -> f64 {
+        let p = self.made.placement.position(self.eye + q);
+        let gap = self.surface_gap(p);
+        let rest = (enough - HEIGHTFIELD_GUESS * gap) / (1.0 - HEIGHTFIELD_GUESS);
+        let proven = self.empty_radius(p, rest);
         proven + HEIGHTFIELD_GUESS * (gap - proven)
     }
 

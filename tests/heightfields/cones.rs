@@ -86,7 +86,7 @@ fn any(seed: u64) -> Seen {
             tracer,
             colors: Colors::Height,
             placement,
-            name: "cells",
+            kind: TracerKind::MaxMip,
             most_steps: 1,
             surface,
         },

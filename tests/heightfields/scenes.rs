@@ -14,7 +14,7 @@ use conemarch::scene::{AnySolid, Assets, Scene, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::adapter::LEVELS;
+use crate::adapter::{HIT, LEVELS, NORMALS};
 use crate::common::overclaims::{brought_near, overclaims};
 use crate::common::random::Random;
 use crate::{both, camera, plan};
@@ -192,5 +192,36 @@ fn empty_balls_hold_nothing_of_a_surface() {
         let large = |(clear, nearest): &&(f64, f64)| *clear > 0.3 * nearest;
         let large = found.iter().filter(large).count();
         assert!(large > 300, "{name}: only {large} balls of any size");
+    }
+}
+
+/// Half a pixel is up to a texel wide in the small picture and a ninth of it in the large one. The
+/// centre of every small pixel is also the centre of a large one, so the light there is the same.
+#[test]
+fn shadows_do_not_change_with_the_size_of_the_picture() {
+    for scene in SCENES {
+        let mut plan = plan(scene);
+        plan.look.light_size = 0.05;
+        plan.look.occlusion = 0.0;
+        plan.look.light = DVec3::new(0.7, 0.3, 0.25);
+        let large = [81, 63];
+        plan.size = large.map(|n| 9 * n);
+        let fine = both(&plan, NORMALS);
+        plan.size = large;
+        let coarse = both(&plan, NORMALS);
+        for (fine, coarse) in fine.iter().zip(&coarse) {
+            let (mut seen, mut changed) = (0, 0);
+            for (i, own) in coarse.radiance.iter().enumerate() {
+                let [x, y] = [i % large[0] as usize, i / large[0] as usize];
+                let j = (9 * y + 4) * fine.size[0] as usize + 9 * x + 4;
+                if coarse.normal[i] == fine.normal[j] && coarse.state[i] == HIT {
+                    seen += 1;
+                    let other = &fine.radiance[j];
+                    changed += usize::from((own[0] - other[0]).abs() > 0.1 * other[0]);
+                }
+            }
+            assert!(seen > 300, "{scene}: {seen}");
+            assert!(changed * 250 <= seen, "{scene}: {changed} of {seen}");
+        }
     }
 }

@@ -47,7 +47,10 @@ fn heights_at(i: i32) -> f32 {
 
 /// The cell of the first tile that corresponds to a cell of the domain.
 fn heightmap_tile_cell(cell: vec2<i32>) -> vec2<i32> {
-    return max(cell, vec2<i32>(0)) % heightmap.cells;
+    // By floats, as integers divide slowly. The quotient is at least half a cell off any integer.
+    let at = max(cell, vec2<i32>(0));
+    let tile = vec2<i32>((vec2<f32>(at) + 0.5) / vec2<f32>(heightmap.cells));
+    return at - tile * heightmap.cells;
 }
 
 /// The number of a sample, for indices from 0 to the size. The one past the last is the first

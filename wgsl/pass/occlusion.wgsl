@@ -12,7 +12,7 @@ fn occlusion(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> f32 {
     var h = max(look.occlusion_reach / 16.0, 2.0 * grain);
     var weight = 0.4;
     for (var i = 0u; i < OCCLUSION_TAPS; i++) {
-        let free = clamp(room(q + h * normal) / h, 0.0, 1.0);
+        let free = clamp(room(q + h * normal, h) / h, 0.0, 1.0);
         open *= 1.0 - weight * look.occlusion_strength * (1.0 - free) * (1.0 - free);
         h *= 2.0;
     }

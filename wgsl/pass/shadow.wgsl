@@ -2,8 +2,7 @@
 // shadow, and the narrowest empty ball on the way gives the penumbra.
 
 fn shadow(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> Shadow {
-    // Off the surface, whose hit threshold would end the ray at once.
-    let ray = Beam(q + (4.0 * grain) * normal, look.light, 0.0, 0.0, grain, 0.0);
+    let ray = Beam(q + shadow_lift(grain) * normal, look.light, 0.0, 0.0, grain, 0.0);
     var walk = begin(ray, 0.0, 2.0 * bounds_far());
     var open = 1.0;
     var decided = false;

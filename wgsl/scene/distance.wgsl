@@ -247,6 +247,11 @@ fn walk_radius(ray: Beam, walk: Walk) -> f32 {
     return walk.room;
 }
 
+/// How far from the surface shadow rays start: beyond the threshold that would end them at once.
+fn shadow_lift(grain: f32) -> f32 {
+    return 4.0 * grain;
+}
+
 /// The radius of a ball about a point that should be empty.
 fn clearance(q: vec3<f32>) -> f32 {
     let ball = estimate_step(scene_point(q), distance_scene.iterations, real(0.0)).y;
@@ -254,7 +259,7 @@ fn clearance(q: vec3<f32>) -> f32 {
 }
 
 /// The free room about a point, for occlusion.
-fn room(q: vec3<f32>) -> f32 {
+fn room(q: vec3<f32>, enough: f32) -> f32 {
     return max(0.0, field_value(q));
 }
 

@@ -15,17 +15,20 @@ struct HeightfieldUniform {
     far: f32,
     /// The eye, in local units.
     eye: vec3<f32>,
-    pad0: f32,
+    /// Shadow rays start at this distance from exact hits.
+    lift: f32,
     /// More than the rounding error of local coordinates.
     slack: vec3<f32>,
     pad1: f32,
     map: HeightmapUniform,
 }
 
-/// How often an empty ball is doubled.
-override HEIGHTFIELD_DOUBLINGS: u32;
+/// Windows that are tried in the search of an empty ball.
+override HEIGHTFIELD_SEARCHES: u32;
 /// Weight of the height above the surface in a guess of the free room.
 override HEIGHTFIELD_GUESS: f32;
+/// Whether hits are exact.
+override HEIGHTFIELD_EXACT: bool;
 override HIT_CARRIES_MARK: bool;
 /// Whether pigments are colours, and the grey of walls then.
 override HEIGHTFIELD_COLORED: bool;
@@ -105,6 +108,12 @@ fn walk_radius(ray: Beam, walk: Walk) -> f32 {
     return surface_gap(heightfield.eye + to_local(ray.origin + walk.t * ray.axis));
 }
 
+/// How far from the surface shadow rays start.
+fn shadow_lift(grain: f32) -> f32 {
+    // Another hit may be below the surface.
+    return select(max(heightfield.lift, 4.0 * grain), heightfield.lift, HEIGHTFIELD_EXACT);
+}
+
 /// The world distance from a local position to the surface straight below it. Beside the block
 /// it is the distance to the edge of the top, or to the wall below that edge.
 fn surface_gap(p: vec3<f32>) -> f32 {
@@ -116,31 +125,53 @@ fn surface_gap(p: vec3<f32>) -> f32 {
     return length(vec3<f32>((p.xy - inside) * heightfield.texel, above));
 }
 
-/// The radius of a ball about a point that is proven empty, from boxes of doubling size.
-fn clearance(q: vec3<f32>) -> f32 {
-    let p = heightfield.eye + to_local(q);
+/// The radius of a ball about a local position that is proven empty, from windows of maxima. The
+/// search ends where the radius is at least `enough`.
+fn empty_radius(p: vec3<f32>, enough: f32) -> f32 {
+    let slack = max(heightfield.slack.x, heightfield.slack.y);
     var free = block_distance(p);
-    var radius = 0.5 * heightfield.texel;
-    for (var i = 0u; i < HEIGHTFIELD_DOUBLINGS; i++) {
-        count_evaluation();
-        let room = radius / heightfield.texel + heightfield.slack.xy;
-        let top = region_max(p.xy - room, p.xy + room);
-        let gap = (p.z - heightfield.slack.z - top) * heightfield.depth;
-        free = max(free, min(radius, gap));
-        if gap < radius {
+    // The least level whose nodes are wider than such a ball.
+    let wide = 2.0 * (max(enough, 0.0) / heightfield.texel + slack);
+    let fits = 32u - countLeadingZeros(u32(min(wide, 1e6)));
+    var level = min(fits, heightmap.levels - 1u);
+    // Balls in windows of the levels below `low` are proven, those from `high` on are not.
+    var low = 0u;
+    var high = level + 1u;
+    for (var i = 0u; i < HEIGHTFIELD_SEARCHES; i++) {
+        if low >= high || free >= enough {
             break;
         }
-        radius *= 2.0;
+        count_evaluation();
+        // The point is at least half a node from every side of the window.
+        let corner = p.xy - 0.5 * f32(1u << level);
+        let window = cone_window(level, corner, vec2<bool>(false));
+        let sides = min(p.xy - window.low, window.high - p.xy) - slack;
+        let room = min(sides.x, sides.y) * heightfield.texel;
+        let gap = (p.z - heightfield.slack.z - window.maximum) * heightfield.depth;
+        free = max(free, min(room, gap));
+        if gap < room {
+            high = level;
+        } else {
+            low = level + 1u;
+        }
+        level = (low + high) / 2u;
     }
     return max(0.0, free);
 }
 
-/// The free room about a point, for occlusion. It is a mean of two values: the proven clearance
-/// is far too small over steep ground, and the height above the surface ignores what stands
-/// beside the point.
-fn room(q: vec3<f32>) -> f32 {
+/// The radius of a ball about a point that is proven empty.
+fn clearance(q: vec3<f32>) -> f32 {
+    return empty_radius(heightfield.eye + to_local(q), heightfield.far);
+}
+
+/// The free room about a point, for occlusion, exact up to `enough`. It is a mean of two values:
+/// the proven radius is far too small over steep ground, and the height above the surface ignores
+/// what stands beside the point.
+fn room(q: vec3<f32>, enough: f32) -> f32 {
     let p = heightfield.eye + to_local(q);
-    return mix(clearance(q), surface_gap(p), HEIGHTFIELD_GUESS);
+    let gap = surface_gap(p);
+    let rest = (enough - HEIGHTFIELD_GUESS * gap) / (1.0 - HEIGHTFIELD_GUESS);
+    return mix(empty_radius(p, rest), gap, HEIGHTFIELD_GUESS);
 }
 
 /// The world direction of a local normal.

@@ -126,13 +126,18 @@ fn walk_radius(ray: Beam, walk: Walk) -> f32 {
     return walk.radius;
 }
 
+/// How far from the surface shadow rays start: beyond the threshold that would end them at once.
+fn shadow_lift(grain: f32) -> f32 {
+    return 4.0 * grain;
+}
+
 fn clearance(q: vec3<f32>) -> f32 {
     count_evaluation();
     return max(0.0, slab_distance(q));
 }
 
 /// The free room about a point, for occlusion.
-fn room(q: vec3<f32>) -> f32 {
+fn room(q: vec3<f32>, enough: f32) -> f32 {
     return clearance(q);
 }
 
