@@ -27,9 +27,9 @@ const SWITCHES: &[Switch] = &[
     ("relaxation off", |p, _| {
         p.march.relaxation = conemarch::scene::stepping::Relaxation::Off;
     }),
-    ("no cones", |p, _| p.march.coarsest = 1),
-    ("cones from 1/32", |p, _| p.march.coarsest = 32),
-    ("cones from 1/8", |p, _| p.march.coarsest = 8),
+    ("no cones", |p, _| p.march.coarsest = Some(1)),
+    ("cones from 1/32", |p, _| p.march.coarsest = Some(32)),
+    ("cones from 1/8", |p, _| p.march.coarsest = Some(8)),
     ("rotation by 0", |p, _| rotate(p, 0.0)),
     ("rotation by 1 degree", |p, _| rotate(p, 1.0)),
 ];

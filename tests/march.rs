@@ -20,7 +20,7 @@ mod common {
 use adapter::{COUNTED, EVERYTHING, HIT, LEVELS, SKY, UNCONVERGED, on_cpu, render, render_cut};
 use common::exact::first_hit;
 use common::overclaims::{brought_near, overclaims};
-use common::plans::{camera, compared, sized};
+use common::plans::{camera, compared, preset, sized};
 use common::solved::{balls, cameras, rays, slab, solids, solved};
 use conemarch::base::outcome::Counts;
 use conemarch::gpu::render::Cutting;
@@ -129,7 +129,7 @@ fn blocks_and_chunks_never_change_a_bit() {
         // A limit that some rays reach, for their state must not depend on the cut, and
         // one that takes all rays over many dispatches.
         for (coarsest, steps) in [(16, 7), (32, 300)] {
-            plan.march.coarsest = coarsest;
+            plan.march.coarsest = Some(coarsest);
             plan.march.steps = Some(steps);
             let frame = render(&plan, EVERYTHING);
             let limited = steps == 7 && !matches!(plan.scene, Scene::Slab(_));
@@ -157,7 +157,7 @@ fn levels_halve_and_children_of_the_sky_do_nothing() {
     far.camera.eye *= 2.0;
     let (size, camera) = ([333, 217], &cameras()[0]);
     for mut plan in [far, balls(0.05, camera, size), slab(camera, size)] {
-        plan.march.coarsest = 32;
+        plan.march.coarsest = Some(32);
         let frame = render(&plan, COUNTED);
         assert_eq!(frame.levels.len(), 5);
         let (mut idle, mut busy) = (0, 0);
@@ -322,5 +322,37 @@ fn passes_do_not_know_what_they_march() {
             // Only pixels whose ray touches the rim within a rounding.
             assert!(differ <= 2, "{differ} pixels differ");
         }
+    }
+}
+
+#[test]
+fn cones_are_left_out_where_a_ray_needs_few_steps() {
+    let levels = |name: &str, settings: &[&str]| {
+        let mut settings = settings.to_vec();
+        settings.push("march.coarsest=auto");
+        let plan = preset(name, &settings);
+        plan.resolved(Extras::default()).levels().len()
+    };
+    for size in ["image.size=[640, 360]", "image.size=[1280, 720]"] {
+        for (name, cones) in [
+            ("bench-far", 0),
+            ("bench-inside", 0),
+            ("bench-thin", 4),
+            ("mandelbox-gate", 4),
+            ("terrain", 4),
+        ] {
+            assert_eq!(levels(name, &[size]), cones, "{name}, {size}");
+        }
+        // A mode that is about cones keeps them.
+        assert_eq!(levels("bench-far", &[size, "march.mode=proven"]), 0);
+        assert_eq!(levels("bench-far", &[size, "march.mode=calibrated"]), 4);
+    }
+    // What is asked for stays.
+    let plan = preset("bench-far", &["march.coarsest=8"]);
+    assert_eq!(plan.resolved(Extras::default()).levels().len(), 3);
+    // Both executors leave them out.
+    let plan = preset("bench-far", &["march.coarsest=auto", "image.size=[40, 24]"]);
+    for frame in [render(&plan, LEVELS), on_cpu(&plan, LEVELS)] {
+        assert_eq!((frame.levels.len(), frame.passes.len()), (0, 1));
     }
 }

@@ -240,7 +240,7 @@ pub fn number(at: &mut f64, low: f64, high: f64) -> impl Slot {
 }
 
 /// `"auto"`, which is stored as `None`, or a value that `read` reads.
-fn auto<T: Copy + Into<Value>>(
+pub fn auto<T: Copy + Into<Value>>(
     at: &mut Option<T>,
     other: String,
     read: impl Fn(&Value) -> Option<T>,

@@ -120,7 +120,7 @@ pub fn run(args: &Render) -> Result<()> {
     spared(&outputs[1..], preset.as_slice())?;
     let extras = extras(args, format);
     let per_pixel = format.bytes_per_pixel(args.layer, extras);
-    memory::check(&plan.lean(extras), per_pixel, &assets)?;
+    memory::check(&plan.resolved(extras), per_pixel, &assets)?;
     for note in plan.scene.notes(&assets) {
         say(&format!("note: {note}"));
     }

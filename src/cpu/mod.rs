@@ -62,7 +62,7 @@ pub fn render(
     extras: Extras,
     watch: Watch<'_>,
 ) -> Result<Frame, FrameError> {
-    let plan = &*plan.lean(extras);
+    let plan = &*plan.resolved(extras);
     let prepared = prepare(plan, assets, &mut generate, clock, watch)?;
     let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
     let render = Render {
@@ -337,7 +337,7 @@ mod tests {
     fn a_render_is_cancelled_within_a_pass() {
         let mut plan = Plan::new(Formula::Balls(Balls::default()));
         plan.size = [2 * BAND_CELLS as u32, 96];
-        plan.march.coarsest = 2;
+        plan.march.coarsest = Some(2);
         let mut told = Vec::new();
         let watch = &mut |p: &Progress| {
             told.push((p.pass.clone(), p.done));

@@ -139,6 +139,9 @@ pub trait DistanceEstimate {
     /// Resolves the parameters.
     fn evaluator(&self) -> Evaluator;
 
+    /// Chooses its sharpest estimate, if it has several.
+    fn sharpen(&mut self) {}
+
     /// The estimate of the distance at one point; see [`Evaluate::value`].
     fn estimate(&self, p: DVec3, most: u32) -> (f64, u32) {
         self.evaluator().value(p, most)

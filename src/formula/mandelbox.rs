@@ -156,6 +156,10 @@ impl DistanceEstimate for Mandelbox {
         ]
     }
 
+    fn sharpen(&mut self) {
+        self.estimate = Estimate::Tight;
+    }
+
     fn evaluator(&self) -> Evaluator {
         let (folds, julia) = (self.folds(), self.julia);
         match (self.estimate, julia) {

@@ -136,7 +136,7 @@ impl Renderer {
         held: Option<Needs>,
     ) -> Result<(), RenderError> {
         let request = FrameRequest {
-            plan: plan.lean(work.extras()).into_owned(),
+            plan: plan.resolved(work.extras()).into_owned(),
             assets: assets.clone(),
             extras: work.extras(),
             cutting: self.cutting,

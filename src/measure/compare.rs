@@ -264,7 +264,8 @@ mod tests {
     /// skin is right if the ray keeps clear of the shell. The slides' modes have no shell.
     #[test]
     fn a_front_beyond_a_grazed_skin_is_right() {
-        let plan = ball([240, 160]);
+        let mut plan = ball([240, 160]);
+        plan.march.shell = 0.45;
         // The pixel whose ray passes the ball at a distance of so many thresholds.
         let view = plan.view();
         let past = |share: f64| {

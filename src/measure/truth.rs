@@ -51,7 +51,7 @@ pub const MOST_ROUNDS: u32 = 5;
 
 /// The plan of a plan's truth. Settings that only say how work is spent get fixed values, so
 /// that all modes share one truth.
-fn asked(plan: &Plan) -> Plan {
+pub(super) fn asked(plan: &Plan) -> Plan {
     let mut asked = plan.clone();
     if let Some(exact) = plan.scene.exact() {
         asked.scene = exact;

@@ -14,7 +14,7 @@ use crate::scene::Assets;
 /// # Errors
 /// A file that the plan names cannot be read or does not fit.
 pub fn explain(plan: &Plan, assets: &Assets, extras: Extras) -> Result<String, PrepareError> {
-    let plan = &*plan.lean(extras);
+    let plan = &*plan.resolved(extras);
     let solid = plan.scene.outline(&plan.viewpoint(), assets)?;
     let mut text = String::new();
     let [w, h] = plan.size;

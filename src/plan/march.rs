@@ -4,7 +4,7 @@ use toml::Value;
 
 use crate::base::cone::ConeRule;
 use crate::base::key::{
-    Fault, Place, Slot, auto_count, auto_number, count_in, number, number_in, numbers, word,
+    Fault, Place, Slot, auto, auto_count, auto_number, count_in, number, number_in, numbers, word,
 };
 use crate::base::named::named_enum;
 use crate::plan::pyramid::{Level, levels};
@@ -20,6 +20,8 @@ pub struct Facts {
     shell: bool,
     /// Whether rays go by proven balls, as cones do.
     proven: bool,
+    /// Whether it does without cones where rays alone are faster.
+    optional: bool,
     /// Whether rays are relaxed as `march.relaxation` says.
     relaxed: bool,
     /// The factor on ray steps where `march.stride` is `"auto"`.
@@ -32,6 +34,7 @@ const SAFE: Facts = Facts {
     cones: Some(ConeRule::Exact),
     shell: true,
     proven: false,
+    optional: true,
     relaxed: true,
     stride: 1.0,
     budget: None,
@@ -39,6 +42,7 @@ const SAFE: Facts = Facts {
 const RAY: Facts = Facts {
     cones: None,
     shell: false,
+    optional: false,
     relaxed: false,
     ..SAFE
 };
@@ -60,7 +64,7 @@ named_enum! {
         /// As safe, and no step of a ray is longer than a proof allows.
         Proven = "proven" => Facts { proven: true, ..SAFE },
         /// Exact cones, narrowed by the factors that a calibration found.
-        Calibrated = "calibrated" => SAFE,
+        Calibrated = "calibrated" => Facts { optional: false, ..SAFE },
         /// The slides' rule. 128 steps are split evenly over all passes.
         SlidesEven = "slides-even" => slides(|passes| [(128 / passes).max(1); 2]),
         /// The slides' rule. Each coarse pass has 512 steps, a ray 128.
@@ -79,15 +83,19 @@ named_enum! {
 /// Steps of a cone and of a ray where `march.steps` and the scene do not say. The slowest rays
 /// of the presets end well before.
 const STEPS: u32 = 256;
+/// The divisor of the first cone level by default. More levels above it cost little and bring
+/// little.
+const COARSEST: u32 = 16;
 
 settings! {
     /// How a picture is marched.
     pub struct Marching {
         mode: Mode = Mode::Safe, word(&Mode::WORDS), "the method; benchmarks.md explains and compares the modes" => Program;
-        coarsest: u32 = 16, divisor(), "side in pixels of the blocks of the first cone pass";
+        coarsest: Option<u32> = None, divisor(),
+            "side in pixels of the blocks of the first cone pass, 1 for no cones; auto is 16, or 1 in modes safe and proven where rays alone need less than 8 evaluations";
         detail: f64 = 1.0, number(1e-3, 1e3),
             "hit threshold in footprints: a ray hits where the estimate is at most this";
-        shell: f64 = 0.45, number(0.0, 0.99),
+        shell: f64 = 0.2, number(0.0, 0.99),
             "share of the hit threshold by which steps keep away from the surface; more costs time and lowers the error";
         relaxation: Relaxation = Relaxation::Auto, relaxation(), "factor on the steps of rays; auto follows the change of the estimate from step to step, and off is 1";
         fudge: Vec<f64> = vec![1.0], numbers(6, 0.01, 1.0),
@@ -117,17 +125,17 @@ fn relaxation(at: &mut Relaxation) -> impl Slot {
     Place::new(at, expects, write, read)
 }
 
-/// A power of two.
-fn divisor(at: &mut u32) -> impl Slot {
+/// A power of two, or `"auto"`.
+fn divisor(at: &mut Option<u32>) -> impl Slot {
     let expects = "a power of two: 1 (no cones), 2, 4, 8, 16, 32 or 64";
     let read = |value: &Value| count_in(value, 1, 64).filter(|n| n.is_power_of_two());
-    Place::new(at, expects, |n| (*n).into(), read)
+    auto(at, expects.into(), read)
 }
 
 impl Marching {
     /// Checks that the fudge list fits the pyramid.
     pub fn check(&self) -> Result<(), Fault> {
-        let levels = self.coarsest.ilog2() as usize;
+        let levels = self.first_divisor().ilog2() as usize;
         let given = self.fudge.len();
         // The other modes ignore the list.
         let fits = self.mode != Mode::Calibrated || given <= levels.max(1);
@@ -137,9 +145,19 @@ impl Marching {
         Fault::unless(fits, "march.fudge", why)
     }
 
+    /// The divisor of the first cone level, if there are any.
+    fn first_divisor(&self) -> u32 {
+        self.coarsest.unwrap_or(COARSEST)
+    }
+
+    /// Whether the scene decides if there are cones.
+    pub fn may_drop_cones(&self) -> bool {
+        self.coarsest.is_none() && self.mode.facts().optional
+    }
+
     /// The step limits of a cone and of a ray that the mode sets.
     fn budget(&self) -> Option<[u32; 2]> {
-        let passes = self.coarsest.ilog2() + 1;
+        let passes = self.first_divisor().ilog2() + 1;
         Some(self.mode.facts().budget?(passes))
     }
 
@@ -154,7 +172,7 @@ impl Marching {
         };
         let set = self.steps.unwrap_or(STEPS);
         let steps = self.budget().map_or(set, |[cone, _]| cone);
-        levels(self.coarsest, fudge, steps)
+        levels(self.first_divisor(), fudge, steps)
     }
 
     /// The step limit of a ray. `crossing` is the largest number of steps that a ray can take

@@ -5,9 +5,10 @@
 //! map: [`crate::scene::Assets`] do.
 //!
 //! - [`camera`], [`march`], [`look`]: the sections of a preset beside `[scene]`
-//! - [`pyramid`]: the cone levels, and the blocks of a large image
+//! - `cones`: whether cones pay; [`pyramid`]: the cone levels, and the blocks of a large image
 
 pub mod camera;
+mod cones;
 pub mod look;
 pub mod march;
 pub mod pyramid;
@@ -18,8 +19,9 @@ use crate::base::key::{Fault, Key, Redo, size, text};
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::keys;
-use crate::scene::{AnySolid, Scene, Viewpoint};
+use crate::scene::{AnySolid, Scene, Task, Viewpoint};
 use camera::Camera;
+use cones::Probe;
 use look::Look;
 use march::Marching;
 use pyramid::Level;
@@ -141,16 +143,28 @@ impl Plan {
         levels.chain([Pass::Trace]).chain(colours).collect()
     }
 
-    /// The plan without maps and textures that only colours need, if these extras ask for no
-    /// colours.
-    pub fn lean(&self, extras: Extras) -> Cow<'_, Self> {
-        match self.scene.colorless() {
-            Some(scene) if extras.depth_only => Cow::Owned(Self {
-                scene,
-                ..self.clone()
-            }),
-            _ => Cow::Borrowed(self),
+    /// The plan as it is rendered. It has no maps and textures that only colours need, if these
+    /// extras ask for no colours. It has no cones where they do not pay, unless the plan says how
+    /// coarse they are; over heightfields they always pay.
+    pub fn resolved(&self, extras: Extras) -> Cow<'_, Self> {
+        let mut plan = Cow::Borrowed(self);
+        if let Some(scene) = self.scene.colorless()
+            && extras.depth_only
+        {
+            plan.to_mut().scene = scene;
         }
+        if let Scene::Distance(settings) = &self.scene
+            && self.march.may_drop_cones()
+        {
+            let probe = Probe {
+                view: self.view(),
+                size: self.size,
+                steps: self.march.ray_steps(None),
+            };
+            let solid = settings.seen(&self.viewpoint());
+            plan.to_mut().march.coarsest = (!probe.run(&solid)).then_some(1);
+        }
+        plan
     }
 }
 

@@ -23,6 +23,12 @@ pub const MOST_ITERATIONS: u32 = 1000;
 const MOST_SHADOW_STEPS: u32 = 512;
 
 impl DistanceSettings {
+    /// The scene from a viewpoint.
+    pub fn seen(&self, from: &Viewpoint) -> Distance {
+        let formula = self.formula.clone();
+        Distance::new(formula, self.limit(from), from.eye, from.stepping)
+    }
+
     /// The iteration limit: the given one, or as many as the finest footprint needs.
     fn limit(&self, from: &Viewpoint) -> u32 {
         // A quarter of the hit threshold: too little to see in a comparison.
@@ -77,9 +83,7 @@ impl SceneSettings for DistanceSettings {
     }
 
     fn solid(&self, from: &Viewpoint, _: &Assets) -> Result<AnySolid, PrepareError> {
-        let formula = self.formula.clone();
-        let solid = Distance::new(formula, self.limit(from), from.eye, from.stepping);
-        Ok(AnySolid::Distance(solid))
+        Ok(AnySolid::Distance(self.seen(from)))
     }
 
     fn lipschitz(&self) -> f64 {

@@ -125,6 +125,15 @@ impl Scene {
         Some(self.heightfield()?.exact().into())
     }
 
+    /// The same scene with its sharpest estimate, or an exact tracer.
+    pub fn sharpest(&self) -> Self {
+        let mut sharpest = self.exact().unwrap_or_else(|| self.clone());
+        if let Self::Distance(settings) = &mut sharpest {
+            settings.formula.sharpen();
+        }
+        sharpest
+    }
+
     /// The same scene without what only colours need; `None` if it has nothing of this kind.
     pub fn colorless(&self) -> Option<Self> {
         Some(self.heightfield()?.colorless().into())

@@ -39,12 +39,29 @@ fn csv_of(bytes: &[u8]) -> (Vec<String>, Vec<String>) {
     (header, first.collect())
 }
 
+/// Writes a built-in preset with cones, which such small pictures have only if they are asked for,
+/// and a thick shell, with which no pixel of them is a hole.
+fn with_cones(folder: &Folder, name: &str) {
+    let preset = text(&folder.done(&format!("presets {name}")));
+    let lines = preset
+        .lines()
+        .filter(|line| !line.starts_with("coarsest") && !line.starts_with("shell"));
+    let preset: String = lines.map(|line| format!("{line}\n")).collect();
+    let preset = match preset.contains("[march]") {
+        true => preset.replace("[march]", "[march]\ncoarsest = 16\nshell = 0.45"),
+        false => preset + "\n[march]\ncoarsest = 16\nshell = 0.45\n",
+    };
+    folder.write(&format!("{name}.toml"), preset);
+}
+
 #[test]
 fn error_rows_files_and_the_cache() {
     // The fields that the contract of the command line names, in its order.
-    const FIELDS: &str = "preset mode parameters baseline size device wall_ms gpu_ms evaluations_per_pixel iterations_per_pixel depth_error behind front behind8 front8 holes false_hits start_violations unconverged flip";
+    const FIELDS: &str = "preset mode parameters baseline size device wall_ms gpu_ms evaluations_per_pixel iterations_per_pixel depth_error behind front behind8 front8 holes false_hits start_violations unconverged flip before_set wrong_of_set starts_beyond_set";
     let folder = Folder::new();
-    let args = "error bench-far mandelbox --json a.json --csv a.csv --plot a.svg";
+    with_cones(&folder, "bench-far");
+    with_cones(&folder, "mandelbox");
+    let args = "error bench-far.toml mandelbox.toml --json a.json --csv a.csv --plot a.svg";
     let (table, told) = bench(&folder, args);
     assert!(!told.contains("kept from before"), "{told}");
     let titles = ["### bench-far, 40 x 24", "### mandelbox, 40 x 24"];
@@ -52,7 +69,8 @@ fn error_rows_files_and_the_cache() {
     holds(&table, &["| slides-fast", "FLIP"]);
     let first = rows(&folder, "a.json");
     let modes: Vec<&str> = first.iter().map(|r| word(r, "mode")).collect();
-    let of_one = "ray ray-relaxed safe proven calibrated slides-even slides-deep slides-fast";
+    let of_one =
+        "ray-relaxed safe proven ray ray-relaxed calibrated slides-even slides-deep slides-fast";
     assert_eq!(modes.join(" "), format!("{of_one} {of_one}"));
     for row in &first {
         assert!(names(row).join(" ").starts_with(FIELDS), "{row}");
@@ -63,7 +81,14 @@ fn error_rows_files_and_the_cache() {
         assert_eq!(levels, if marched { 4 } else { 0 });
     }
     // The same executor renders the truth: what is not exact differs from it.
-    let safe = &first[2];
+    let safe = &first[1];
+    assert_eq!(first[0]["parameters"]["clip"], "on");
+    holds(&table, &["| rival "]);
+    let before = &safe["before_set"];
+    assert!(
+        number(before, "median") > 0.0 && number(before, "p95") < 5.0,
+        "{before}"
+    );
     assert_eq!(safe["holes"], 0.0);
     assert!(number(&safe["depth_error"], "median") < 1.0);
     assert!(number(&first[6], "behind") > number(safe, "behind"));
@@ -111,7 +136,8 @@ fn sweeps_follow_the_baselines() {
 #[test]
 fn steps_are_counted_and_drawn() {
     let folder = Folder::new();
-    let args = "steps bench-thin --mode safe --json s.json --csv s.csv --heat h";
+    with_cones(&folder, "bench-thin");
+    let args = "steps bench-thin.toml --mode safe --json s.json --csv s.csv --heat h";
     let (table, _) = bench(&folder, args);
     assert!(table.contains("| march 1/16"), "{table}");
     let all = rows(&folder, "s.json");
@@ -129,7 +155,7 @@ fn steps_are_counted_and_drawn() {
     assert_eq!(all[4]["cells"], 40 * 24);
     assert_eq!(csv_of(&folder.bytes("s.csv")).1.len(), all.len());
     // The sums are those of a counted render.
-    let render = "render bench-thin --device cpu --size 40x24 -o x.png --layer steps";
+    let render = "render bench-thin.toml --device cpu --size 40x24 -o x.png --layer steps";
     folder.done(&format!("{render} --stats x.json"));
     let stats = json(&folder.bytes("x.json"));
     for (row, pass) in all.iter().zip(stats["passes"].as_array().unwrap()) {
@@ -143,7 +169,8 @@ fn steps_are_counted_and_drawn() {
 #[test]
 fn calibration_proposes_a_preset_that_keeps_its_budget() {
     let folder = Folder::new();
-    let args = "calibrate bench-far --rays 500 --budget 0.02 --json c.json";
+    with_cones(&folder, "bench-far");
+    let args = "calibrate bench-far.toml --rays 500 --budget 0.02 --json c.json";
     let (table, _) = bench(&folder, args);
     assert!(table.contains("mode = \"calibrated\""), "{table}");
     let row = &rows(&folder, "c.json")[0];

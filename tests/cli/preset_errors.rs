@@ -73,7 +73,7 @@ title = 3|[scene]|kind = "slab" => p.toml:1: title = 3: must be a line of text
 [scene]|kind = "slab"|[camera]|eye = [1, 2, 3]|target = [1, 2, 3] => p.toml:5: camera.target = [1, 2, 3]: the eye and the target are the same point
 [scene]|kind = "slab"|[camera]|eye = [0, 0, 0] => p.toml: camera.target = [0.0, 0.0, 0.0] (the default): the eye and the target
 [scene]|kind = "slab"|[camera]|eye = [0, 0, 5] => p.toml: camera.up = [0.0, 0.0, 1.0] (the default): up must not be
-[scene]|kind = "slab"|[march]|coarsest = 3 => p.toml:4: march.coarsest = 3: must be a power of two
+[scene]|kind = "slab"|[march]|coarsest = 3 => p.toml:4: march.coarsest = 3: must be "auto" or a power of two
 [scene]|kind = "slab"|[march]|mode = "calibrated"|coarsest = 8|fudge = [1, 1, 1, 1] => p.toml:6: march.fudge = [1, 1, 1, 1]: 4 factors for 3 cone passes; give at most 3
 [scene]|kind = "slab"|formula = "mandelbox" => p.toml:3: scene.formula = "mandelbox": a slab has no formula
 [scene]|kind = "distance"|formula = "mandelbox"|scale = 0.5 => p.toml:4: scene.scale = 0.5:

@@ -18,6 +18,9 @@ pub const SIZE: [u32; 2] = [64, 48];
 /// A hard plan and its name.
 pub type Case = (String, Plan);
 
+/// The shell with which the bounds of the groups were measured.
+const SHELL: f64 = 0.45;
+
 /// The distance that a Mandelbox's bounds reach.
 fn extent(m: &Mandelbox) -> f64 {
     m.bounds().half.max_element().min(m.bounds().radius)
@@ -41,11 +44,19 @@ fn twice(name: &str, change: impl FnOnce(&mut Mandelbox)) -> [Case; 2] {
     [("outside", outside), ("inside", inside)].map(|(from, plan)| (format!("{name}, {from}"), plan))
 }
 
-/// A Mandelbox seen from one point towards another.
+/// A Mandelbox seen from one point towards another, with cones.
 pub fn from(m: Mandelbox, eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Plan {
     let mut plan = Plan::new(boxed(m, None));
     plan.camera = camera(eye, target);
     plan.size = SIZE;
+    (plan.march.coarsest, plan.march.shell) = (Some(16), SHELL);
+    plan
+}
+
+/// A built-in preset, with the same shell.
+fn preset_with_shell(name: &str) -> Plan {
+    let mut plan = sized(name, SIZE);
+    plan.march.shell = SHELL;
     plan
 }
 
@@ -227,7 +238,7 @@ fn near_and_far(name: &str, change: impl Fn(&mut Plan)) -> [Case; 2] {
     let solids = balls(0.05, &camera([4.0, -6.0, 3.0], [0.1, 0.2, 0.0]), SIZE);
     let plans = [
         ("solids", solids),
-        ("scale -1.5", sized("bench-outside", SIZE)),
+        ("scale -1.5", preset_with_shell("bench-outside")),
     ];
     plans.map(|(what, mut plan)| {
         change(&mut plan);
@@ -265,8 +276,8 @@ pub fn limits() -> Vec<Case> {
     for mode in [Mode::Safe, Mode::Ray, Mode::RayRelaxed] {
         for steps in [1, 2, 4] {
             for coarsest in [1, 16, 64] {
-                let mut plan = sized("bench-outside", SIZE);
-                (plan.march.mode, plan.march.coarsest) = (mode, coarsest);
+                let mut plan = preset_with_shell("bench-outside");
+                (plan.march.mode, plan.march.coarsest) = (mode, Some(coarsest));
                 plan.march.steps = Some(steps);
                 let name = format!("{}, from 1/{coarsest}, {steps} steps", mode.name());
                 all.push((name, plan));
@@ -280,7 +291,7 @@ pub fn limits() -> Vec<Case> {
 /// they may be, at 0.5 twice.
 pub fn sloped(factor: f64) -> Vec<Case> {
     let one = |name: &str| {
-        let mut plan = sized(name, SIZE);
+        let mut plan = preset_with_shell(name);
         let m = mandelbox_of(&mut plan);
         // The steps of the sharper estimate are bounded by more than this constant.
         m.estimate = Estimate::Scalar;

@@ -17,10 +17,12 @@ use conemarch::scene::{AnySolid, Assets, Scene};
 use glam::DVec3;
 use toml::Value;
 
-/// The plan of a built-in preset, with settings as `--set` takes them.
+/// The plan of a built-in preset, with settings as `--set` takes them, and with cones. Pictures as
+/// small as those of tests have cones only if they are asked for.
 pub fn preset(name: &str, settings: &[&str]) -> Plan {
     let read = |text: &&str| Override::read(text).expect("section.key=value");
-    let settings: Vec<Override> = settings.iter().map(read).collect();
+    let settings = ["march.coarsest=16"].iter().chain(settings).map(read);
+    let settings: Vec<Override> = settings.collect();
     let preset = load(name, &settings);
     preset.unwrap_or_else(|e| panic!("{name}: {e}")).plan
 }

@@ -30,7 +30,7 @@ pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
     });
     let mut plan = Plan::new(distance(formula, None));
     plan.camera = camera.clone();
-    plan.march.coarsest = 32;
+    plan.march.coarsest = Some(32);
     // Rays that graze a ball creep for hundreds of steps; none is to end half-way.
     plan.march.steps = Some(2048);
     plan.size = size;

@@ -82,7 +82,7 @@ fn no_cell_starts_behind_a_surface_at_any_size_and_angle() {
     for scene in SCENES {
         let mut plan = plan(scene);
         let ready = ready(&plan);
-        plan.march.coarsest = 32;
+        plan.march.coarsest = Some(32);
         plan.march.steps = Some(2048);
         for fov in [1.0, 48.5, 170.0] {
             for (eye, target) in views {

@@ -125,7 +125,7 @@ fn marching() -> impl Strategy<Value = Marching> {
     (mode, numbers, relaxation, clip).prop_map(
         |(mode, (level, detail, shell, steps), relaxation, clip)| Marching {
             mode,
-            coarsest: 1 << level,
+            coarsest: Some(1 << level),
             detail,
             shell,
             relaxation,

@@ -24,6 +24,7 @@ use crate::command::sink::{ending, is_stdout};
 use crate::gpu::RenderError;
 use crate::measure::compare::compare;
 use crate::measure::flip::flip;
+use crate::measure::set::{self, SetSample, sharpness};
 use crate::measure::truth::{Cache, Truth, cached};
 use crate::picture::frame::Frame;
 use crate::picture::{Layer, Shades};
@@ -69,7 +70,16 @@ pub fn run(args: &ErrorBench) -> Result<()> {
         let fitting = fitting.filter_map(|s| Some((s, s.apply(&subject.plan)?)));
         let fitting: Vec<(&Setting, Plan)> = fitting.collect();
         let truths = truths(cache.as_ref(), &all.assets, subject, &fitting)?;
-        let measured = measure(&mut all.executor, &all.assets, subject, &fitting, &truths)?;
+        let stride = truths[&truth_key(&subject.plan)].note.stride;
+        let set = set::sample(&subject.plan, &all.assets, stride)?;
+        let references = (&truths, &set);
+        let measured = measure(
+            &mut all.executor,
+            &all.assets,
+            subject,
+            &fitting,
+            references,
+        )?;
         all.files.show(&table::preset(&measured))?;
         rows.extend(measured);
     }
@@ -121,7 +131,7 @@ fn measure(
     assets: &Assets,
     subject: &Subject,
     settings: &[(&Setting, Plan)],
-    truths: &Truths,
+    (truths, set): (&Truths, &SetSample),
 ) -> Result<Vec<Row>, RenderError> {
     let device = executor.name();
     let precision = executor.precision_warning(&subject.plan);
@@ -131,7 +141,7 @@ fn measure(
         depth_only: false,
         ..COUNTED
     };
-    let detail = |i: usize, setting: &Setting| of_how_many(setting.mode.name(), i, all);
+    let detail = |i: usize, setting: &Setting| of_how_many(setting.name(), i, all);
     let mut rows = Vec::new();
     for (i, (setting, plan)) in settings.iter().enumerate() {
         let truth = &truths[&truth_key(plan)];
@@ -141,7 +151,7 @@ fn measure(
             preset: subject.name.clone(),
             mode: setting.mode.name().into(),
             parameters: setting.parameters(),
-            baseline: setting.change.is_none(),
+            baseline: i < baselines().len(),
             size: plan.size,
             device: device.clone(),
             evaluations_per_pixel: work.0,
@@ -153,6 +163,7 @@ fn measure(
                 &plan.scene.solid(&plan.viewpoint(), assets)?,
             ),
             flip: look_apart(&truth.frame, &frame, plan),
+            sharpness: sharpness(&frame, set, plan),
             truth: truth.note,
             precision: precision.clone(),
             // Times follow below.

@@ -14,15 +14,20 @@ const MARGIN: [f64; 4] = [58.0, 34.0, 18.0, 44.0];
 const COLUMNS: usize = 2;
 const LEGEND: f64 = 58.0;
 /// Modes and their colours (Okabe and Ito's, which colour-blind people can tell apart).
-const COLORS: [(&str, &str); 7] = [
-    ("ray", "#000000"),
-    ("ray-relaxed", "#999999"),
+const COLORS: [(&str, &str); 9] = [
+    ("rival", "#000000"),
     ("safe", "#0072b2"),
+    ("proven", "#009e73"),
+    ("ray", "#666666"),
+    ("ray-relaxed", "#bbbbbb"),
     ("calibrated", "#56b4e9"),
     ("slides-even", "#e69f00"),
     ("slides-deep", "#d55e00"),
     ("slides-fast", "#cc79a7"),
 ];
+
+/// The colour of the line that joins the best.
+const LINE: &str = "#8c564b";
 
 /// The picture of all rows.
 pub fn draw(rows: &[Row]) -> String {
@@ -153,7 +158,7 @@ fn panel(svg: &mut Vec<String>, rows: &[Row], [left, top]: [f64; 2]) {
     svg.push(format!(
         r##"<rect x="{x0}" y="{y0}" width="{w}" height="{h}" fill="none" stroke="#999"/>
 <text x="{middle:.1}" y="{below:.1}" text-anchor="middle">march and trace, ms</text><text transform="translate({beside:.1} {height:.1}) rotate(-90)" text-anchor="middle">wrong pixels, %</text>
-<polyline points="{line}" fill="none" stroke="#009e73" stroke-width="1.5"/>"##
+<polyline points="{line}" fill="none" stroke="{LINE}" stroke-width="1.5"/>"##
     ));
     for row in &rows {
         let [x, y] = place(row);
@@ -161,7 +166,7 @@ fn panel(svg: &mut Vec<String>, rows: &[Row], [left, top]: [f64; 2]) {
             true => (5.0, "#fff"),
             false => (2.6, "none"),
         };
-        let (color, label) = (color(&row.mode), row.label());
+        let (color, label) = (color(row.name()), row.label());
         let (ms, wrong) = (row.wall_ms, 100.0 * row.report.wrong());
         svg.push(format!(
             r##"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" fill="{color}" stroke="{stroke}"><title>{label}: {ms:.1} ms, {wrong:.4} %</title></circle>"##
@@ -211,7 +216,7 @@ fn names(svg: &mut Vec<String>, best: &[&Row], dots: &[[f64; 2]], x: &Axis, y: &
 
 fn color(mode: &str) -> &'static str {
     let found = COLORS.iter().find(|(name, _)| *name == mode);
-    found.map_or("#009e73", |(_, color)| color)
+    found.map_or("#f0e442", |(_, color)| color)
 }
 
 fn legend(svg: &mut Vec<String>, y: f64) {
@@ -224,7 +229,7 @@ fn legend(svg: &mut Vec<String>, y: f64) {
         x += 30.0 + 6.5 * name.len() as f64;
     }
     svg.push(format!(
-        r##"<text x="20" y="{below:.1}">Small dots: one key of the mode changed. Green line: no other setting is both faster and less wrong. A pixel is wrong if it is behind, a hole or unconverged.</text>"##
+        r##"<text x="20" y="{below:.1}">Small dots: one key of the mode changed. Brown line: no other setting is both faster and less wrong. A pixel is wrong if it is behind, a hole or unconverged.</text>"##
     ));
 }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::measure::compare::Report;
+use crate::measure::set::Sharpness;
 use crate::measure::truth::TruthNote;
 
 /// A measured setting. Shares are of all pixels, 0..1; errors in footprints.
@@ -17,7 +18,7 @@ pub struct Row {
     pub mode: String,
     /// Keys of `[march]` that differ from the preset's.
     pub parameters: Map<String, Value>,
-    /// Whether nothing but the mode differs.
+    /// Whether nothing but the mode differs, or it is the rival.
     pub baseline: bool,
     /// Pixels along each axis.
     pub size: [u32; 2],
@@ -36,6 +37,9 @@ pub struct Row {
     pub report: Report,
     /// Mean FLIP difference of the pictures.
     pub flip: f64,
+    /// How far it is from the set.
+    #[serde(flatten)]
+    pub sharpness: Sharpness,
     /// How converged the truth is.
     pub truth: TruthNote,
     /// A warning if f32 is not precise enough for the preset.
@@ -48,8 +52,20 @@ impl Row {
         !self.parameters.contains_key("detail")
     }
 
-    /// The mode and the keys that differ, like `safe, shell 0.1`.
+    /// The mode, or `rival` for `ray-relaxed` with `clip` on.
+    pub fn name(&self) -> &str {
+        let is_clipped = self.parameters.get("clip").is_some_and(|v| v == "on");
+        match self.mode.as_str() {
+            "ray-relaxed" if is_clipped => "rival",
+            mode => mode,
+        }
+    }
+
+    /// The mode and the keys that differ, like `safe, shell 0.1`; or `rival`.
     pub fn label(&self) -> String {
+        if self.name() == "rival" {
+            return "rival".into();
+        }
         let word = |(key, value): (&String, &Value)| match value {
             Value::String(text) => format!(", {key} {text}"),
             other => format!(", {key} {other}"),

@@ -22,6 +22,22 @@ impl Setting {
         Self { mode, change: None }
     }
 
+    /// The mode without cones that starts its rays at the bounds.
+    pub fn rival() -> Self {
+        Self {
+            mode: Mode::RayRelaxed,
+            change: Some(("clip", "on".into())),
+        }
+    }
+
+    /// The mode's name, or `rival`.
+    pub fn name(&self) -> &'static str {
+        match &self.change {
+            Some(("clip", _)) if self.mode == Mode::RayRelaxed => "rival",
+            _ => self.mode.name(),
+        }
+    }
+
     /// A plan with the setting, if it fits.
     pub fn apply(&self, plan: &Plan) -> Option<Plan> {
         let mut plan = plan.clone();
@@ -41,19 +57,21 @@ impl Setting {
     }
 }
 
-/// Every mode without changes; `ray` first, which the others are compared with. The truth is
-/// left out: all are measured against it.
+/// The *rival*, which the others are compared with, and every mode without changes. The rival has
+/// no cones, but the same estimate and relaxation as `safe`, and its rays start at the bounds. The
+/// truth is left out: all are measured against it.
 pub fn baselines() -> Vec<Setting> {
-    let first = [Mode::Ray, Mode::RayRelaxed, Mode::Safe];
+    let first = [Mode::Safe, Mode::Proven, Mode::Ray, Mode::RayRelaxed];
     let rest = Mode::ALL.into_iter();
     let rest = rest.filter(|m| !first.contains(m) && *m != Mode::Truth);
-    first.into_iter().chain(rest).map(Setting::of).collect()
+    let modes = first.into_iter().chain(rest).map(Setting::of);
+    [Setting::rival()].into_iter().chain(modes).collect()
 }
 
 /// One key changed at a time.
 pub fn sweeps() -> Vec<Setting> {
     const FUDGES: [&[f64]; 4] = [&[0.9], &[0.8], &[0.6], &[1.0, 1.0, 0.8, 0.6]];
-    let swept: [(Mode, &'static str, Vec<Value>); 8] = [
+    let swept: [(Mode, &'static str, Vec<Value>); 7] = [
         (Mode::Safe, "coarsest", values([32, 8, 4, 2])),
         (Mode::Safe, "shell", values([0.0, 0.15, 0.3, 0.6, 0.8])),
         (
@@ -69,7 +87,6 @@ pub fn sweeps() -> Vec<Setting> {
         ),
         (Mode::Safe, "detail", values([0.5, 2.0])),
         (Mode::Ray, "clip", values(["on"])),
-        (Mode::RayRelaxed, "clip", values(["on"])),
     ];
     let settings = swept.into_iter().flat_map(|(mode, key, values)| {
         let change = values.into_iter().map(move |value| Some((key, value)));

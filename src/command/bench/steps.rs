@@ -47,7 +47,7 @@ fn modes() -> impl TypedValueParser<Value = Mode> {
 /// An unknown preset or mode, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &StepsBench) -> Result<()> {
     interrupt::listen();
-    // Without a mode all but the truth, which takes long.
+    // Without a mode the rival and all modes but the truth, which takes long.
     let of_one = |mode| vec![Setting::of(mode)];
     let settings = args.mode.map_or_else(baselines, of_one);
     // Kept until the end: a folder that was made is removed again if it stays empty.
@@ -55,15 +55,15 @@ pub fn run(args: &StepsBench) -> Result<()> {
     let mut all = args.common.begin(None)?;
     let mut rows = Vec::new();
     for subject in &all.subjects {
-        let fitting = settings.iter().filter_map(|s| s.apply(&subject.plan));
-        let fitting: Vec<Plan> = fitting.collect();
+        let fitting = settings.iter();
+        let fitting = fitting.filter_map(|s| Some((s.name(), s.apply(&subject.plan)?)));
+        let fitting: Vec<(&str, Plan)> = fitting.collect();
         let count = fitting.len();
-        for (i, plan) in fitting.into_iter().enumerate() {
-            let mode = plan.march.mode.name();
+        for (i, (mode, plan)) in fitting.into_iter().enumerate() {
             let what = format!("{}, {}", subject.what, of_how_many(mode, i, count));
             let name = subject.name.clone();
             let one = Subject { name, plan, what };
-            let (measured, frame) = measure(&mut all.executor, &all.assets, &one)?;
+            let (measured, frame) = measure(&mut all.executor, &all.assets, &one, mode)?;
             all.files.show(&table::levels(&measured))?;
             rows.extend(measured);
             if let Some(folder) = &args.heat {
@@ -84,6 +84,7 @@ fn measure(
     executor: &mut Executor,
     assets: &Assets,
     subject: &Subject,
+    mode: &str,
 ) -> Result<(Vec<StepsRow>, Frame), RenderError> {
     let plan = &subject.plan;
     let mut runner = Runner::new(executor, assets, &subject.what, RUNS + 2);
@@ -107,7 +108,7 @@ fn measure(
         };
         rows.push(StepsRow {
             preset: subject.name.clone(),
-            mode: plan.march.mode.name().into(),
+            mode: mode.into(),
             pass: pass.pass.name(),
             size: plan.size,
             device: executor.name(),

@@ -53,6 +53,12 @@ pub fn preset(rows: &[Row]) -> String {
             ("behind 8 %", &|r| percent(r.report.behind8, 4)),
             ("p99 footprints", &|r| fixed(r.report.depth_error.p99, 3)),
             ("unconverged %", &|r| percent(r.report.unconverged, 4)),
+            ("before the set", &|r| {
+                fixed(r.sharpness.before_set.median, 2)
+            }),
+            ("wrong of the set %", &|r| {
+                percent(r.sharpness.wrong_of_set, 3)
+            }),
             ("FLIP", &|r| fixed(r.flip, 4)),
             ("start violations, coarse to fine", &starts),
         ],
@@ -88,9 +94,9 @@ fn time(row: &Row) -> f64 {
     row.wall_ms
 }
 
-/// Means over the presets, of each setting against `ray` and `ray-relaxed`.
+/// Means over the presets, of each setting against the rival and `ray`.
 pub fn means(rows: &[Row]) -> String {
-    let (ray, relaxed) = (of(rows, "ray"), of(rows, "ray-relaxed"));
+    let (rival, ray) = (of(rows, "rival"), of(rows, "ray"));
     let text = "
 ### Means over the presets
 
@@ -111,10 +117,10 @@ unconverged.
     let faster = |than: &[&Row], l: &String| fixed(ratio(than, &own(l), time), 2);
     let columns: [Column<'_, String>; 7] = [
         ("setting", &String::clone),
-        ("fewer evaluations than ray", &|l| fewer(&ray, l)),
-        ("than ray-relaxed", &|l| fewer(&relaxed, l)),
-        ("faster than ray", &|l| faster(&ray, l)),
-        ("than ray-relaxed", &|l| faster(&relaxed, l)),
+        ("fewer evaluations than the rival", &|l| fewer(&rival, l)),
+        ("than ray", &|l| fewer(&ray, l)),
+        ("faster than the rival", &|l| faster(&rival, l)),
+        ("than ray", &|l| faster(&ray, l)),
         ("wrong pixels %", &|l| percent(mean(&own(l), wrong), 4)),
         ("FLIP", &|l| fixed(mean(&own(l), |r| r.flip), 4)),
     ];

@@ -1,0 +1,245 @@
+//! `safe` against the strongest way without cones, at equal real sharpness:
+//! `cargo bench --bench rival [-- --size WxH] [PRESET...]`.
+//!
+//! The *rival* is mode `ray-relaxed` with `clip` on. It has the estimate, the relaxation and the
+//! bounds of `safe`, but no cones. The *old rival* has the scalar estimate. Its `detail` is lowered
+//! until its picture is as sharp: half of its pixels are as far before the set as those of `safe`.
+//! *No cones* is `safe` with rays alone: it keeps its shell, which the rivals have not.
+//! Times are medians of warm runs in turns.
+
+use anyhow::{Context, Result};
+use conemarch::base::outcome::Counts;
+use conemarch::command::executor::Executor;
+use conemarch::gpu::adapters::Choice;
+use conemarch::measure::set::{self, BeforeSet, SetSample, Sharpness, sharpness};
+use conemarch::picture::frame::Frame;
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset::{self, Override};
+use conemarch::scene::Assets;
+
+#[path = "common/markdown.rs"]
+mod markdown;
+
+/// Warm runs that a median is taken of.
+const RUNS: usize = 5;
+/// The factor on the steps to the set.
+const STRIDE: f64 = 0.1;
+/// Rounds of halving in the search of a `detail`, from the range LEAST to 1.
+const ROUNDS: u32 = 7;
+const LEAST: f64 = 0.2;
+/// What is compared, and the changes of the preset.
+const PLANS: [(&str, &[&str]); 5] = [
+    ("rival", &["march.mode=ray-relaxed", "march.clip=on"]),
+    ("safe", &[]),
+    ("no cones", &["march.coarsest=1"]),
+    ("proven", &["march.mode=proven"]),
+    (
+        "old rival",
+        &[
+            "march.mode=ray-relaxed",
+            "march.clip=on",
+            "scene.estimate=scalar",
+        ],
+    ),
+];
+const PRESETS: [&str; 6] = [
+    "bench-far",
+    "bench-graze",
+    "bench-inside",
+    "bench-outside",
+    "bench-thin",
+    "mandelbox-gate",
+];
+
+/// A plan's figures.
+struct Measured {
+    detail: f64,
+    /// March and trace on the clock.
+    ms: f64,
+    /// Iterations per pixel, as groups of 32 lanes pay them.
+    iterations: f64,
+    sharpness: Sharpness,
+}
+
+struct Bench {
+    executor: Executor,
+    assets: Assets,
+}
+
+impl Bench {
+    fn render(&mut self, plan: &Plan, count: bool) -> Result<Frame> {
+        let extras = Extras {
+            count,
+            levels: count,
+            depth_only: true,
+            ..Extras::default()
+        };
+        let watch = &mut |_: &_| true;
+        Ok(self.executor.render(plan, &self.assets, extras, watch)?)
+    }
+
+    /// The `detail` of a plan with which half of the pixels are as far before the set as said.
+    fn detail(&mut self, plan: &Plan, set: &SetSample, median: f64) -> Result<f64> {
+        let (mut low, mut high) = (LEAST, 1.0_f64);
+        let mut plan = plan.clone();
+        for _ in 0..ROUNDS {
+            plan.march.detail = (low * high).sqrt();
+            let frame = self.render(&plan, false)?;
+            match sharpness(&frame, set, &plan).before_set.median > median {
+                true => high = plan.march.detail,
+                false => low = plan.march.detail,
+            }
+        }
+        Ok((low * high).sqrt())
+    }
+
+    fn preset(&mut self, name: &str, size: [u32; 2]) -> Result<Vec<Measured>> {
+        let mut plans = Vec::new();
+        for (_, changes) in PLANS {
+            let changes: Result<Vec<_>, _> = changes.iter().map(|c| Override::read(c)).collect();
+            let mut plan = preset::load(name, &changes?)?.plan;
+            plan.size = size;
+            plans.push(plan);
+        }
+        let set = set::sample(&plans[1], &self.assets, STRIDE)?;
+        let safe = sharpness(&self.render(&plans[1], false)?, &set, &plans[1]);
+        plans[4].march.detail = self.detail(&plans[4], &set, safe.before_set.median)?;
+        let mut all = Vec::new();
+        for plan in &plans {
+            let frame = self.render(plan, true)?;
+            all.push(Measured {
+                detail: plan.march.detail,
+                ms: 0.0,
+                iterations: in_step(&frame),
+                sharpness: sharpness(&frame, &set, plan),
+            });
+        }
+        let mut times = vec![Vec::new(); plans.len()];
+        for run in 0..=RUNS {
+            for (plan, times) in plans.iter().zip(&mut times) {
+                let ms = self.render(plan, false)?.march_ms;
+                // The first round compiles.
+                if run > 0 {
+                    times.push(ms);
+                }
+            }
+        }
+        for (measured, mut times) in all.iter_mut().zip(times) {
+            times.sort_by(f64::total_cmp);
+            measured.ms = times[RUNS / 2];
+        }
+        Ok(all)
+    }
+}
+
+/// Iterations per pixel if the 32 lanes of 8 x 4 cells all wait for the last one.
+fn in_step(frame: &Frame) -> f64 {
+    let levels = frame.levels.iter();
+    let levels = levels.map(|l| (&l.work, l.cells.map(|n| n as usize)));
+    let pixels = (&frame.work, frame.size.map(|n| n as usize));
+    let spent: u64 = levels
+        .chain([pixels])
+        .map(|(work, size)| group(work, size))
+        .sum();
+    spent as f64 / frame.state.len() as f64
+}
+
+fn group(work: &[Counts], [width, height]: [usize; 2]) -> u64 {
+    let mut spent = 0;
+    for y in (0..height).step_by(4) {
+        for x in (0..width).step_by(8) {
+            let rows = (y..(y + 4).min(height)).map(|y| y * width);
+            let cells = rows.flat_map(|row| row + x..row + (x + 8).min(width));
+            let most = cells.map(|i| work[i].iterations).max();
+            spent += 32 * u64::from(most.unwrap_or(0));
+        }
+    }
+    spent
+}
+
+fn main() -> Result<()> {
+    let mut size = [1920, 1080];
+    let mut names = Vec::new();
+    let mut args = std::env::args().skip(1).filter(|a| a != "--bench");
+    while let Some(arg) = args.next() {
+        if arg == "--size" {
+            let text = args.next().context("--size needs WxH")?;
+            let (w, h) = text.split_once('x').context("--size needs WxH")?;
+            size = [w.parse()?, h.parse()?];
+        } else {
+            names.push(arg);
+        }
+    }
+    if names.is_empty() {
+        names = PRESETS.map(String::from).into();
+    }
+    let (executor, who) = Executor::open(&Choice::Auto)?;
+    eprintln!("measuring on {who}");
+    let assets = Assets::default();
+    let mut bench = Bench { executor, assets };
+    let mut all = Vec::new();
+    for name in &names {
+        eprintln!("{name}, {} x {}", size[0], size[1]);
+        all.push((name.clone(), bench.preset(name, size)?));
+    }
+    let [w, h] = size;
+    println!(
+        "March and trace at {w} x {h}, in milliseconds, and in shares of the time of `safe`:\n"
+    );
+    println!("{}", times(&all));
+    println!("Iterations per pixel, as groups of 32 lanes in step pay them:\n");
+    println!("{}", iterations(&all));
+    println!("Compared with the set, each with its `detail`:\n");
+    println!("{}", errors(&all));
+    Ok(())
+}
+
+type Rows = [(String, Vec<Measured>)];
+
+/// The geometric mean over the `bench-*` views of a figure's ratio to that of `safe`.
+fn mean(all: &Rows, of: usize, figure: fn(&Measured) -> f64) -> f64 {
+    let views = all.iter().filter(|(name, _)| name.starts_with("bench-"));
+    let logs: Vec<f64> = views
+        .map(|(_, m)| (figure(&m[of]) / figure(&m[1])).ln())
+        .collect();
+    (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp()
+}
+
+/// A figure of every plan, and its ratios to that of `safe`.
+fn compared(all: &Rows, figure: fn(&Measured) -> f64, digits: usize) -> String {
+    let row = |(name, m): &(String, Vec<Measured>)| {
+        let own = m.iter().map(|m| format!("{:.digits$}", figure(m)));
+        let ratio = |i: usize| format!("{:.2}", figure(&m[i]) / figure(&m[1]));
+        let cells: Vec<String> = own.chain([0, 2, 3, 4].map(ratio)).collect();
+        format!("{name} | {}", cells.join(" | "))
+    };
+    let means = [0, 2, 3, 4].map(|i| format!("{:.2}", mean(all, i, figure)));
+    let last = format!("mean of `bench-*` | | | | | | {}", means.join(" | "));
+    let head = "preset | rival | safe | no cones | proven | old rival | rival / safe | no cones / safe | proven / safe | old rival / safe";
+    markdown::table(head, "lr", all.iter().map(row).chain([last]))
+}
+
+fn times(all: &Rows) -> String {
+    compared(all, |m| m.ms, 0)
+}
+
+fn iterations(all: &Rows) -> String {
+    compared(all, |m| m.iterations, 1)
+}
+
+fn errors(all: &Rows) -> String {
+    let rows = all.iter().flat_map(|(name, measured)| {
+        let of = PLANS.iter().zip(measured);
+        of.map(move |((plan, _), m)| {
+            let BeforeSet { median, p95 } = m.sharpness.before_set;
+            let wrong = 100.0 * m.sharpness.wrong_of_set;
+            let starts: u64 = m.sharpness.starts_beyond_set.iter().sum();
+            let detail = m.detail;
+            format!(
+                "{name} | {plan} | {detail:.2} | {median:.2} | {p95:.2} | {wrong:.3} | {starts}"
+            )
+        })
+    });
+    let head = "preset | mode | detail | footprints before the set, median | 95 % | wrong pixels % | starts beyond the set";
+    markdown::table(head, "llr", rows)
+}
