@@ -53,7 +53,10 @@ fn measured(args: &[String], preset: &str, size: &str) -> Result<[[f64; 2]; 2]> 
     let mut all = [vec![], vec![]];
     for _ in 0..RUNS {
         for (runs, program) in all.iter_mut().zip(args) {
-            runs.push(run(program, preset, size)?);
+            let Times {
+                marched, device, ..
+            } = run(program, preset, size, &[])?;
+            runs.push([marched, device]);
         }
     }
     // The middle run by the overhead, which both figures belong to.
@@ -63,12 +66,27 @@ fn measured(args: &[String], preset: &str, size: &str) -> Result<[[f64; 2]; 2]> 
     }))
 }
 
-fn run(program: &str, preset: &str, size: &str) -> Result<[f64; 2]> {
+/// The times of one render in milliseconds.
+struct Times {
+    /// March and trace on the clock.
+    marched: f64,
+    /// The same on the device.
+    device: f64,
+    /// Colour on the clock.
+    colored: f64,
+}
+
+fn run(program: &str, preset: &str, size: &str, settings: &[&str]) -> Result<Times> {
     let file = std::env::temp_dir().join(format!("overhead-{}.json", std::process::id()));
     let picture = file.with_extension("png");
     let mut command = Command::new(program);
-    command.args(["render", preset, "--size", size, "--stats"]);
-    command.arg(&file).arg("-o").arg(&picture);
+    command.args(["render", preset, "--size", size]);
+    command
+        .args(settings)
+        .arg("--stats")
+        .arg(&file)
+        .arg("-o")
+        .arg(&picture);
     let status = command.stderr(Stdio::null()).status()?;
     ensure!(status.success(), "{program} cannot render {preset}");
     let stats: Value = serde_json::from_str(&std::fs::read_to_string(&file)?)?;
@@ -81,7 +99,12 @@ fn run(program: &str, preset: &str, size: &str) -> Result<[f64; 2]> {
         name.starts_with("march") || name == "trace"
     });
     let device: Option<f64> = marched.map(|p| p["gpu_ms"].as_f64()).sum();
-    Ok([wall, device.context("the device has no timestamps")?])
+    let color = passes.last().and_then(|p| p["wall_ms"].as_f64());
+    Ok(Times {
+        marched: wall,
+        device: device.context("the device has no timestamps")?,
+        colored: color.context("no colour pass")?,
+    })
 }
 
 /// The overhead at a size at which kernels take little.
@@ -98,15 +121,46 @@ fn small(args: &[String]) -> Result<String> {
     ))
 }
 
-/// March and trace at 1280 x 720.
+/// March and trace, and whole frames, at 1280 x 720.
 fn large(args: &[String]) -> Result<String> {
+    let runs = [
+        (&args[0], &[][..]),
+        (&args[1], &["--set", "march.coarsest=1"][..]),
+        (&args[1], &[][..]),
+    ];
     let mut rows = Vec::new();
+    let mut ratios = Vec::new();
     for (preset, _) in preset::BUILTIN {
-        let [old, new] = measured(args, preset, "1280x720")?.map(|[wall, _]| wall);
-        rows.push(format!("{preset} | {old:.1} | {new:.1} | {:.2}", new / old));
+        let mut all = [vec![], vec![], vec![]];
+        for _ in 0..RUNS {
+            for (times, (program, settings)) in all.iter_mut().zip(runs) {
+                times.push(run(program, preset, "1280x720", settings)?);
+            }
+        }
+        let median = |of: usize, figure: fn(&Times) -> f64| {
+            let mut times: Vec<f64> = all[of].iter().map(figure).collect();
+            times.sort_by(f64::total_cmp);
+            times[RUNS / 2]
+        };
+        let [old, alone, new] = [0, 1, 2].map(|of| median(of, |t| t.marched));
+        let [whole_old, whole] = [0, 2].map(|of| median(of, |t| t.marched + t.colored));
+        let own = [new / old, new / alone, whole / whole_old];
+        rows.push(format!(
+            "{preset} | {old:.0} | {alone:.0} | {new:.0} | {:.2} | {:.2} | {whole_old:.0} | {whole:.0} | {:.2}",
+            own[0], own[1], own[2]
+        ));
+        ratios.push(own);
     }
+    let mean = |of: usize| {
+        let logs: f64 = ratios.iter().map(|own| own[of].ln()).sum();
+        (logs / ratios.len() as f64).exp()
+    };
+    let [before, alone, whole] = [0, 1, 2].map(mean);
+    rows.push(format!(
+        "geometric mean | | | | {before:.2} | {alone:.2} | | | {whole:.2}"
+    ));
     Ok(markdown::table(
-        "march and trace, 1280 x 720 | before, ms | now, ms | ratio",
+        "march and trace, 1280 x 720 | before, ms | rays alone now | now | now / before | now / rays alone | whole frame before | now | now / before",
         "lr",
         rows,
     ))

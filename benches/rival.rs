@@ -18,6 +18,7 @@ use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 
 #[path = "common/markdown.rs"]
+#[allow(dead_code, reason = "other programs use the rest")]
 mod markdown;
 
 /// Warm runs that a median is taken of.

@@ -27,7 +27,7 @@ const SWITCHES: &[Switch] = &[
     ("relaxation off", |p, _| {
         p.march.relaxation = conemarch::scene::stepping::Relaxation::Off;
     }),
-    ("no cones", |p, _| p.march.coarsest = Some(1)),
+    ("cones from 1/16", |p, _| p.march.coarsest = Some(16)),
     ("cones from 1/32", |p, _| p.march.coarsest = Some(32)),
     ("cones from 1/8", |p, _| p.march.coarsest = Some(8)),
     ("rotation by 0", |p, _| rotate(p, 0.0)),

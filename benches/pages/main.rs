@@ -89,7 +89,7 @@ fn fill(page: &str, sections: &[(&str, String)]) -> Result<()> {
 fn benchmarks(folder: &Path, date: &str) -> Result<()> {
     let rows: Vec<Row> = read(folder, "error.json")?;
     let steps: Vec<StepsRow> = read(folder, "steps.json")?;
-    let switches = fs::read_to_string(folder.join("switches.md")).context("switches.md")?;
+    let text = |file: &str| fs::read_to_string(folder.join(file)).context(file.to_owned());
     let device = rows.first().map_or("", |r| &r.device);
     let presets = rows.chunk_by(|a, b| a.preset == b.preset);
     let error: String = presets.map(table::preset).collect();
@@ -101,7 +101,9 @@ fn benchmarks(folder: &Path, date: &str) -> Result<()> {
             ("device", format!("Measured {date} on {device}.")),
             ("error", error + &table::slides(&rows)),
             ("steps", levels.map(table::levels).collect()),
-            ("switches", switches),
+            ("rival", text("rival.md")?),
+            ("scale", text("scale.md")?),
+            ("switches", text("switches.md")?),
         ],
     )
 }
