@@ -36,7 +36,14 @@ fn main() -> Result<()> {
     let args = std::env::args().skip(1).filter(|a| a != "--bench");
     let args: Vec<String> = args.collect();
     ensure!(args.len() >= 2, "give the old and the new program");
-    let text = [small(&args)?, large(&args)?, processes(&args)?, frames()?].join("\n");
+    let text = [
+        small(&args)?,
+        large(&args)?,
+        processes(&args)?,
+        frames()?,
+        cancels()?,
+    ]
+    .join("\n");
     println!("{text}");
     if args.iter().any(|a| a == "--write") {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md");
@@ -237,6 +244,60 @@ fn frames() -> Result<String> {
     }
     Ok(markdown::table(
         "preset | frame | drains | submissions | bytes uploaded | programs compiled | buffers created | overhead, ms",
+        "llr",
+        rows,
+    ))
+}
+
+/// How soon a render that is cancelled returns, and how soon the device has done what was submitted
+/// of it. Every preset is cancelled as soon as each of its passes is under way.
+fn cancels() -> Result<String> {
+    let adapters = Adapters::find();
+    let chosen = adapters.choose(&Choice::Auto)?;
+    let (adapter, _) = chosen.context("there is no adapter")?;
+    let mut renderer = Renderer::new(Device::open(adapter)?);
+    let mut rows = Vec::new();
+    for (name, _) in preset::BUILTIN {
+        let assets = Assets::default();
+        let mut plan = preset::load(name, &[])?.plan;
+        plan.size = [1280, 720];
+        let mut passes: Vec<String> = Vec::new();
+        let extras = Extras::default();
+        renderer.render(&plan, &assets, extras, &mut |now| {
+            if !passes.contains(&now.pass) {
+                passes.push(now.pass.clone());
+            }
+            true
+        })?;
+        let (mut returned, mut free) = (0.0_f64, 0.0_f64);
+        let marched = plan.resolved(extras).passes(extras);
+        let marched: Vec<String> = marched.iter().map(|pass| pass.name()).collect();
+        passes.retain(|pass| marched.contains(pass));
+        for pass in &passes {
+            let mut asked = None;
+            let cancelled = renderer.render(&plan, &assets, extras, &mut |now| {
+                if now.pass == *pass {
+                    asked = Some(Instant::now());
+                }
+                asked.is_none()
+            });
+            // A pass that is too short to be seen cannot be cancelled.
+            let Some(asked) = asked else { continue };
+            ensure!(cancelled.is_err(), "{name} went on in {pass}");
+            returned = returned.max(asked.elapsed().as_secs_f64() * 1e3);
+            renderer
+                .device
+                .device
+                .poll(wgpu::PollType::wait_indefinitely())?;
+            free = free.max(asked.elapsed().as_secs_f64() * 1e3);
+        }
+        rows.push(format!(
+            "{name} | {} | {returned:.1} | {free:.0}",
+            passes.join(", ")
+        ));
+    }
+    Ok(markdown::table(
+        "preset, 1280 x 720 | cancelled in | returned after, ms | device free after, ms",
         "llr",
         rows,
     ))
