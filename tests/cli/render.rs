@@ -182,8 +182,15 @@ fn the_command_that_is_given_is_explained() {
 #[test]
 fn stats_have_the_promised_fields() {
     let folder = Folder::new();
-    rendered(&folder, "mandelbox", "--stats s.json");
-    let piped = folder.done(&tiny("mandelbox", "--stats - -o b.png"));
+    rendered(
+        &folder,
+        "mandelbox",
+        "--set march.coarsest=16 --stats s.json",
+    );
+    let piped = folder.done(&tiny(
+        "mandelbox",
+        "--set march.coarsest=16 --stats - -o b.png",
+    ));
     for bytes in [folder.bytes("s.json"), piped.stdout] {
         let stats = json(&bytes);
         let mut fields = names(&stats);
