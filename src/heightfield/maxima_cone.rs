@@ -32,6 +32,9 @@ const CONE_CLIP: f64 = 1e-6;
 /// leaves the range of f32.
 const CONE_NO_EDGE: f64 = 1e12;
 const CONE_SLOW: f64 = 1e-20;
+/// The least step, as a share of t. A shorter one would be lost in the roundings of f32, and the
+/// slack of the box covers this one.
+const CONE_LEAST: f64 = 2.4e-7;
 
 /// A cone in local units. At t, its rays are at most `radius + t growth` off its axis along each
 /// coordinate.
@@ -70,7 +73,8 @@ pub fn module() -> Module {
         "CONE_FRONT" = CONE_FRONT,
         "CONE_CLIP" = CONE_CLIP,
         "CONE_NO_EDGE" = CONE_NO_EDGE,
-        "CONE_SLOW" = CONE_SLOW
+        "CONE_SLOW" = CONE_SLOW,
+        "CONE_LEAST" = CONE_LEAST
     )
 }
 
@@ -181,7 +185,9 @@ pub fn maxima_cone(
         }
         // Where the box leaves the window.
         let exits = ((window.high - right) / ahead).min((left - window.low) / behind);
-        let step = (exits.min_element() * CONE_EXIT).min(far - t);
+        let step = (exits.min_element() * CONE_EXIT)
+            .max(CONE_LEAST * t)
+            .min(far - t);
         let over = low.z - window.maximum;
         let fall = cone.axis.z - cone.growth.z;
         if over > 0.0 && over + step * fall > 0.0 {

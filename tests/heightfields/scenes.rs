@@ -14,7 +14,7 @@ use conemarch::scene::{AnySolid, Assets, Scene, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::adapter::{HIT, LEVELS, NORMALS};
+use crate::adapter::{COUNTED, HIT, LEVELS, NORMALS};
 use crate::common::overclaims::{brought_near, overclaims};
 use crate::common::random::Random;
 use crate::{both, camera, plan};
@@ -222,6 +222,25 @@ fn shadows_do_not_change_with_the_size_of_the_picture() {
             }
             assert!(seen > 300, "{scene}: {seen}");
             assert!(changed * 250 <= seen, "{scene}: {changed} of {seen}");
+        }
+    }
+}
+
+/// Tiles whose sides are no powers of two end with narrow nodes. There a step can be shorter than
+/// the roundings of f32.
+#[test]
+fn cones_over_odd_tiles_do_not_stand_still() {
+    for field in ["fbm:100x100", "fbm:5x5", "stones:7x100"] {
+        let scene = format!("field = '{field}'\nwrap = 'xy'\ntiles = [4, 4]\ndepth = 1.4");
+        let mut plan = plan(&scene);
+        plan.size = [64, 36];
+        let works = both(&plan, COUNTED).map(|frame| {
+            let marched = frame.passes.iter().filter_map(|pass| pass.evaluations);
+            marched.collect::<Vec<_>>()
+        });
+        for (own, exact) in works[0].iter().zip(&works[1]) {
+            let most = 2 * own.min(exact) + 500;
+            assert!(own.max(exact) < &most, "{field}: {works:?}");
         }
     }
 }

@@ -17,6 +17,8 @@ override CONE_CLIP: f32;
 /// An edge that no cone reaches, and the least speed by which a way is divided.
 override CONE_NO_EDGE: f32;
 override CONE_SLOW: f32;
+/// The least step, as a share of t.
+override CONE_LEAST: f32;
 
 /// A cone in local units. At t, its rays are at most `radius + t growth` off its axis along each
 /// coordinate. The radius has twice the slack in it.
@@ -126,7 +128,8 @@ fn maxima_cone(cone: LocalCone, front: f32, end: f32) -> Advance {
         }
         // Where the box leaves the window.
         let exits = min((window.high - high) / ahead, (low.xy - window.low) / behind);
-        let step = min(min(exits.x, exits.y) * CONE_EXIT, part.y - t);
+        let exit = max(min(exits.x, exits.y) * CONE_EXIT, CONE_LEAST * t);
+        let step = min(exit, part.y - t);
         let over = low.z - window.maximum;
         let fall = cone.axis.z - cone.growth.z;
         if over > 0.0 && over + step * fall > 0.0 {
