@@ -9,7 +9,20 @@ use crate::pass::progress::Progress;
 #[derive(Default)]
 pub struct Threads {}
 
-type Deferred<T> = Box<dyn FnOnce(&TaskStatus) -> T>;
+/// A task that another thread may run, where there are any.
+#[cfg(not(target_arch = "wasm32"))]
+mod task {
+    pub trait Sent: Send {}
+    impl<T: Send> Sent for T {}
+    pub type Deferred<T> = Box<dyn FnOnce(&super::TaskStatus) -> T + Send>;
+}
+#[cfg(target_arch = "wasm32")]
+mod task {
+    pub trait Sent {}
+    impl<T> Sent for T {}
+    pub type Deferred<T> = Box<dyn FnOnce(&super::TaskStatus) -> T>;
+}
+use task::{Deferred, Sent};
 
 /// The answer of work that is done when it is asked for.
 pub struct Background<T> {
@@ -22,7 +35,7 @@ impl<T: 'static> Background<T> {
     pub fn start(
         _: &mut Threads,
         first: &str,
-        work: impl FnOnce(&TaskStatus) -> T + 'static,
+        work: impl FnOnce(&TaskStatus) -> T + Sent + 'static,
     ) -> Self {
         Self {
             told: TaskStatus::new(first),

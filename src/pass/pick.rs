@@ -27,7 +27,7 @@ pub struct Picked {
     /// Where the ray met the surface, stopped or left the bounds; or the point, rounded to f32
     /// relative to the eye.
     pub position: DVec3,
-    /// The radius of a ball about the position that is proven empty.
+    /// The radius of a ball about the position that is as surely empty as the step of a ray is.
     pub clearance: f64,
 }
 

@@ -57,7 +57,7 @@ pub trait Solid: Sync {
         4.0 * grain
     }
 
-    /// The radius of a ball about a point that is proven empty.
+    /// The radius of a ball about a point that is as surely empty as the step of a ray is.
     fn clearance(&self, q: DVec3) -> f64;
 
     /// The free room about a point, for occlusion. It may be a guess that exceeds the

@@ -58,6 +58,13 @@ pub struct Work {
     run: Option<Run>,
 }
 
+/// A host may keep a render on another thread.
+#[cfg(not(target_arch = "wasm32"))]
+const _: () = {
+    const fn sends<T: Send>() {}
+    sends::<Work>();
+};
+
 impl Work {
     pub(super) fn new(shared: Arc<Shared>, extras: Extras) -> Self {
         Self {
@@ -92,11 +99,13 @@ impl Work {
         }
     }
 
-    /// Begins a run once it is prepared.
+    /// Begins a run once it is prepared. Plans between the first and the last are dropped, so that a
+    /// slider does not start a thread for each of its values.
     pub(super) fn start_when_ready(
         &mut self,
         inputs: Background<Result<FrameInputs, RenderError>>,
     ) {
+        self.inputs.truncate(1);
         self.inputs.push(inputs);
     }
 
