@@ -33,6 +33,7 @@
 //! | 1 | [`raster`] | image files as numbers: PNG, EXR, TIFF |
 //! | 2 | [`formula`] | shapes given by an estimate of the distance to them |
 //! | 2 | [`heightfield`] | height maps, cone maps, and the tracers that use them |
+//! | 2 | [`time`] | when the frames of a film are, and what settings are at a moment |
 //! | 3 | [`scene`] | what there is to see, and what passes ask about it |
 //! | 4 | [`plan`] | everything that decides a picture |
 //! | 5 | [`preset`] | a Plan as TOML; the built-in presets |
@@ -41,7 +42,8 @@
 //! | 7 | [`gpu`] | the executor on a wgpu device |
 //! | 7 | [`cpu`] | the executor on all cores |
 //! | 8 | [`measure`] | truths, comparisons and calibration, for benchmarks |
-//! | 9 | [`command`] | the command line |
+//! | 9 | `preview` | the window |
+//! | 10 | [`command`] | the command line |
 //!
 //! A Rust file and a WGSL file at the same path are twins: they compute the same functions,
 //! in f64 and in f32. `docs/method.md` explains the mathematics.
@@ -60,5 +62,8 @@ pub mod pass;
 pub mod picture;
 pub mod plan;
 pub mod preset;
+#[cfg(feature = "preview")]
+pub mod preview;
 pub mod raster;
 pub mod scene;
+pub mod time;

@@ -34,6 +34,7 @@ const DEPTHS: Extras = Extras {
     depth_only: true,
     time: false,
     shown: false,
+    unread: false,
     reuse: false,
 };
 const COUNTED: Extras = Extras {

@@ -8,10 +8,33 @@
 use glam::DVec3;
 use toml::Value;
 
+/// What values a slot takes, for who offers them. Ranges are closed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// A number in a range.
+    Number([f64; 2]),
+    /// A whole number in a range.
+    Count([u32; 2]),
+    /// `true` or `false`.
+    Switch,
+    /// One of some words.
+    Word(Vec<&'static str>),
+    /// Three numbers, each in a range.
+    Triple([f64; 2]),
+    /// Up to so many triples of numbers in a range.
+    Triples(usize, [f64; 2]),
+    /// `"auto"`, or another kind.
+    Auto(Box<Kind>),
+    /// Anything else.
+    Other,
+}
+
 /// A place for one value of a preset.
 pub trait Slot {
     /// The current value as TOML.
     fn get(&self) -> Value;
+    /// What values it takes.
+    fn kind(&self) -> Kind;
     /// Describes the values that fit.
     fn expects(&self) -> String;
     /// Sets the value.
@@ -27,6 +50,7 @@ pub struct Place<'a, T, W, R> {
     expects: String,
     write: W,
     read: R,
+    kind: Kind,
 }
 
 impl<'a, T, W, R> Place<'a, T, W, R>
@@ -42,13 +66,22 @@ where
             expects: expects.into(),
             write,
             read,
+            kind: Kind::Other,
         }
+    }
+
+    /// The slot with the kind of its values.
+    pub fn of(self, kind: Kind) -> Self {
+        Self { kind, ..self }
     }
 }
 
 impl<T, W: Fn(&T) -> Value, R: Fn(&Value) -> Option<T>> Slot for Place<'_, T, W, R> {
     fn get(&self) -> Value {
         (self.write)(self.at)
+    }
+    fn kind(&self) -> Kind {
+        self.kind.clone()
     }
     fn expects(&self) -> String {
         self.expects.clone()
@@ -236,13 +269,14 @@ fn from_to(low: f64, high: f64) -> String {
 pub fn number(at: &mut f64, low: f64, high: f64) -> impl Slot {
     let expects = format!("a number {}", from_to(low, high));
     let read = move |v: &Value| number_in(v, low, high);
-    Place::new(at, expects, |x| (*x).into(), read)
+    Place::new(at, expects, |x| (*x).into(), read).of(Kind::Number([low, high]))
 }
 
 /// `"auto"`, which is stored as `None`, or a value that `read` reads.
 pub fn auto<T: Copy + Into<Value>>(
     at: &mut Option<T>,
     other: String,
+    kind: Kind,
     read: impl Fn(&Value) -> Option<T>,
 ) -> impl Slot {
     let write = |x: &Option<T>| x.map_or("auto".into(), Into::into);
@@ -250,24 +284,28 @@ pub fn auto<T: Copy + Into<Value>>(
         Some("auto") => Some(None),
         _ => read(v).map(Some),
     };
-    Place::new(at, format!("\"auto\" or {other}"), write, read)
+    let kind = Kind::Auto(Box::new(kind));
+    Place::new(at, format!("\"auto\" or {other}"), write, read).of(kind)
 }
 
 /// A whole number in a closed range, or `"auto"`, which is stored as `None`.
 pub fn auto_count(at: &mut Option<u32>, low: u32, high: u32) -> impl Slot {
     let other = format!("a whole number from {low} to {high}");
-    auto(at, other, move |v| count_in(v, low, high))
+    let kind = Kind::Count([low, high]);
+    auto(at, other, kind, move |v| count_in(v, low, high))
 }
 
 /// A number in a closed range, or `"auto"`, which is stored as `None`.
 pub fn auto_number(at: &mut Option<f64>, low: f64, high: f64) -> impl Slot {
     let other = format!("a number {}", from_to(low, high));
-    auto(at, other, move |v| number_in(v, low, high))
+    let kind = Kind::Number([low, high]);
+    auto(at, other, kind, move |v| number_in(v, low, high))
 }
 
 /// `true` or `false`.
 pub fn switch(at: &mut bool) -> impl Slot {
-    Place::new(at, "true or false", |on| (*on).into(), Value::as_bool)
+    let place = Place::new(at, "true or false", |on| (*on).into(), Value::as_bool);
+    place.of(Kind::Switch)
 }
 
 /// Three numbers, each in a closed range.
@@ -275,7 +313,8 @@ pub fn triple(at: &mut DVec3, low: f64, high: f64) -> impl Slot {
     let range = from_to(low, high);
     let expects = format!("three numbers like [1, 2, 3], each {range}");
     let read = move |v: &Value| triple_in(v, low, high);
-    Place::new(at, expects, |p| p.to_array().to_vec().into(), read)
+    let write = |p: &DVec3| p.to_array().to_vec().into();
+    Place::new(at, expects, write, read).of(Kind::Triple([low, high]))
 }
 
 /// The values of a list of 1 to `most`.
@@ -302,7 +341,7 @@ pub fn triples(at: &mut Vec<DVec3>, most: usize, low: f64, high: f64) -> impl Sl
         triples.collect::<Vec<_>>().into()
     };
     let read = move |v: &Value| list(v, most, |x| triple_in(x, low, high));
-    Place::new(at, expects, write, read)
+    Place::new(at, expects, write, read).of(Kind::Triples(most, [low, high]))
 }
 
 /// Two whole numbers, for x and y, each in a closed range.
@@ -330,7 +369,9 @@ pub fn word<T: Copy + PartialEq>(at: &mut T, words: &'static [(&str, T)]) -> imp
         let word = words.iter().find(|(w, _)| v.as_str() == Some(w));
         word.map(|(_, value)| *value)
     };
-    Place::new(at, format!("one of {}", quoted.join(", ")), write, read)
+    let expects = format!("one of {}", quoted.join(", "));
+    let kind = Kind::Word(words.iter().map(|(word, _)| *word).collect());
+    Place::new(at, expects, write, read).of(kind)
 }
 
 /// One line of text.

@@ -38,9 +38,11 @@ fn is_cancelled(error: &anyhow::Error) -> bool {
 
 /// An error as one line.
 pub fn sentence(error: &anyhow::Error) -> String {
-    match is_cancelled(error) {
-        true => CANCELLED.into(),
-        false => one_line(&format!("{error:#}")),
+    match (is_cancelled(error), error.chain().len()) {
+        (true, 1) => CANCELLED.into(),
+        // Its context tells what was written.
+        (true, _) => format!("cancelled; {error}"),
+        (false, _) => one_line(&format!("{error:#}")),
     }
 }
 

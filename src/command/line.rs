@@ -10,8 +10,10 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::command::bench::Bench;
 use crate::command::conemap::ConeMapVerb;
+#[cfg(feature = "preview")]
+use crate::command::preview;
 use crate::command::print::say;
-use crate::command::{bench, completions, conemap, devices, failure, presets, render};
+use crate::command::{animate, bench, completions, conemap, devices, failure, presets, render};
 
 /// Renders fractals and height maps by multi-pass cone marching.
 ///
@@ -27,6 +29,11 @@ pub struct Line {
 enum Verb {
     /// Render a preset to a picture
     Render(Box<render::Render>),
+    /// Fly through a scene and tune it in a window
+    #[cfg(feature = "preview")]
+    Preview(preview::Preview),
+    /// Render the frames of a film
+    Animate(Box<animate::Animate>),
     /// Measure time and error
     #[command(subcommand)]
     Bench(Bench),
@@ -94,6 +101,9 @@ impl Line {
     fn run(&self) -> Result<()> {
         match &self.verb {
             Verb::Render(args) => render::run(args),
+            #[cfg(feature = "preview")]
+            Verb::Preview(args) => preview::run(args),
+            Verb::Animate(args) => animate::run(args),
             Verb::Bench(Bench::Error(args)) => bench::error::run(args),
             Verb::Bench(Bench::Steps(args)) => bench::steps::run(args),
             Verb::Bench(Bench::Cones(args)) => bench::cones::run(args),

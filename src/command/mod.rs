@@ -1,7 +1,7 @@
 //! The command line: its verbs, and what they share.
 //!
 //! - [`mod@line`]: the command line as a whole; [`arguments`]: parsers of arguments
-//! - [`render`], [`mod@bench`], [`conemap`], [`presets`], [`devices`], [`completions`]: the verbs
+//! - [`render`], `preview`, [`animate`], [`mod@bench`], [`conemap`], [`presets`], [`devices`], [`completions`]: the verbs
 //! - [`executor`]: the device or the CPU that `--device` chooses
 //! - [`memory`]: checks before the work that a picture fits
 //! - [`output`]: where a render writes, and how; [`sink`]: files and standard output
@@ -9,6 +9,7 @@
 //! - [`stats`]: the figures of a render; [`table`]: rows of cells as text
 //! - [`failure`]: errors as sentences and exit codes; [`interrupt`]: requests to end
 
+pub mod animate;
 pub mod arguments;
 pub mod bench;
 pub mod completions;
@@ -21,6 +22,8 @@ pub mod line;
 pub mod memory;
 pub mod output;
 pub mod presets;
+#[cfg(feature = "preview")]
+pub mod preview;
 pub mod print;
 pub mod progress;
 pub mod render;

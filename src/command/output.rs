@@ -123,7 +123,7 @@ impl Format {
 const MOST_SETTINGS: usize = 120;
 
 /// The file that a picture goes to without -o: `NAME.png`, with other settings
-/// `NAME-camera.fov=33.png`, with another size `NAME-640x360.png`, and of another layer
+/// `NAME-camera.fov=33.png`, at a moment `NAME-at=2.png`, with another size `NAME-640x360.png`, and of another layer
 /// `NAME.depth.png`. Only a picture of this program is replaced. With `--set` or a built-in
 /// preset it must have the same settings. The preset in a file may have been edited since.
 ///
@@ -144,6 +144,9 @@ pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<Pa
     };
     let settings: String = settings.chars().map(plain).take(MOST_SETTINGS).collect();
     file.push(settings);
+    if let Some(beat) = args.at {
+        file.push(format!("-at={beat}"));
+    }
     if plan.size != own_size {
         file.push(format!("-{}x{}", plan.size[0], plan.size[1]));
     }

@@ -1,8 +1,8 @@
 //! `conemarch render PRESET`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint, value_parser};
 
@@ -10,6 +10,7 @@ use crate::command::arguments::{bits, size, words};
 use crate::command::bench::common::of_how_many;
 use crate::command::bench::runner::{Runner, TIMED};
 use crate::command::executor::{Executor, device};
+use crate::command::failure::usage;
 use crate::command::output::{Format, default_name};
 use crate::command::print::{print, say};
 use crate::command::progress::Reporter;
@@ -80,6 +81,13 @@ pub struct Render {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     stats: Option<PathBuf>,
 
+    /// The moment of the film that the preset's tracks describe, in beats; at the default of 60
+    /// beats per minute these are seconds
+    ///
+    /// Without it, tracks are ignored.
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    pub(crate) at: Option<f64>,
+
     /// Print the passes and shader programs of this render, and render nothing
     #[arg(long)]
     explain: bool,
@@ -95,15 +103,11 @@ fn layers() -> impl TypedValueParser<Value = Layer> {
 /// A wrong preset or option, a device that fails, an unwritable file, an interrupt.
 pub fn run(args: &Render) -> Result<()> {
     interrupt::listen();
-    let overrides: Result<Vec<Override>, _> = args.set.iter().map(|s| Override::read(s)).collect();
-    let preset = preset::load(&args.preset, &overrides?)?;
-    let assets = Assets::default();
-    let mut progress = Reporter::start("loading");
-    progress.report(0.0, "the files of the preset");
-    preset.load_assets(&assets)?;
-    drop(progress);
-    interrupt::check()?;
+    let (preset, assets) = loaded(&args.preset, &args.set)?;
     let Preset { name, mut plan, .. } = preset;
+    if let Some(beat) = args.at {
+        plan = moment(&plan, beat)?;
+    }
     let own_size = plan.size;
     plan.size = args.size.unwrap_or(own_size);
     let output = match &args.output {
@@ -173,6 +177,37 @@ pub fn run(args: &Render) -> Result<()> {
         );
     }
     Ok(())
+}
+
+/// A preset with overrides, and the files that it names.
+///
+/// # Errors
+/// The preset, an override or a file is wrong, or an interrupt came.
+pub fn loaded(preset: &Path, sets: &[String]) -> Result<(Preset, Assets)> {
+    let overrides: Result<Vec<Override>, _> = sets.iter().map(|s| Override::read(s)).collect();
+    let preset = preset::load(preset, &overrides?)?;
+    let assets = Assets::default();
+    let mut progress = Reporter::start("loading");
+    progress.report(0.0, "the files of the preset");
+    preset.load_assets(&assets)?;
+    drop(progress);
+    interrupt::check()?;
+    Ok((preset, assets))
+}
+
+/// The plan at a beat of its film.
+///
+/// # Errors
+/// The film has no such beat, or the plan does not fit there.
+pub fn moment(plan: &Plan, beat: f64) -> Result<Plan> {
+    let length = plan.time.length;
+    if !(0.0..=length).contains(&beat) {
+        return Err(usage(format!(
+            "the film has no beat {beat}; it lasts from 0 to {length} (time.length)"
+        )));
+    }
+    let at = plan.at(beat);
+    at.map_err(|fault| anyhow!("at beat {beat}: {}: {}", fault.key, fault.why))
 }
 
 /// Whether no ray comes farther than a hundred-thousandth of the way to the target.

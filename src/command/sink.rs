@@ -104,15 +104,20 @@ pub fn shown(path: &Path) -> String {
     }
 }
 
+/// The folder of a file.
+pub fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
 /// The file behind a name, with links and `..` resolved. It need not exist.
 fn file_of(path: &Path) -> PathBuf {
     if is_stdout(path) {
         return path.into();
     }
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
+    let folder = folder_of(path);
     let new = || Some(fs::canonicalize(folder).ok()?.join(path.file_name()?));
     let there = fs::canonicalize(path).ok();
     there.or_else(new).unwrap_or_else(|| path.into())

@@ -4,7 +4,8 @@ use toml::Value;
 
 use crate::base::cone::ConeRule;
 use crate::base::key::{
-    Fault, Place, Slot, auto, auto_count, auto_number, count_in, number, number_in, numbers, word,
+    Fault, Kind, Place, Slot, auto, auto_count, auto_number, count_in, number, number_in, numbers,
+    word,
 };
 use crate::base::named::named_enum;
 use crate::plan::pyramid::{Level, levels};
@@ -129,7 +130,7 @@ fn relaxation(at: &mut Relaxation) -> impl Slot {
 fn divisor(at: &mut Option<u32>) -> impl Slot {
     let expects = "a power of two: 1 (no cones), 2, 4, 8, 16, 32 or 64";
     let read = |value: &Value| count_in(value, 1, 64).filter(|n| n.is_power_of_two());
-    auto(at, expects.into(), read)
+    auto(at, expects.into(), Kind::Other, read)
 }
 
 impl Marching {

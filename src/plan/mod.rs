@@ -5,10 +5,12 @@
 //! map: [`crate::scene::Assets`] do.
 //!
 //! - [`camera`], [`march`], [`look`]: the sections of a preset beside `[scene]`
+//! - [`film`]: the plan at a moment of its film
 //! - `cones`: whether cones pay; [`pyramid`]: the cone levels, and the blocks of a large image
 
 pub mod camera;
 mod cones;
+pub mod film;
 pub mod look;
 pub mod march;
 pub mod pyramid;
@@ -20,6 +22,8 @@ use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::keys;
 use crate::scene::{AnySolid, Scene, Task, Viewpoint};
+use crate::time::clock::Timing;
+use crate::time::track::Track;
 use camera::Camera;
 use cones::Probe;
 use look::Look;
@@ -44,6 +48,10 @@ pub struct Plan {
     pub look: Look,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// When the frames of a film are.
+    pub time: Timing,
+    /// What changes in the film.
+    pub tracks: Vec<Track>,
 }
 
 impl Plan {
@@ -61,6 +69,8 @@ impl Plan {
             march: Marching::default(),
             look,
             size: [1280, 720],
+            time: Timing::default(),
+            tracks: Vec::new(),
         }
     }
 
@@ -69,7 +79,7 @@ impl Plan {
     /// [`Scene`].
     pub fn keys(&mut self, section: &str) -> Option<Vec<Key<'_>>> {
         let most = match section {
-            "" => Redo::Nothing,
+            "" | "time" => Redo::Nothing,
             "look" => Redo::Color,
             _ => Redo::March,
         };
@@ -82,6 +92,7 @@ impl Plan {
             "image" => keys![
                 "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
             ],
+            "time" => self.time.keys(),
             _ => return None,
         };
         for key in &mut keys {
@@ -98,7 +109,14 @@ impl Plan {
         self.scene.check()?;
         self.camera.check()?;
         self.march.check()?;
-        self.look.check(self.scene.most_shadow_steps())
+        self.look.check(self.scene.most_shadow_steps())?;
+        let proves = !self.march.stepping().proven || self.scene.sharpest() == self.scene;
+        Fault::unless(
+            proves || !matches!(self.scene, Scene::Distance(_)),
+            "march.mode",
+            "there is a proof only for scene.estimate = \"tight\"; use that, or mode safe",
+        )?;
+        self.check_tracks()
     }
 
     /// The camera over the image.
@@ -222,6 +240,8 @@ pub struct Extras {
     pub time: bool,
     /// Keep a picture on the device that can be shown while it is made.
     pub shown: bool,
+    /// Read no layer back. The frame has figures only; the picture on the device is complete.
+    pub unread: bool,
     /// Start from what the last frame left on the device: if only the look differs, from its
     /// rays, and if only the exposure differs, from its colours. Programs stay when the number of a
     /// feature becomes zero.

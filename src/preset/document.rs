@@ -7,7 +7,11 @@ use crate::preset::error::PresetError;
 use crate::preset::nearest::{nearest, perhaps};
 
 /// The sections of a preset, in the order in which they are written.
-pub const SECTIONS: [&str; 5] = ["scene", "camera", "march", "look", "image"];
+pub const SECTIONS: [&str; 6] = ["scene", "camera", "march", "look", "image", "time"];
+/// What an entry of a track has as its section. Its key is that of the setting.
+pub(crate) const TRACK: &str = "track";
+/// What a track is made of.
+pub(crate) const TRACK_KEYS: [&str; 3] = ["key", "between", "keys"];
 
 /// Where an entry comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -187,6 +191,18 @@ pub(crate) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError>
         let (at, name): (usize, &str) = (key.span().start, key.get_ref());
         if name == "title" {
             entries.push(entry("", key, value)?);
+        } else if name == TRACK {
+            let DeValue::Array(tracks) = value.get_ref() else {
+                return Err(content(at, "a track is written [[track]]".into()));
+            };
+            for track in tracks {
+                let at = track.span().start;
+                let read = track_of(track.get_ref()).map_err(|why| content(at, why))?;
+                entries.push(Entry {
+                    said: Said::File(at),
+                    ..read
+                });
+            }
         } else if !SECTIONS.contains(&name) {
             return Err(content(at, unknown_section(name)));
         } else if let DeValue::Table(section) = value.get_ref() {
@@ -206,10 +222,41 @@ pub(crate) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError>
     Ok(entries)
 }
 
+/// The entry of a track: its key is that of the setting, and its value holds the rest.
+fn track_of(track: &DeValue<'_>) -> Result<Entry, String> {
+    let form =
+        "a track has key = \"section.key\", keys = [[time, value], ...], and perhaps between";
+    let DeValue::Table(table) = track else {
+        return Err(form.into());
+    };
+    let mut rest = toml::Table::new();
+    for (name, value) in table {
+        let name: &str = name.get_ref();
+        if !TRACK_KEYS.contains(&name) {
+            let near = perhaps(nearest(name, TRACK_KEYS));
+            return Err(format!(
+                "unknown key `{}` of a track{near}; {form}",
+                brief(name)
+            ));
+        }
+        rest.insert(name.into(), convert(value.get_ref())?);
+    }
+    let key = rest.remove("key");
+    let key = key.as_ref().and_then(Value::as_str).ok_or(form)?;
+    let shown = rest.get("keys").map(|keys| brief(&keys.to_string()));
+    Ok(Entry {
+        section: TRACK.into(),
+        key: key.into(),
+        shown: shown.ok_or(form)?,
+        value: Value::Table(rest),
+        said: Said::File(0),
+    })
+}
+
 /// Says that a section does not exist, and which one may have been meant.
 pub(crate) fn unknown_section(name: &str) -> String {
     let there = format!(
-        "the sections are {}, and title stands above them",
+        "the sections are {} and [[track]], and title stands above them",
         SECTIONS.join(", ")
     );
     let near = perhaps(nearest(name, SECTIONS.into_iter().chain(["title"])));

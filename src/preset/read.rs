@@ -4,15 +4,18 @@ use std::path::PathBuf;
 
 use toml::Value;
 
-use crate::base::key::{Fault, Key};
+use crate::base::key::{Fault, Key, number_in};
 use crate::plan::Plan;
+use crate::plan::film::numbers_of;
 use crate::preset::document::{
-    Entry, Override, SECTIONS, Said, brief, line_of, parse, unknown_section,
+    Entry, Override, SECTIONS, Said, TRACK, brief, line_of, parse, unknown_section,
 };
 use crate::preset::error::PresetError;
+use crate::preset::keys::keys;
 use crate::preset::nearest::{nearest, perhaps};
 use crate::preset::source::Source;
 use crate::scene::{Assets, Scene};
+use crate::time::track::{Between, Track, TrackKey};
 
 /// Words for `scene.kind`.
 fn kinds() -> Vec<&'static str> {
@@ -103,7 +106,8 @@ impl Source {
                     "formula" | "iterations" => formula,
                     _ => false,
                 };
-                entries.retain(|e| e.section != "scene" || keeps(e));
+                let is_of_scene = |e: &Entry| e.section == TRACK && e.key.starts_with("scene.");
+                entries.retain(|e| (e.section != "scene" || keeps(e)) && !is_of_scene(e));
             }
             entries.extend(sets);
             plan = self.plan(&entries)?;
@@ -118,7 +122,9 @@ impl Source {
 
     fn plan(&self, entries: &[Entry]) -> Result<Plan, PresetError> {
         for entry in entries {
-            if !entry.section.is_empty() && !SECTIONS.contains(&entry.section.as_str()) {
+            let is_track = entry.section == TRACK && matches!(entry.said, Said::File(_));
+            let known = entry.section.is_empty() || SECTIONS.contains(&entry.section.as_str());
+            if !known && !is_track {
                 return Err(self.at(entry, unknown_section(&entry.section)));
             }
         }
@@ -168,6 +174,17 @@ impl Source {
 
     /// Puts one entry into the plan.
     fn put(&self, plan: &mut Plan, entry: &Entry) -> Result<(), PresetError> {
+        if entry.section == TRACK {
+            let known = keys().into_iter().map(|(path, _)| path).collect::<Vec<_>>();
+            if plan.value(&entry.key).is_none() {
+                let near = perhaps(nearest(&entry.key, known.iter().map(String::as_str)));
+                let why = format!("the plan has no key `{}`{near}", brief(&entry.key));
+                return Err(self.at(entry, format!("track: {why}")));
+            }
+            let track = track(entry).map_err(|why| self.value(entry, &why))?;
+            plan.tracks.push(track);
+            return Ok(());
+        }
         let (kind, formula) = (plan.scene.kind(), plan.scene.formula());
         match (entry.path().as_str(), formula) {
             // The last of each has chosen the scene; the others are checked as well.
@@ -202,7 +219,7 @@ impl Source {
             None => format!(
                 "{} = {} (the default)",
                 fault.key,
-                value_of(plan, &fault.key)
+                plan.value(&fault.key).unwrap_or("".into())
             ),
         };
         let line = said.and_then(|e| self.line(e));
@@ -254,19 +271,46 @@ impl Source {
     }
 }
 
+/// The track of an entry.
+fn track(entry: &Entry) -> Result<Track, String> {
+    let words = || quoted(&Between::ALL.map(Between::name));
+    let between = |value: Option<&Value>| match value {
+        None => Ok(None),
+        Some(word) => match word.as_str().and_then(Between::named) {
+            None => Err(format!("between {word}: must be one of {}", words())),
+            found => Ok(found),
+        },
+    };
+    let form = "must be a list of [time, value] or [time, value, between], like [[0, 40], [4, 60, \"linear\"]]";
+    let key = |key: &Value| {
+        let parts = key.as_array().map(Vec::as_slice);
+        let (time, value, after) = match parts {
+            Some([time, value]) => (time, value, None),
+            Some([time, value, after]) => (time, value, Some(after)),
+            _ => return Err(form.to_string()),
+        };
+        Ok(TrackKey {
+            time: number_in(time, 0.0, 1e6).ok_or(form)?,
+            value: numbers_of(value).ok_or(form)?,
+            between: between(after)?,
+        })
+    };
+    let keys = entry.value.get("keys").and_then(Value::as_array);
+    Ok(Track {
+        of: entry.key.clone(),
+        between: between(entry.value.get("between"))?.unwrap_or_default(),
+        keys: keys
+            .ok_or(form)?
+            .iter()
+            .map(key)
+            .collect::<Result<_, _>>()?,
+    })
+}
+
 /// The last entry of `[scene]` with a key.
 fn last<'e>(entries: &'e [Entry], key: &str) -> Option<&'e Entry> {
     let mut entries = entries.iter();
     entries.rfind(|e| e.section == "scene" && e.key == key)
-}
-
-/// What a plan has at `section.key`.
-fn value_of(plan: &Plan, path: &str) -> Value {
-    let (section, name) = path.split_once('.').unwrap_or(("", path));
-    let mut plan = plan.clone();
-    let mut keys = plan.keys(section).unwrap_or_default().into_iter();
-    let key = keys.find(|k| k.name == name);
-    key.map_or("".into(), |k| k.slot.get())
 }
 
 /// The overrides in the section of a fault, or all overrides if it has none.

@@ -10,6 +10,7 @@
 
 mod bad_input;
 mod bench;
+mod films;
 #[path = "../common/folder.rs"]
 #[allow(dead_code, reason = "other files use the rest")]
 mod folder;

@@ -77,6 +77,22 @@ title = 3|[scene]|kind = "slab" => p.toml:1: title = 3: must be a line of text
 [scene]|kind = "slab"|[march]|mode = "calibrated"|coarsest = 8|fudge = [1, 1, 1, 1] => p.toml:6: march.fudge = [1, 1, 1, 1]: 4 factors for 3 cone passes; give at most 3
 [scene]|kind = "slab"|formula = "mandelbox" => p.toml:3: scene.formula = "mandelbox": a slab has no formula
 [scene]|kind = "distance"|formula = "mandelbox"|scale = 0.5 => p.toml:4: scene.scale = 0.5:
+[scene]|kind = "distance"|formula = "mandelbox"|estimate = "classic"|[march]|mode = "proven" => p.toml:6: march.mode = "proven": there is a proof only for scene.estimate = "tight"
+track = 3|[scene]|kind = "slab" => p.toml:1: a track is written [[track]]
+[scene]|kind = "slab"|[[track]]|keys = [[0, 1]] => p.toml:3: a track has key = "section.key", keys = [[time, value], ...]
+[scene]|kind = "slab"|[[track]]|key = "camera.fov" => p.toml:3: a track has key = "section.key", keys = [[time, value], ...]
+[scene]|kind = "slab"|[[track]]|key = "camera.fov"|betwen = "step" => p.toml:3: unknown key `betwen` of a track, perhaps `between`
+[scene]|kind = "slab"|[[track]]|key = "camera.fow"|keys = [[0, 40]] => p.toml:3: track: the plan has no key `camera.fow`, perhaps `camera.fov`
+[scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [] => p.toml:3: track.camera.fov = []: a track needs one value at least
+[scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0]] => p.toml:3: track.camera.fov = [[0]]: must be a list of [time, value]
+[scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 40, "bent"]] => p.toml:3: track.camera.fov = [[0, 40, "bent"]]: between "bent": must be one of "step", "linear", "smooth", "ramp"
+[scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[2, 40], [1, 50]] => p.toml:3: track.camera.fov = [[2, 40], [1, 50]]: the times must ascend
+[scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 40], [11, 50]] => p.toml:3: track.camera.fov = [[0, 40], [11, 50]]: the time 11 is not within 0 and time.length, 10
+[scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 400]] => p.toml:3: track.camera.fov = [[0, 400]]: [400.0]: must be a number from 1 to 170
+[scene]|kind = "slab"|[[track]]|key = "march.mode"|keys = [[0, 1]] => p.toml:3: track.march.mode = [[0, 1]]: [1.0]: this key is no number
+[scene]|kind = "slab"|[[track]]|key = "time.fps"|keys = [[0, 25]] => p.toml:3: track.time.fps = [[0, 25]]: time and image stay the same
+[scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 40]]|[[track]]|key = "camera.fov"|keys = [[0, 40]] => p.toml:6: track.camera.fov = [[0, 40]]: a second track of this key
+[scene]|kind = "slab"|[camera]|target = [0, 0, 0]|[[track]]|key = "camera.eye"|keys = [[0, [0, 0, 0]]] => p.toml:5: track.camera.eye = [[0, [0, 0, 0]]]: at beat 0: the eye and the target are the same point
 "#;
 
 #[test]

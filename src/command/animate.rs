@@ -1,0 +1,317 @@
+//! `conemarch animate PRESET -o out-%05d.png`
+
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, anyhow};
+use clap::{Args, ValueHint};
+
+use crate::command::arguments::{bits, size};
+use crate::command::executor::{Executor, device};
+use crate::command::failure::usage;
+use crate::command::output::Format;
+use crate::command::print::say;
+use crate::command::progress::Reporter;
+use crate::command::render::{loaded, moment};
+use crate::command::sink::{Parcel, Sink, ending, folder_of};
+use crate::command::{completions, interrupt, memory};
+use crate::gpu::adapters::Choice;
+use crate::pass::progress::Progress;
+use crate::picture::{BitDepth, Layer, Shades, write_png};
+use crate::plan::{Extras, Plan};
+use crate::preset;
+use crate::scene::Assets;
+
+/// What `animate` takes.
+#[derive(Args, Debug)]
+pub struct Animate {
+    /// A built-in preset, a .toml file, or a .png that this program wrote, with [[track]]s
+    #[arg(value_name = "PRESET", add = completions::presets())]
+    preset: PathBuf,
+
+    /// Where to write: a .png whose name has %05d, or another width, for the number of the frame
+    ///
+    /// A frame that is there already, with the same settings, is left as it is. So the same
+    /// command goes on after an interrupt.
+    #[arg(short, long, value_name = "PATTERN", value_hint = ValueHint::FilePath)]
+    output: PathBuf,
+
+    /// The first and the last frame, like 0..99 [default: all of the film]
+    #[arg(long, value_name = "A..B", value_parser = range)]
+    frames: Option<[u32; 2]>,
+
+    /// Render only one part in N of the frames, from 1/N to N/N, for jobs on many machines
+    #[arg(long, value_name = "I/N", value_parser = shard, conflicts_with = "video")]
+    shard: Option<[u32; 2]>,
+
+    /// Join the frames to a video too; this needs ffmpeg
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    video: Option<PathBuf>,
+
+    /// Width and height in pixels, in place of the preset's
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+
+    /// Set one value of the preset; may be given again
+    #[arg(long, value_name = "SECTION.KEY=VALUE", allow_hyphen_values = true)]
+    #[arg(add = completions::settings())]
+    set: Vec<String>,
+
+    /// Who renders: auto, gpu, software, cpu, or an index or part of a name from `devices`
+    #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
+    device: Choice,
+
+    /// Bits of each colour; 16 leave no steps in smooth shades [default: 8]
+    #[arg(long, value_name = "BITS", value_parser = bits())]
+    depth: Option<BitDepth>,
+}
+
+/// Reads `A..B`.
+fn range(text: &str) -> Result<[u32; 2], String> {
+    let pair = text.split_once("..");
+    let read = pair.and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
+    read.filter(|[a, b]| a <= b)
+        .ok_or_else(|| "must be the first and the last frame, like 0..99".into())
+}
+
+/// Reads `I/N`.
+fn shard(text: &str) -> Result<[u32; 2], String> {
+    let pair = text.split_once('/');
+    let read = pair.and_then(|(i, n)| Some([i.parse().ok()?, n.parse().ok()?]));
+    read.filter(|[i, n]| (1..=*n).contains(i))
+        .ok_or_else(|| "must be a part of so many, from 1/4 to 4/4 for example".into())
+}
+
+/// The names of frames.
+#[derive(Clone, Debug, PartialEq)]
+struct Pattern {
+    before: String,
+    digits: usize,
+    after: String,
+}
+
+impl Pattern {
+    /// Reads a pattern with one `%d` or `%05d`.
+    fn read(text: &str) -> Result<Self, String> {
+        let form =
+            "must have %05d, or another width, for the number of the frame, like out-%05d.png";
+        let (before, rest) = text.split_once('%').ok_or(form)?;
+        let (digits, after) = rest.split_once('d').ok_or(form)?;
+        let zero = digits.is_empty() || digits.starts_with('0');
+        let width = digits.parse::<usize>().ok().filter(|width| *width <= 9);
+        if !zero || after.contains('%') || (width.is_none() && !digits.is_empty()) {
+            return Err(form.into());
+        }
+        Ok(Self {
+            before: before.into(),
+            digits: width.unwrap_or(0),
+            after: after.into(),
+        })
+    }
+
+    /// The name of a frame.
+    fn name(&self, frame: u32) -> PathBuf {
+        let width = self.digits;
+        format!("{}{frame:0width$}{}", self.before, self.after).into()
+    }
+}
+
+/// Renders the frames of a film.
+///
+/// # Errors
+/// A wrong preset or option, a device that fails, an unwritable file, no ffmpeg, an interrupt.
+/// Frames that are complete stay.
+pub fn run(args: &Animate) -> Result<()> {
+    interrupt::listen();
+    let (preset, assets) = loaded(&args.preset, &args.set)?;
+    let mut film = preset.plan;
+    film.size = args.size.unwrap_or(film.size);
+    if film.tracks.is_empty() {
+        return Err(usage(format!(
+            "`{}` has no [[track]], so that nothing moves; docs/presets.md tells how to write one, and `render` makes a still",
+            args.preset.display()
+        )));
+    }
+    let text = args.output.to_str().unwrap_or_default();
+    let pattern = Pattern::read(text).map_err(|why| usage(format!("-o `{text}` {why}")))?;
+    if ending(&args.output) != "png" {
+        return Err(usage(format!(
+            "-o `{text}` must name .png files; only these carry their preset, so that frames which are there can be told from others"
+        )));
+    }
+    let all = film.time.frames();
+    let [first, last] = args.frames.unwrap_or([0, all - 1]);
+    if last >= all {
+        return Err(usage(format!(
+            "--frames {first}..{last}: the film has the frames 0..{}",
+            all - 1
+        )));
+    }
+    if let Some(video) = &args.video {
+        find_ffmpeg()?;
+        Sink::prepare(video)?;
+    }
+    let [part, parts] = args.shard.unwrap_or([1, 1]);
+    let plan = |frame: u32| {
+        moment(&film, film.time.beat_of(frame)).with_context(|| format!("frame {frame}"))
+    };
+    // A film that fails does so before its first frame.
+    let frames: Vec<u32> = (first..=last).filter(|f| f % parts == part - 1).collect();
+    let plans: Vec<Plan> = frames.iter().map(|f| plan(*f)).collect::<Result<_>>()?;
+    let missing: Vec<(u32, Plan)> = frames
+        .iter()
+        .copied()
+        .zip(plans)
+        .filter(|(frame, plan)| !is_there(&pattern.name(*frame), plan, args.depth))
+        .collect();
+    render(args, &pattern, &missing, &assets)?;
+    let kept = frames.len() - missing.len();
+    say(&match kept {
+        0 => format!("{} frames", missing.len()),
+        _ => format!("{} frames; {kept} were there already", missing.len()),
+    });
+    match &args.video {
+        Some(video) => join(&film, &pattern, [first, last], video),
+        None => Ok(()),
+    }
+}
+
+/// Renders and writes the missing frames.
+fn render(
+    args: &Animate,
+    pattern: &Pattern,
+    missing: &[(u32, Plan)],
+    assets: &Assets,
+) -> Result<()> {
+    let Some((first, plan)) = missing.first() else {
+        return Ok(());
+    };
+    let extras = Extras::default();
+    let per_pixel = Format::Png.bytes_per_pixel(Layer::Color, extras);
+    memory::check(&plan.resolved(extras), per_pixel, assets)?;
+    // A folder that cannot be written is found before the first frame.
+    Sink::prepare(&pattern.name(*first))?;
+    let (mut executor, who) = Executor::open(&args.device)?;
+    say(&format!("rendering on {who}"));
+    let mut progress = Reporter::start("rendering");
+    for (done, (frame, plan)) in missing.iter().enumerate() {
+        let mut watch = |now: &Progress| {
+            let share = (done as f64 + now.done) / missing.len() as f64;
+            progress.report(share, &format!("frame {frame}, {}", now.pass))
+        };
+        let rendered = executor.render(plan, assets, extras, &mut watch);
+        let rendered = rendered.with_context(|| {
+            format!(
+                "{done} of {} frames are written; the same command goes on",
+                missing.len()
+            )
+        })?;
+        let mut content = Vec::new();
+        let picture = Shades::new(Layer::Color, &rendered, plan);
+        let depth = args.depth.unwrap_or_default();
+        let to = &mut Cursor::new(&mut content);
+        write_png(to, &picture, depth, &plan.title, &preset::write(plan))?;
+        let mut parcel = Parcel::default();
+        parcel.put(Sink::prepare(&pattern.name(*frame))?, &content)?;
+        parcel.hand_over()?;
+    }
+    Ok(())
+}
+
+/// Whether a frame was rendered already: a complete PNG with this plan and these bits.
+fn is_there(path: &Path, plan: &Plan, depth: Option<BitDepth>) -> bool {
+    let Ok(bytes) = std::fs::read(path) else {
+        return false;
+    };
+    // The bits are in the header, behind the signature and width and height. An empty chunk ends
+    // the file.
+    let bits = match depth.unwrap_or_default() {
+        BitDepth::Eight => 8,
+        BitDepth::Sixteen => 16,
+    };
+    bytes.get(24) == Some(&bits)
+        && bytes.ends_with(b"IEND\xae\x42\x60\x82")
+        && preset::find(path).is_ok_and(|found| found.text == preset::write(plan))
+}
+
+/// Looks for ffmpeg before anything is rendered.
+fn find_ffmpeg() -> Result<()> {
+    let mut asked = Command::new("ffmpeg");
+    asked
+        .arg("-version")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    match asked.status() {
+        Ok(status) if status.success() => Ok(()),
+        _ => Err(anyhow!(
+            "--video needs ffmpeg, and it does not run here; install it, or leave --video out and join the frames elsewhere"
+        )),
+    }
+}
+
+/// Joins the frames to a video.
+fn join(film: &Plan, pattern: &Pattern, [first, last]: [u32; 2], video: &Path) -> Result<()> {
+    let _progress = Reporter::start("joining the frames");
+    let Pattern {
+        before,
+        digits,
+        after,
+    } = pattern;
+    // ffmpeg knows the format by the ending.
+    let named = tempfile::Builder::new()
+        .prefix(".")
+        .suffix(&format!(".{}", ending(video)))
+        .tempfile_in(folder_of(video))?;
+    let made = named.into_temp_path();
+    let mut ffmpeg = Command::new("ffmpeg");
+    ffmpeg
+        .args(["-loglevel", "error", "-y", "-framerate"])
+        .arg(film.time.fps.to_string())
+        .args(["-start_number", &first.to_string()])
+        .args(["-i", &format!("{before}%0{digits}d{after}")])
+        .args(["-frames:v", &(last - first + 1).to_string()])
+        // Players want even sides and this format of pixels.
+        .args([
+            "-vf",
+            "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+            "-pix_fmt",
+            "yuv420p",
+        ])
+        .arg(&made)
+        .stdin(Stdio::null());
+    let done = ffmpeg.output().context("ffmpeg does not start")?;
+    if !done.status.success() {
+        let said = String::from_utf8_lossy(&done.stderr);
+        return Err(anyhow!(
+            "ffmpeg did not write `{}`: {said}",
+            video.display()
+        ));
+    }
+    made.persist(video)?;
+    say(&video.display().to_string());
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pattern_numbers_its_frames() {
+        let name = |text: &str| Pattern::read(text).map(|p| p.name(42));
+        assert_eq!(name("a/out-%05d.png"), Ok("a/out-00042.png".into()));
+        assert_eq!(name("%d.png"), Ok("42.png".into()));
+        assert_eq!(name("%01d.png"), Ok("42.png".into()));
+        for wrong in [
+            "out.png",
+            "%5d.png",
+            "%x.png",
+            "%05d-%d.png",
+            "%099d.png",
+            "%-3d.png",
+        ] {
+            assert!(name(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Films: tracks in presets, one moment of a film, and its frames.
+
+use std::fs;
+
+use conemarch::plan::Plan;
+use conemarch::preset::{read, write};
+use glam::DVec3;
+
+use crate::folder::{Folder, output, said};
+
+/// A film of 8 frames: a camera that circles, and a light that grows.
+const FILM: &str = r#"
+[scene]
+kind = "slab"
+[camera]
+eye = [3, 0, 1]
+[image]
+size = [24, 16]
+[time]
+length = 4
+bpm = 120
+fps = 4
+[[track]]
+key = "camera.eye"
+keys = [[0, [3, 0, 1]], [2, [0, 3, 1]], [4, [-3, 0, 1]]]
+[[track]]
+key = "look.key"
+between = "linear"
+keys = [[0, 0], [4, 2, "step"]]
+[[track]]
+key = "look.sky_high"
+keys = [[0, [0, 0, 0]], [1, [1, 1, 1], "ramp"], [3, [0, 1, 0]]]
+"#;
+
+fn film() -> Plan {
+    read(FILM, "film").unwrap()
+}
+
+#[test]
+fn a_film_reads_back_as_it_was_written() {
+    let plan = film();
+    assert_eq!(plan.tracks.len(), 3);
+    assert_eq!(read(&write(&plan), "again").unwrap(), plan);
+    assert_eq!(plan.time.frames(), 8);
+}
+
+#[test]
+fn a_moment_is_a_still_with_the_values_of_its_time() {
+    let plan = film();
+    let at = |beat: f64| plan.at(beat).unwrap();
+    assert_eq!(at(2.0).look.key, 1.0);
+    assert_eq!(at(4.0).look.key, 2.0);
+    assert_eq!(at(0.5).look.sky_high, DVec3::splat(0.5));
+    assert_eq!(at(2.0).look.sky_high, DVec3::new(0.75, 1.0, 0.75));
+    assert_eq!(at(9.0), at(4.0));
+    let still = at(1.0);
+    assert!(still.tracks.is_empty());
+    assert_eq!(read(&write(&still), "still").unwrap(), still);
+    // The keys of the camera lie on a circle about the target, and so do the moments between.
+    for beat in [0.0, 0.7, 2.0, 3.1, 4.0] {
+        let camera = at(beat).camera;
+        assert!((camera.eye.distance(camera.target) - 10f64.sqrt()).abs() < 1e-9);
+        assert!((camera.eye.z - 1.0).abs() < 1e-9, "{beat} {camera:?}");
+        assert!(camera.target.length() < 1e-9 && camera.up == DVec3::Z);
+    }
+    assert!(at(0.7).camera.eye != at(0.8).camera.eye);
+}
+
+#[test]
+fn a_film_that_loops_goes_on_around_its_end() {
+    let closed = "[[0, [3, 0, 1]], [1, [0, 3, 1]], [2, [-3, 0, 2]], [4, [3, 0, 1]]]";
+    let open = "[[0, [3, 0, 1]], [2, [0, 3, 1]], [4, [-3, 0, 1]]]";
+    let text = FILM
+        .replace("bpm = 120", "loop = true")
+        .replace(open, closed);
+    let plan = read(&text, "loop").unwrap();
+    let eye = |beat: f64| plan.at(beat).unwrap().camera.eye;
+    assert!(eye(4.5).distance(eye(0.5)) < 1e-12);
+    let step = 1e-5;
+    let (before, after) = (eye(0.0) - eye(4.0 - step), eye(step) - eye(0.0));
+    assert!(before.distance(after) < 1e-3 * before.length());
+    let still = read(&text.replace("loop = true", ""), "open").unwrap();
+    let eye = |beat: f64| still.at(beat).unwrap().camera.eye;
+    let (before, after) = (eye(4.0) - eye(4.0 - step), eye(step) - eye(0.0));
+    assert!(before.distance(after) > 0.1 * before.length());
+}
+
+#[test]
+fn values_between_two_keys_may_not_fit() {
+    let text = "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n[[track]]\nkey = \"scene.scale\"\nkeys = [[0, 2], [10, -2]]\n";
+    let plan = read(text, "film").unwrap();
+    assert!(plan.at(1.0).is_ok());
+    let fault = plan.at(5.0).unwrap_err();
+    assert_eq!(fault.key, "scene.scale");
+    let folder = Folder::new();
+    folder.write("film.toml", text);
+    let begins = "frame 98: at beat 3.2666666666666666: scene.scale: the size";
+    folder.fails("animate film.toml -o f-%03d.png --device cpu", 1, begins);
+}
+
+#[test]
+fn frames_are_those_of_their_moments_and_are_rendered_once() {
+    let folder = Folder::new();
+    folder.write("film.toml", FILM);
+    let line = "animate film.toml -o f-%03d.png --device cpu";
+    let one = said(&folder.done(&format!("{line} --shard 2/3")));
+    assert!(one.ends_with("3 frames\n"), "{one}");
+    assert_eq!(
+        folder.files(),
+        ["f-001.png", "f-004.png", "f-007.png", "film.toml"]
+    );
+    let time = |name: &str| {
+        fs::metadata(folder.0.join(name))
+            .unwrap()
+            .modified()
+            .unwrap()
+    };
+    let first = time("f-004.png");
+    // A damaged frame, and one with other settings.
+    folder.write("f-001.png", &folder.bytes("f-001.png")[..200]);
+    fs::copy(folder.0.join("f-004.png"), folder.0.join("f-000.png")).unwrap();
+    let rest = said(&folder.done(line));
+    assert!(rest.ends_with("6 frames; 2 were there already\n"), "{rest}");
+    assert_eq!(time("f-004.png"), first);
+    for (frame, beat) in [(0, "0"), (1, "0.5"), (5, "2.5"), (7, "3.5")] {
+        folder.done(&format!(
+            "render film.toml --at {beat} -o still.png --device cpu"
+        ));
+        let frame = folder.bytes(&format!("f-{frame:03}.png"));
+        assert!(frame == folder.bytes("still.png"), "{beat}");
+    }
+    // Other bits are another picture.
+    let deep = said(&folder.done(&format!("{line} --frames 2..3 --depth 16")));
+    assert!(deep.ends_with("2 frames\n"), "{deep}");
+}
+
+#[test]
+fn wrong_films_are_refused_before_the_first_frame() {
+    let folder = Folder::new();
+    folder.write("film.toml", FILM);
+    for (line, says) in [
+        ("film.toml -o f.png", "%05d"),
+        ("film.toml -o f-%5d.png", "%05d"),
+        ("film.toml -o f-%03d.jpg", ".png files"),
+        ("film.toml -o f-%03d.png --frames 3..8", "the frames 0..7"),
+        (
+            "film.toml -o f-%03d.png --frames 3..2",
+            "the first and the last frame",
+        ),
+        ("film.toml -o f-%03d.png --shard 4/3", "from 1/4 to 4/4"),
+        ("mandelbox -o f-%03d.png", "no [[track]]"),
+    ] {
+        folder.fails(&format!("animate {line} --device cpu"), 2, says);
+    }
+    folder.fails(
+        "render film.toml --device cpu --at 4.1",
+        2,
+        "from 0 to 4 (time.length)",
+    );
+    folder.fails(
+        "animate film.toml -o none/f-%03d.png --device cpu",
+        1,
+        "no folder",
+    );
+    let line = "animate film.toml -o f-%03d.png --video f.mp4 --device cpu";
+    let without = output(folder.command(line).env("PATH", ""));
+    assert_eq!(without.status.code(), Some(1));
+    assert!(
+        said(&without).starts_with("error: --video needs ffmpeg"),
+        "{}",
+        said(&without)
+    );
+    assert_eq!(folder.files(), ["film.toml"]);
+}
