@@ -80,13 +80,16 @@ pub fn footprint(beam: &Beam, t: f64) -> f64 {
 }
 
 /// A camera over an image of a size.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Position.
     pub eye: DVec3,
-    right: DVec3,
-    up: DVec3,
-    forward: DVec3,
+    /// Unit vector to the right of the image.
+    pub right: DVec3,
+    /// Unit vector to the top of the image.
+    pub up: DVec3,
+    /// Unit vector into the image.
+    pub forward: DVec3,
     /// A pixel's width in the image plane at distance 1.
     pub pixel: f64,
     /// Width and height of the full image in pixels.

@@ -42,6 +42,7 @@ impl Choice {
 
 /// All adapters of this machine, in the order of their indices.
 pub struct Adapters {
+    instance: Instance,
     list: Vec<Adapter>,
 }
 
@@ -56,7 +57,12 @@ impl Adapters {
             .difference(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
         let instance = Instance::new(descriptor);
         let list = pollster::block_on(instance.enumerate_adapters(Backends::all()));
-        Self { list }
+        Self { instance, list }
+    }
+
+    /// What the adapters belong to, for the surface of a window.
+    pub fn instance(&self) -> &Instance {
+        &self.instance
     }
 
     /// Each adapter.

@@ -17,7 +17,7 @@ pub struct Buffer<T> {
 }
 
 /// A buffer of so many bytes, all zero.
-pub(super) fn create(device: &Device, name: &str, size: u64, usage: BufferUsages) -> wgpu::Buffer {
+pub fn create(device: &Device, name: &str, size: u64, usage: BufferUsages) -> wgpu::Buffer {
     device.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
         size,

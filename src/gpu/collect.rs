@@ -42,6 +42,9 @@ impl Range {
 impl Parts {
     /// What a frame with these extras holds of a block.
     pub fn new(layout: &Layout, extras: Extras) -> Self {
+        if extras.unread {
+            return Self::default();
+        }
         let area = layout.count(1);
         let (tally, front) = (layout.tally(1), layout.front(1));
         Self {
@@ -93,6 +96,9 @@ impl Parts {
         passes: &[Pass],
         frame: &mut Frame,
     ) -> Result<(), DeviceError> {
+        if self.bytes() == 0 {
+            return Ok(());
+        }
         let mut at = 0;
         let mut next = |r: Range| {
             let start = at;

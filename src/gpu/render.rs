@@ -70,7 +70,11 @@ pub struct Renderer {
 impl Renderer {
     /// A renderer on an open device.
     pub fn new(device: Device) -> Self {
-        let device = Arc::new(device);
+        Self::sharing(Arc::new(device))
+    }
+
+    /// A renderer on an open device that a window draws with too.
+    pub fn sharing(device: Arc<Device>) -> Self {
         Self {
             cutting: Cutting::default(),
             sources: None,

@@ -51,7 +51,7 @@ pub const MOST_ROUNDS: u32 = 5;
 
 /// The plan of a plan's truth. Settings that only say how work is spent get fixed values, so
 /// that all modes share one truth.
-pub(super) fn asked(plan: &Plan) -> Plan {
+pub fn asked(plan: &Plan) -> Plan {
     let mut asked = plan.clone();
     if let Some(exact) = plan.scene.exact() {
         asked.scene = exact;
@@ -123,14 +123,18 @@ pub struct Cache {
     program: [u8; 32],
 }
 
+/// The folder for what may be lost, which may not exist; `None` if the user has none.
+pub fn cache_folder() -> Option<PathBuf> {
+    let set = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
+    let named = set("XDG_CACHE_HOME").or_else(|| set("LOCALAPPDATA"));
+    let hidden = || Some(Path::new(&set("HOME")?).join(".cache"));
+    Some(Path::new(&named.map(PathBuf::from).or_else(hidden)?).join("conemarch"))
+}
+
 impl Cache {
     /// The user's cache; `None` if there is none, or if this program cannot read itself.
     pub fn user() -> Option<Self> {
-        let set = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
-        let named = set("XDG_CACHE_HOME").or_else(|| set("LOCALAPPDATA"));
-        let hidden = || Some(Path::new(&set("HOME")?).join(".cache"));
-        let base = named.map(PathBuf::from).or_else(hidden)?;
-        Self::at(base.join("conemarch"))
+        Self::at(cache_folder()?)
     }
 
     /// A cache in a folder, which is made when needed; `None` if this program cannot read itself.

@@ -104,7 +104,10 @@ pub struct Frame {
 impl Frame {
     /// An empty frame with layers of the right sizes.
     pub fn blank(plan: &Plan, extras: Extras) -> Self {
-        let area = plan.size[0] as usize * plan.size[1] as usize;
+        let area = match extras.unread {
+            true => 0,
+            false => plan.size[0] as usize * plan.size[1] as usize,
+        };
         let layer = |kept: bool, count: usize| if kept { count } else { 0 };
         let mut frame = Self {
             size: plan.size,
@@ -119,7 +122,7 @@ impl Frame {
             frame.passes.push(PassFigures::new(pass, plan.size));
             if let Pass::March(level) = pass {
                 let cells = level.cells(plan.size);
-                let count = cells[0] as usize * cells[1] as usize;
+                let count = area.min(cells[0] as usize * cells[1] as usize);
                 frame.levels.push(LevelLayer {
                     divisor: level.divisor,
                     cells,

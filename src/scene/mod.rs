@@ -120,6 +120,19 @@ impl Scene {
         }
     }
 
+    /// The same kind of scene with its defaults.
+    pub fn usual(&self) -> Self {
+        let same = |scene: &Self| scene.kind() == self.kind() && scene.formula() == self.formula();
+        let mut usual = Self::all()
+            .into_iter()
+            .find(same)
+            .unwrap_or_else(|| self.clone());
+        if let (Self::Heightfield(usual), Some(own)) = (&mut usual, self.heightfield()) {
+            usual.source.folder = own.source.folder.clone();
+        }
+        usual
+    }
+
     /// The same scene with an exact tracer, for the truth; `None` if it has no other.
     pub fn exact(&self) -> Option<Self> {
         Some(self.heightfield()?.exact().into())

@@ -35,6 +35,7 @@ pub const EVERYTHING: Extras = Extras {
     depth_only: false,
     time: false,
     shown: false,
+    unread: false,
     reuse: false,
 };
 /// Fronts and states of every level, and no colour.

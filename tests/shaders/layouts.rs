@@ -7,7 +7,9 @@ use std::sync::LazyLock;
 use conemarch::pass::look::LookUniform;
 use conemarch::pass::turn::Turn;
 use conemarch::plan::look::MOST_STOPS;
+use conemarch::preview::draw;
 use glam::{IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
+use naga::front::wgsl::parse_str;
 use wgpu::naga::{StructMember, TypeInner};
 
 use super::common::files::files_below;
@@ -83,7 +85,9 @@ static IN_RUST: LazyLock<BTreeMap<String, Layout>> = LazyLock::new(|| {
 /// different scenes (`Walk`, say).
 fn in_wgsl() -> BTreeMap<String, Vec<Layout>> {
     let mut all = BTreeMap::<String, Vec<Layout>>::new();
-    for module in ALL.values().map(|made| &made.module) {
+    let window = parse_str(&draw::module().source).unwrap();
+    let programs = ALL.values().map(|made| &made.module);
+    for module in programs.chain([&window]) {
         for (_, kind) in module.types.iter() {
             let (Some(name), TypeInner::Struct { members, span }) = (&kind.name, &kind.inner)
             else {

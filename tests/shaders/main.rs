@@ -27,6 +27,7 @@ use common::programs::{in_f64, map_programs};
 use conemarch::base::shader::{Module, Program, ShaderError};
 use conemarch::heightfield::texture::Texture;
 use conemarch::plan::{Extras, Pass};
+use conemarch::preview::draw;
 use programs::ALL;
 use rayon::prelude::*;
 use wgpu::naga::AddressSpace;
@@ -171,8 +172,8 @@ fn every_line_of_a_joined_text_is_located_in_its_file() {
 
 #[test]
 fn every_file_of_shaders_is_joined_by_some_program() {
-    // A texture is in a program only where a preset names a picture.
-    let mut joined = BTreeSet::from([Texture::module().path]);
+    // A texture is in a program only where a preset names a picture, and the window draws alone.
+    let mut joined = BTreeSet::from([Texture::module().path, draw::module().path]);
     for made in ALL.values() {
         let wide = in_f64(&made.program);
         joined.extend(

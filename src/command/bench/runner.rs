@@ -19,6 +19,7 @@ pub const COUNTED: Extras = Extras {
     normals: false,
     time: false,
     shown: false,
+    unread: false,
     reuse: false,
 };
 /// Asks the device for its times; no colours.

@@ -88,7 +88,9 @@ impl Run {
             let parts = Parts::new(&self.job.made.blocks[block], self.job.extras);
             let kept = self.reusable.readings.pop();
             let staging = kept.filter(|s| s.holds(parts.bytes()));
-            let staging = staging.unwrap_or_else(|| Staging::new(device, parts.bytes()));
+            // A buffer cannot be empty.
+            let bytes = parts.bytes().max(16);
+            let staging = staging.unwrap_or_else(|| Staging::new(device, bytes));
             staging.copy(&mut encoder, &parts.ranges(target));
             (block, staging)
         });

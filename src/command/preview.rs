@@ -1,0 +1,79 @@
+//! `conemarch preview [PRESET]`
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::Result;
+use clap::{Args, ValueHint};
+
+use crate::command::arguments::size;
+use crate::command::completions;
+use crate::command::executor::device;
+use crate::command::failure::usage;
+use crate::command::render::loaded;
+use crate::command::sink::{Parcel, Sink};
+use crate::gpu::adapters::Choice;
+use crate::measure::truth::cache_folder;
+use crate::preset;
+use crate::preview::window::{self, Options};
+
+/// What `preview` takes.
+#[derive(Args, Debug)]
+pub struct Preview {
+    /// A built-in preset, a .toml file, or a .png that this program wrote
+    #[arg(value_name = "PRESET", default_value = "mandelbox", add = completions::presets())]
+    preset: PathBuf,
+
+    /// Width and height of the window in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    size: [u32; 2],
+
+    /// Set one value of the preset; may be given again
+    #[arg(long, value_name = "SECTION.KEY=VALUE", allow_hyphen_values = true)]
+    #[arg(add = completions::settings())]
+    set: Vec<String>,
+
+    /// A folder like wgsl/ of the sources; its shader files are used, and read again when they
+    /// change
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    wgsl: Option<PathBuf>,
+
+    /// Write at the end how quickly the window answered, as JSON
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    stats: Option<PathBuf>,
+
+    /// Who renders: auto, gpu, software, or an index or part of a name from `devices`
+    #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
+    device: Choice,
+}
+
+/// Opens a window on a preset.
+///
+/// # Errors
+/// A wrong preset or option, no display, or no adapter that can draw to the window.
+pub fn run(args: &Preview) -> Result<()> {
+    let started = Instant::now();
+    let (preset, _) = loaded(&args.preset, &args.set)?;
+    if let Some(folder) = args.wgsl.as_ref().filter(|folder| !folder.is_dir()) {
+        let folder = folder.display();
+        return Err(usage(format!(
+            "--wgsl `{folder}` is no folder; copy wgsl/ of the sources"
+        )));
+    }
+    let stats = args.stats.as_deref().map(Sink::prepare).transpose()?;
+    let figures = window::run(Options {
+        preset,
+        path: preset::file(&args.preset),
+        device: args.device.clone(),
+        size: args.size,
+        wgsl: args.wgsl.clone(),
+        kept: cache_folder(),
+        started,
+    })?;
+    if let Some(stats) = stats {
+        let mut parcel = Parcel::default();
+        parcel.put_json(stats, &figures)?;
+        parcel.hand_over()?;
+    }
+    Ok(())
+}

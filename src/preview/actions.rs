@@ -1,0 +1,411 @@
+//! What events do to the open window.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use toml::Value;
+use winit::dpi::PhysicalPosition;
+use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
+use winit::keyboard::{KeyCode, PhysicalKey};
+use winit::window::Fullscreen;
+
+use crate::base::outcome::State;
+use crate::base::view::footprint;
+use crate::measure::truth;
+use crate::picture::Layer;
+use crate::plan::Plan;
+use crate::preset::{self, SECTIONS};
+use crate::preview::document::unused;
+use crate::preview::error::PreviewError;
+use crate::preview::flight::{focus, look, orbit};
+use crate::preview::ground;
+use crate::preview::input::{Action, Drag, action};
+use crate::preview::live::Live;
+use crate::preview::play::{overwrite, set_view};
+use crate::preview::still::Still;
+use crate::preview::views::Shot;
+
+/// Two clicks within this time are a double click.
+const DOUBLE_CLICK: Duration = Duration::from_millis(350);
+/// Radians of an orbit for a pixel.
+const ORBIT: f64 = 0.006;
+/// The factor on speed or field of view for a line of the wheel.
+const WHEEL: f64 = 1.15;
+/// Pixels of a touch pad for a line of a wheel.
+const LINE: f64 = 40.0;
+
+impl Live {
+    /// Takes in an event.
+    ///
+    /// # Errors
+    /// The surface is lost for good.
+    pub fn event(&mut self, event: &WindowEvent) -> Result<(), PreviewError> {
+        let mut taken = false;
+        // A redraw is no input: the answer would ask for the next one.
+        if !matches!(event, WindowEvent::RedrawRequested) {
+            let response = self.gui.on_window_event(&self.stage.window, event);
+            taken = response.consumed;
+            if response.repaint && self.concerns_panel(event) {
+                self.paint_soon(Duration::ZERO);
+            }
+        }
+        match event {
+            WindowEvent::CloseRequested => self.closed = true,
+            WindowEvent::Resized(size) => {
+                self.hidden = size.width == 0 || size.height == 0;
+                if !self.hidden {
+                    self.stage.screen.resize([size.width, size.height]);
+                    self.paint_soon(Duration::ZERO);
+                }
+            }
+            WindowEvent::Occluded(hidden) => self.hidden = *hidden,
+            WindowEvent::ModifiersChanged(modifiers) => self.modifiers = *modifiers,
+            WindowEvent::Focused(false) => self.held.clear(),
+            WindowEvent::KeyboardInput { event, .. } => {
+                if let PhysicalKey::Code(code) = event.physical_key {
+                    self.key(code, event.state, event.repeat);
+                }
+            }
+            WindowEvent::CursorMoved { position, .. } => self.moved(*position),
+            WindowEvent::MouseInput { state, button, .. } => self.button(*button, *state, taken),
+            WindowEvent::MouseWheel { delta, .. } if !taken => {
+                self.wheel(match delta {
+                    MouseScrollDelta::LineDelta(_, y) => f64::from(*y),
+                    MouseScrollDelta::PixelDelta(p) => p.y / LINE,
+                });
+            }
+            WindowEvent::RedrawRequested => self.draw()?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Whether the panel may change by an event. Keys that fly and a pointer over the picture change
+    /// nothing there, and a painted panel costs a software device as much as a small picture.
+    fn concerns_panel(&self, event: &WindowEvent) -> bool {
+        match event {
+            WindowEvent::KeyboardInput { .. } => self.ctx.egui_wants_keyboard_input(),
+            WindowEvent::CursorMoved { .. } => {
+                self.ctx.is_pointer_over_egui() || self.ctx.egui_is_using_pointer()
+            }
+            _ => true,
+        }
+    }
+
+    fn key(&mut self, code: KeyCode, state: ElementState, repeat: bool) {
+        if state == ElementState::Released {
+            self.held.remove(&code);
+            return;
+        }
+        // Text is typed into a field of the panel.
+        if self.ctx.text_edit_focused() {
+            return;
+        }
+        let keys = self.modifiers.state();
+        let ctrl = keys.control_key() || keys.super_key();
+        match action(code, ctrl, keys.shift_key()) {
+            Some(Action::Step(_)) => {}
+            Some(_) if repeat => return,
+            Some(_) => {}
+            None if !ctrl => {
+                self.held.insert(code);
+                return;
+            }
+            None => return,
+        }
+        if let Some(action) = action(code, ctrl, keys.shift_key()) {
+            self.act(action);
+        }
+    }
+
+    fn act(&mut self, action: Action) {
+        self.paint_soon(Duration::ZERO);
+        let flip = |on: &mut bool| *on = !*on;
+        match action {
+            Action::Panel => flip(&mut self.visible.panel),
+            Action::Timeline => flip(&mut self.visible.timeline),
+            Action::Help => flip(&mut self.visible.help),
+            Action::Figures => flip(&mut self.visible.figures),
+            Action::FullScreen => {
+                let window = &self.stage.window;
+                let whole = window.fullscreen().is_none();
+                window.set_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
+            }
+            Action::Show(shot) => self.shot = shot,
+            Action::NextPass(by) => self.next_pass(by),
+            Action::Home => {
+                let camera = self.first.camera.clone();
+                self.document.change(|plan| plan.camera = camera);
+            }
+            Action::Undo => _ = self.document.undo(),
+            Action::Redo => _ = self.document.redo(),
+            Action::Save => self.save(),
+            Action::Still => self.begin_still(),
+            Action::Copy => self.copy(),
+            Action::Play => {
+                let over = self.play.beat >= self.document.plan.time.length;
+                self.play.playing = !self.play.playing;
+                if self.play.playing && over {
+                    self.play.beat = 0.0;
+                }
+            }
+            Action::Step(frames) => {
+                self.play.step(&self.document.plan, frames);
+                self.show_moment();
+            }
+            Action::Key => {
+                let beat = self.play.beat;
+                self.document.change(|plan| set_view(plan, beat));
+                self.visible.timeline = true;
+            }
+            Action::Overwrite => match self.play.chosen {
+                Some(place) => self.document.change(|plan| overwrite(plan, place)),
+                None => self.tell("no key of the timeline is chosen; click one", true),
+            },
+            Action::Quit => self.closed = true,
+        }
+    }
+
+    /// Shows the passes one by one: the fronts of each cone level, and then the picture.
+    fn next_pass(&mut self, by: i32) {
+        let levels = match self.pictures.finished() {
+            Some(finished) => finished.frame.levels.len(),
+            None => 0,
+        };
+        if levels == 0 {
+            let text =
+                "this picture has no cone passes: rays alone are faster here (march.coarsest)";
+            self.tell(text, false);
+            return;
+        }
+        let now = match self.shot {
+            Shot::Fronts(n) => n,
+            _ => levels,
+        };
+        let next = now.saturating_add_signed(by as isize).min(levels);
+        self.shot = match next {
+            n if n == levels => Shot::Layer(Layer::Color),
+            n => Shot::Fronts(n),
+        };
+    }
+
+    fn save(&mut self) {
+        match self.document.save(Path::new(".")) {
+            Ok(path) => {
+                self.watch_file();
+                self.tell(format!("saved to {}", path.display()), false);
+            }
+            Err(e) => self.tell(e.to_string(), true),
+        }
+    }
+
+    /// The plan that is shown, with the preset's own size.
+    fn own_size(&self) -> Plan {
+        Plan {
+            size: self.document.plan.size,
+            ..self.shown()
+        }
+    }
+
+    fn begin_still(&mut self) {
+        if self.still.is_some() {
+            self.tell("a still is under way", false);
+            return;
+        }
+        let plan = self.own_size();
+        if let Err(fault) = plan.check() {
+            self.tell(format!("{}: {}", fault.key, fault.why), true);
+            return;
+        }
+        let path = unused(Path::new("."), &self.document.name, "png");
+        let assets = self.pictures.assets.clone();
+        match Still::begin(&mut self.pictures.renderer, plan, &assets, path) {
+            Ok(still) => self.still = Some(still),
+            Err(why) => self.tell(why, true),
+        }
+    }
+
+    /// Copies the command that makes the picture in the window.
+    fn copy(&mut self) {
+        let command = self.command();
+        self.ctx.copy_text(command.clone());
+        self.tell(format!("copied: {command}"), false);
+    }
+
+    /// The command that makes the picture in the window: the preset as it is known to others, and
+    /// what differs from it.
+    fn command(&self) -> String {
+        let [width, height] = self.stage.screen.size();
+        let name = match &self.document.path {
+            Some(path) => path.display().to_string(),
+            None => self.document.name.clone(),
+        };
+        let mut known = self.document.saved().clone();
+        let mut now = self.shown();
+        let mut line = format!("conemarch render {}", quoted(&name));
+        for section in SECTIONS {
+            if section == "image" || section == "time" {
+                continue;
+            }
+            let old = known.keys(section).unwrap_or_default();
+            let new = now.keys(section).unwrap_or_default();
+            for (old, new) in old.into_iter().zip(new) {
+                let value = new.slot.get();
+                if value != old.slot.get() {
+                    let set = format!("{section}.{}={}", new.name, value);
+                    line += &format!(" --set {}", quoted(&set));
+                }
+            }
+        }
+        line + &format!(" --size {width}x{height} -o picture.png")
+    }
+
+    /// The pixel under the cursor.
+    fn pixel(&self) -> [u32; 2] {
+        let [w, h] = self.stage.screen.size();
+        [
+            (self.cursor.x.max(0.0) as u32).min(w - 1),
+            (self.cursor.y.max(0.0) as u32).min(h - 1),
+        ]
+    }
+
+    fn button(&mut self, button: MouseButton, state: ElementState, taken: bool) {
+        if state == ElementState::Released {
+            if self.drag.take().is_some() {
+                self.document.end();
+            }
+            return;
+        }
+        if taken {
+            return;
+        }
+        let plan = self.shown();
+        match button {
+            MouseButton::Left if self.modifiers.state().alt_key() => self.explain(&plan),
+            MouseButton::Left => {
+                let met = ground::met(&plan, self.assets(), self.pixel());
+                let hit = met.filter(|met| met.state == State::Hit);
+                let point = hit.map_or(plan.camera.target, |met| met.point);
+                let now = Instant::now();
+                let second = self.clicked.is_some_and(|at| now - at < DOUBLE_CLICK);
+                self.clicked = (!second).then_some(now);
+                if second && hit.is_some() {
+                    self.document.change(|plan| focus(&mut plan.camera, point));
+                } else {
+                    self.document.begin();
+                    self.drag = Some(Drag::Orbit(point));
+                }
+            }
+            MouseButton::Right => {
+                self.document.begin();
+                self.drag = Some(Drag::Look);
+            }
+            _ => {}
+        }
+    }
+
+    /// Tells what there is at the pixel under the cursor, and by how much its depth is wrong.
+    fn explain(&mut self, plan: &Plan) {
+        let pixel = self.pixel();
+        let met = ground::met(plan, self.assets(), pixel);
+        let exact = ground::met(&truth::asked(plan), self.assets(), pixel);
+        let (Some(met), Some(exact)) = (met, exact) else {
+            self.tell("the scene is not ready yet", false);
+            return;
+        };
+        let [x, y] = pixel;
+        let index = (y * plan.size[0] + x) as usize;
+        let finished = self
+            .pictures
+            .finished()
+            .filter(|f| f.plan.size == plan.size);
+        let shown = finished.and_then(|f| f.frame.depth.get(index).copied());
+        let error = match (shown, exact.state) {
+            (Some(t), State::Hit) if t.is_finite() => {
+                let ray = plan.view().view_ray(pixel);
+                let off = (f64::from(t) - exact.distance) / footprint(&ray, exact.distance);
+                format!("{off:+.3} footprints from the truth")
+            }
+            (None, _) => "no full picture yet".into(),
+            _ => format!("the truth is {:?}", exact.state).to_lowercase(),
+        };
+        let state = format!("{:?}", met.state).to_lowercase();
+        let text = format!(
+            "pixel {x}, {y}: {state} at {:.6}, {error}, {} evaluations by a ray alone",
+            met.distance, met.evaluations
+        );
+        self.tell(text, false);
+    }
+
+    fn moved(&mut self, to: PhysicalPosition<f64>) {
+        let (dx, dy) = (to.x - self.cursor.x, to.y - self.cursor.y);
+        self.cursor = to;
+        let Some(drag) = self.drag else { return };
+        let pixel = self.shown().view().pixel;
+        self.document.change(|plan| match drag {
+            Drag::Look => look(&mut plan.camera, dx * pixel, -dy * pixel),
+            // The scene follows the cursor.
+            Drag::Orbit(about) => orbit(&mut plan.camera, about, -dx * ORBIT, dy * ORBIT),
+        });
+    }
+
+    fn wheel(&mut self, lines: f64) {
+        let factor = WHEEL.powf(lines);
+        if self.modifiers.state().control_key() {
+            self.document.change(|plan| {
+                let fov = plan.camera.fov / factor;
+                plan.camera.fov = fov.clamp(1.0, 170.0);
+            });
+        } else {
+            self.flight.speed = (self.flight.speed * factor).clamp(1e-3, 1e3);
+            let speed = self.flight.speed;
+            self.tell(format!("speed of flight {speed:.2}"), false);
+        }
+    }
+
+    /// Sets a key as the panel asks.
+    pub fn set(&mut self, section: &str, name: &str, value: &Value) {
+        let mut said = None;
+        if self.panel_drag {
+            self.document.begin();
+        }
+        self.document.change(|plan| {
+            let mut keys = plan.keys(section).unwrap_or_default();
+            if let Some(key) = keys.iter_mut().find(|key| key.name == name) {
+                said = key.slot.set(value).err();
+            }
+        });
+        if let Some(expects) = said {
+            self.tell(format!("{section}.{name} must be {expects}"), true);
+        }
+        self.paint_soon(Duration::ZERO);
+    }
+
+    /// Opens another preset in the place of this one.
+    pub fn open(&mut self, name: &str) {
+        match preset::load(Path::new(name), &[]) {
+            Ok(preset) => {
+                let path: Option<PathBuf> = preset::file(Path::new(name));
+                self.first = preset.plan.clone();
+                self.stage
+                    .window
+                    .set_title(&format!("{} - conemarch", preset.name));
+                self.visible.timeline = !preset.plan.tracks.is_empty();
+                self.play = Default::default();
+                self.document =
+                    crate::preview::document::Document::new(preset.name, path, preset.plan);
+                self.watch_file();
+            }
+            Err(e) => self.tell(e.to_string(), true),
+        }
+    }
+}
+
+/// A name of a file as a shell takes it.
+fn quoted(text: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "_./=-,".contains(c);
+    match text.chars().all(plain) {
+        true => text.into(),
+        false => format!("'{}'", text.replace('\'', "'\\''")),
+    }
+}

@@ -1,0 +1,206 @@
+//! What is edited: a plan with its history and its file.
+
+use std::path::{Path, PathBuf};
+
+use crate::picture::{OutputError, Place, commit};
+use crate::plan::Plan;
+use crate::preset;
+
+/// The most steps that can be undone. Each is a plan, a few kilobytes.
+const MOST_STEPS: usize = 1000;
+
+/// A plan that is edited.
+#[derive(Debug)]
+pub struct Document {
+    /// The preset's name.
+    pub name: String,
+    /// The file that it is saved to; `None` for a built-in preset.
+    pub path: Option<PathBuf>,
+    /// The plan as it is now.
+    pub plan: Plan,
+    /// The plan in the file.
+    saved: Plan,
+    past: Vec<Plan>,
+    future: Vec<Plan>,
+    /// Steps in the past when the plan was saved.
+    saved_at: usize,
+    /// The plan before the gesture under way: a drag, or a flight.
+    before: Option<Plan>,
+}
+
+impl Document {
+    /// Opens a plan as it was read.
+    pub fn new(name: String, path: Option<PathBuf>, plan: Plan) -> Self {
+        Self {
+            name,
+            path,
+            saved: plan.clone(),
+            plan,
+            past: Vec::new(),
+            future: Vec::new(),
+            saved_at: 0,
+            before: None,
+        }
+    }
+
+    /// Whether there are steps that no file has. Another moment of the film is none.
+    pub fn is_changed(&self) -> bool {
+        self.past.len() != self.saved_at || self.before.is_some()
+    }
+
+    /// The plan in the file.
+    pub fn saved(&self) -> &Plan {
+        &self.saved
+    }
+
+    /// Begins a gesture, unless one is under way. All changes until its end are one step.
+    pub fn begin(&mut self) {
+        self.before.get_or_insert_with(|| self.plan.clone());
+    }
+
+    /// Ends the gesture.
+    pub fn end(&mut self) {
+        let Some(before) = self.before.take() else {
+            return;
+        };
+        if before != self.plan {
+            if self.past.len() < self.saved_at {
+                // The saved plan was undone, and is out of reach now.
+                self.saved_at = usize::MAX;
+            }
+            self.past.push(before);
+            self.future.clear();
+            if self.past.len() > MOST_STEPS {
+                self.past.remove(0);
+                self.saved_at = self.saved_at.saturating_sub(1);
+            }
+        }
+    }
+
+    /// Makes a change as a step of its own, or as a part of the gesture under way.
+    pub fn change(&mut self, change: impl FnOnce(&mut Plan)) {
+        let alone = self.before.is_none();
+        self.begin();
+        change(&mut self.plan);
+        if alone {
+            self.end();
+        }
+    }
+
+    /// Takes a step back. Returns whether there was one.
+    pub fn undo(&mut self) -> bool {
+        self.end();
+        let Some(plan) = self.past.pop() else {
+            return false;
+        };
+        self.future.push(std::mem::replace(&mut self.plan, plan));
+        true
+    }
+
+    /// Takes a step back again. Returns whether there was one.
+    pub fn redo(&mut self) -> bool {
+        self.end();
+        let Some(plan) = self.future.pop() else {
+            return false;
+        };
+        self.past.push(std::mem::replace(&mut self.plan, plan));
+        true
+    }
+
+    /// Takes in the file as another program has written it. It is a step that can be undone.
+    pub fn reload(&mut self, plan: Plan) {
+        self.saved = plan.clone();
+        self.change(|now| *now = plan);
+        self.saved_at = self.past.len();
+    }
+
+    /// Writes the plan to its file, or a new one for a built-in preset, in `folder`. The file is
+    /// replaced at once or not at all.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn save(&mut self, folder: &Path) -> Result<PathBuf, OutputError> {
+        let is_toml = |path: &&PathBuf| path.extension().is_some_and(|e| e == "toml");
+        // A picture that carries a preset stays as it is.
+        let path = match self.path.as_ref().filter(is_toml) {
+            Some(path) => path.clone(),
+            None => unused(folder, &self.name, "toml"),
+        };
+        write(&path, preset::write(&self.plan).as_bytes())?;
+        self.end();
+        self.saved = self.plan.clone();
+        self.saved_at = self.past.len();
+        self.path = Some(path.clone());
+        Ok(path)
+    }
+}
+
+/// Writes a file whole or not at all.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write(path: &Path, content: &[u8]) -> Result<(), OutputError> {
+    let mut place = Place::prepare(path)?;
+    place.write_all(content)?;
+    commit(vec![place])
+}
+
+/// `NAME-1.toml`, or the next number that is free.
+pub fn unused(folder: &Path, name: &str, ending: &str) -> PathBuf {
+    let path = |n: u32| folder.join(format!("{name}-{n}.{ending}"));
+    let free = (1..u32::MAX).map(path).find(|path| !path.exists());
+    free.unwrap_or_else(|| path(u32::MAX))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn document() -> Document {
+        let scene = Scene::all().into_iter().next().expect("a scene");
+        Document::new("box".into(), None, Plan::new(scene))
+    }
+
+    #[test]
+    fn a_gesture_is_one_step_and_undo_goes_back_and_forth() {
+        let mut doc = document();
+        let first = doc.plan.clone();
+        doc.begin();
+        for fov in [41.0, 42.0, 43.0] {
+            doc.begin();
+            doc.change(|plan| plan.camera.fov = fov);
+        }
+        doc.end();
+        doc.change(|plan| plan.look.fog = 1.0);
+        doc.change(|_| {});
+        let last = doc.plan.clone();
+        assert!(doc.is_changed());
+        assert!(doc.undo() && doc.plan.look.fog == 0.0 && doc.plan.camera.fov == 43.0);
+        assert!(doc.undo() && doc.plan == first && !doc.is_changed());
+        assert!(!doc.undo());
+        assert!(doc.redo() && doc.redo() && !doc.redo());
+        assert_eq!(doc.plan, last);
+        // A change forgets what was undone.
+        doc.undo();
+        doc.change(|plan| plan.camera.fov = 50.0);
+        assert!(!doc.redo());
+    }
+
+    #[test]
+    fn a_built_in_preset_is_saved_to_a_new_file_and_then_to_that() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut doc = document();
+        doc.change(|plan| plan.camera.fov = 33.0);
+        let path = doc.save(folder.path()).expect("saved");
+        assert_eq!(path, folder.path().join("box-1.toml"));
+        assert!(!doc.is_changed());
+        doc.change(|plan| plan.camera.fov = 34.0);
+        assert!(doc.is_changed());
+        assert_eq!(doc.save(folder.path()).expect("saved"), path);
+        let text = std::fs::read_to_string(&path).expect("a file");
+        assert_eq!(preset::read(&text, "box").expect("a preset"), doc.plan);
+        let again = document().save(folder.path()).expect("saved");
+        assert_eq!(again, folder.path().join("box-2.toml"));
+    }
+}

@@ -1,0 +1,73 @@
+//! What the CPU can tell about the scene at once, in f64.
+
+use glam::DVec3;
+
+use crate::base::outcome::{Counts, State};
+use crate::pass::trace::trace;
+use crate::plan::Plan;
+use crate::scene::{Assets, Solid, Task};
+
+/// The radius of a ball about a point that is proven empty.
+struct Clearance(DVec3);
+
+impl Task for Clearance {
+    type Output = f64;
+
+    fn run<S: Solid>(self, solid: &S) -> f64 {
+        solid.clearance(self.0)
+    }
+}
+
+/// Follows the ray of a pixel.
+struct Ray<'a>(&'a Plan, [u32; 2], u32);
+
+impl Task for Ray<'_> {
+    type Output = (f64, State, Counts);
+
+    fn run<S: Solid>(self, solid: &S) -> Self::Output {
+        let Self(plan, pixel, steps) = self;
+        let mut work = Counts::default();
+        let ray = plan.view().view_ray(pixel);
+        let (hit, state) = trace(solid, &ray, 0.0, steps, &mut work);
+        (hit.t, state, work)
+    }
+}
+
+/// The radius of a ball about the eye that is proven empty; `None` while heights are missing.
+pub fn clearance(plan: &Plan, assets: &Assets) -> Option<f64> {
+    if !plan.scene.has_assets(assets) {
+        return None;
+    }
+    let solid = plan.scene.solid(&plan.viewpoint(), assets).ok()?;
+    Some(solid.run(Clearance(DVec3::ZERO)))
+}
+
+/// What the ray of a pixel meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// The distance from the eye.
+    pub distance: f64,
+    /// The point in the world.
+    pub point: DVec3,
+    /// What the pixel is.
+    pub state: State,
+    /// Evaluations of the estimate, or look-ups of heights.
+    pub evaluations: u32,
+}
+
+/// What the ray of a pixel meets; `None` while heights are missing.
+pub fn met(plan: &Plan, assets: &Assets, pixel: [u32; 2]) -> Option<Met> {
+    if !plan.scene.has_assets(assets) {
+        return None;
+    }
+    let solid = plan.scene.solid(&plan.viewpoint(), assets).ok()?;
+    let steps = plan.ray_steps(&solid);
+    let (distance, state, work) = solid.run(Ray(plan, pixel, steps));
+    let axis = plan.view().view_ray(pixel).axis;
+    Some(Met {
+        distance,
+        point: plan.camera.eye + distance * axis,
+        state,
+        evaluations: work.evaluations,
+    })
+}

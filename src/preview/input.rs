@@ -1,0 +1,152 @@
+//! What keys and drags mean. Keys are places on the keyboard, so that every layout works.
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+use winit::keyboard::KeyCode;
+
+use crate::picture::Layer;
+use crate::preview::flight::Thrust;
+use crate::preview::views::Shot;
+
+/// The keys, and what they do.
+pub const HELP: [(&str, &str); 27] = [
+    ("W A S D, arrows", "fly forward, left, back, right"),
+    ("E Q", "fly up, down"),
+    ("Z X", "roll"),
+    ("Shift", "faster"),
+    ("right drag", "look around"),
+    ("left drag", "orbit the point under the cursor"),
+    ("double click", "look at the point under the cursor"),
+    ("Alt+click", "what there is at the pixel"),
+    ("wheel", "speed of flight"),
+    ("Ctrl+wheel", "field of view"),
+    ("Home", "back to the camera of the preset"),
+    ("Tab, T", "hide or show the panel, the timeline"),
+    ("1 to 6", "colour, depth, normal, position, steps, state"),
+    ("7", "the pass that ended each way"),
+    ("[ ]", "the passes one by one"),
+    ("O", "time and work of the passes"),
+    ("Space", "play, stop"),
+    (", .", "a frame back, a frame on"),
+    ("K", "set a key of the present view"),
+    ("Ctrl+K", "overwrite the chosen key with the present view"),
+    ("Delete", "take the chosen key away; Alt+drag copies it"),
+    ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
+    ("Ctrl+S", "save the preset"),
+    ("F12", "a still of the size of image.size"),
+    ("Ctrl+C", "copy the command that makes this picture"),
+    ("F11", "full screen"),
+    ("F1", "these keys"),
+];
+
+/// What a key asks for at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Hides or shows the panel.
+    Panel,
+    /// Hides or shows the timeline.
+    Timeline,
+    /// Full screen, or a window again.
+    FullScreen,
+    /// Hides or shows the list of keys.
+    Help,
+    /// Hides or shows the figures of the passes.
+    Figures,
+    /// Shows a layer or the ways of cones.
+    Show(Shot),
+    /// Shows the fronts of another pass, so many later.
+    NextPass(i32),
+    /// The camera of the preset.
+    Home,
+    /// A step back.
+    Undo,
+    /// A step back again.
+    Redo,
+    /// Saves the preset.
+    Save,
+    /// Renders a still.
+    Still,
+    /// Copies the command line.
+    Copy,
+    /// Plays or stops.
+    Play,
+    /// Another frame, so many later.
+    Step(i32),
+    /// Sets a key of the present view.
+    Key,
+    /// Sets the chosen key to the present view.
+    Overwrite,
+    /// Closes the window.
+    Quit,
+}
+
+/// What a key that goes down asks for at once.
+pub fn action(key: KeyCode, ctrl: bool, shift: bool) -> Option<Action> {
+    let layer = |layer| Some(Action::Show(Shot::Layer(layer)));
+    if ctrl {
+        return match key {
+            KeyCode::KeyZ if shift => Some(Action::Redo),
+            KeyCode::KeyZ => Some(Action::Undo),
+            KeyCode::KeyY => Some(Action::Redo),
+            KeyCode::KeyS => Some(Action::Save),
+            KeyCode::KeyC => Some(Action::Copy),
+            KeyCode::KeyK => Some(Action::Overwrite),
+            KeyCode::KeyQ => Some(Action::Quit),
+            _ => None,
+        };
+    }
+    match key {
+        KeyCode::Tab => Some(Action::Panel),
+        KeyCode::KeyT => Some(Action::Timeline),
+        KeyCode::F11 => Some(Action::FullScreen),
+        KeyCode::F1 => Some(Action::Help),
+        KeyCode::F12 => Some(Action::Still),
+        KeyCode::KeyO => Some(Action::Figures),
+        KeyCode::Home => Some(Action::Home),
+        KeyCode::Digit1 => layer(Layer::Color),
+        KeyCode::Digit2 => layer(Layer::Depth),
+        KeyCode::Digit3 => layer(Layer::Normal),
+        KeyCode::Digit4 => layer(Layer::Position),
+        KeyCode::Digit5 => layer(Layer::Steps),
+        KeyCode::Digit6 => layer(Layer::State),
+        KeyCode::Digit7 => Some(Action::Show(Shot::Ends)),
+        KeyCode::BracketLeft => Some(Action::NextPass(-1)),
+        KeyCode::BracketRight => Some(Action::NextPass(1)),
+        KeyCode::Space => Some(Action::Play),
+        KeyCode::Comma => Some(Action::Step(-1)),
+        KeyCode::Period => Some(Action::Step(1)),
+        KeyCode::KeyK => Some(Action::Key),
+        _ => None,
+    }
+}
+
+/// What the held keys ask for.
+pub fn thrust(held: &HashSet<KeyCode>, fast: bool) -> Thrust {
+    let any = |keys: &[KeyCode]| f64::from(u8::from(keys.iter().any(|key| held.contains(key))));
+    let axis = |plus: &[KeyCode], minus: &[KeyCode]| any(plus) - any(minus);
+    Thrust {
+        way: DVec3::new(
+            axis(
+                &[KeyCode::KeyD, KeyCode::ArrowRight],
+                &[KeyCode::KeyA, KeyCode::ArrowLeft],
+            ),
+            axis(&[KeyCode::KeyE], &[KeyCode::KeyQ]),
+            axis(
+                &[KeyCode::KeyW, KeyCode::ArrowUp],
+                &[KeyCode::KeyS, KeyCode::ArrowDown],
+            ),
+        ),
+        roll: axis(&[KeyCode::KeyX], &[KeyCode::KeyZ]),
+        fast,
+    }
+}
+
+/// A drag under way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drag {
+    /// Turns the camera in its place.
+    Look,
+    /// Turns it about a point.
+    Orbit(DVec3),
+}

@@ -1,0 +1,81 @@
+//! Unsaved work, kept outside the preset's file until it is saved.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::picture::OutputError;
+use crate::plan::Plan;
+use crate::preset;
+use crate::preview::document::{Document, write};
+
+/// The file for a document: named after the preset, and after its folder if it is in a file.
+fn path(folder: &Path, document: &Document) -> PathBuf {
+    let of = document
+        .path
+        .as_ref()
+        .and_then(|path| fs::canonicalize(path).ok());
+    let place: String = match of {
+        Some(path) => path.to_string_lossy().into_owned(),
+        None => document.name.clone(),
+    };
+    let plain = |c: char| if c.is_alphanumeric() { c } else { '_' };
+    folder.join(format!(
+        "unsaved-{}.toml",
+        place.chars().map(plain).collect::<String>()
+    ))
+}
+
+/// Keeps the document's plan.
+///
+/// # Errors
+/// The folder cannot be written.
+pub fn keep(folder: Option<&Path>, document: &Document) -> Result<(), OutputError> {
+    let Some(folder) = folder else { return Ok(()) };
+    let _ = fs::create_dir_all(folder);
+    write(
+        &path(folder, document),
+        preset::write(&document.plan).as_bytes(),
+    )
+}
+
+/// Forgets what was kept.
+pub fn drop(folder: Option<&Path>, document: &Document) {
+    if let Some(folder) = folder {
+        // Nothing may have been kept.
+        let _ = fs::remove_file(path(folder, document));
+    }
+}
+
+/// What was kept of a document and differs from it.
+pub fn find(folder: Option<&Path>, document: &Document) -> Option<Plan> {
+    let text = fs::read_to_string(path(folder?, document)).ok()?;
+    let mut plan = preset::read(&text, "unsaved work").ok()?;
+    if let Some(parent) = document.path.as_ref().and_then(|path| path.parent()) {
+        plan.scene.set_folder(parent);
+    }
+    (plan != document.plan).then_some(plan)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn work_is_kept_until_it_is_dropped() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = Some(folder.path());
+        let scene = Scene::all().into_iter().next().expect("a scene");
+        let mut document = Document::new("box".into(), None, Plan::new(scene));
+        keep(at, &document).expect("kept");
+        assert_eq!(find(at, &document), None);
+        document.plan.camera.fov = 33.0;
+        keep(at, &document).expect("kept");
+        let changed = document.plan.clone();
+        document.plan.camera.fov = 40.0;
+        assert_eq!(find(at, &document), Some(changed));
+        drop(at, &document);
+        assert_eq!(find(at, &document), None);
+        assert_eq!(find(None, &document), None);
+    }
+}

@@ -1,0 +1,392 @@
+//! The open window: what it shows, and what it does in each turn of its loop.
+
+use std::collections::HashSet;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use winit::dpi::PhysicalPosition;
+use winit::event::Modifiers;
+use winit::keyboard::KeyCode;
+
+use crate::picture::Layer;
+use crate::plan::{Extras, Plan};
+use crate::preview::document::Document;
+use crate::preview::error::PreviewError;
+use crate::preview::flight::Flight;
+use crate::preview::input::{Drag, thrust};
+use crate::preview::meter::{Figures, Meter};
+use crate::preview::pictures::Pictures;
+use crate::preview::play::{Play, pose_at};
+use crate::preview::reload::{Watched, files_in, sources};
+use crate::preview::screen::Shown;
+use crate::preview::still::Still;
+use crate::preview::views::Shot;
+use crate::preview::window::{Options, REST, Stage};
+use crate::preview::{ground, keep};
+use crate::scene::Assets;
+
+/// How long the loop sleeps while the device works, or the camera flies.
+const BUSY: Duration = Duration::from_millis(1);
+/// Time after which the panel follows what the device does.
+const PANEL: Duration = Duration::from_millis(400);
+/// The least time between two paintings of the panel, and while the camera moves.
+const PAUSE: Duration = Duration::from_millis(40);
+const MOVING_PANEL: Duration = Duration::from_millis(1000);
+/// Time after which the last picture is turned if no other came. A software device needs its time
+/// for the next picture.
+const TURN: Duration = Duration::from_millis(50);
+/// How long a notice stays.
+const NOTICE: Duration = Duration::from_secs(6);
+/// The longest step of a flight in seconds: after a stall nobody wants to be elsewhere.
+const LONGEST_STEP: f64 = 0.1;
+
+/// A notice to the user.
+pub struct Notice {
+    pub text: String,
+    pub is_error: bool,
+    since: Instant,
+}
+
+/// What lies over the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Visible {
+    pub panel: bool,
+    pub timeline: bool,
+    pub help: bool,
+    pub figures: bool,
+}
+
+/// The open window.
+pub struct Live {
+    pub stage: Stage,
+    pub pictures: Pictures,
+    pub ctx: egui::Context,
+    pub gui: egui_winit::State,
+    pub document: Document,
+    /// The camera to go back to.
+    pub first: Plan,
+    pub flight: Flight,
+    pub play: Play,
+    pub held: HashSet<KeyCode>,
+    pub modifiers: Modifiers,
+    pub cursor: PhysicalPosition<f64>,
+    pub drag: Option<Drag>,
+    pub clicked: Option<Instant>,
+    pub shot: Shot,
+    pub visible: Visible,
+    /// What lies over the picture: x, y, width and height of each part in pixels.
+    pub over: Vec<[u32; 4]>,
+    /// Whether a value is dragged in the panel or the timeline.
+    pub panel_drag: bool,
+    /// When the panel is painted again.
+    pub panel_due: Option<Instant>,
+    pub redraw: bool,
+    pub hidden: bool,
+    pub closed: bool,
+    pub notice: Option<Notice>,
+    pub still: Option<Still>,
+    /// Unsaved work of an earlier session, until it is taken or dropped.
+    pub offered: Option<Plan>,
+    pub options: Options,
+    pub meter: Meter,
+    /// The wish of a picture that is not on the screen yet, and whether it is a full one.
+    taken: Option<(u64, bool)>,
+    /// When the window was drawn last, and the panel painted.
+    drawn: Instant,
+    painted: Instant,
+    ticked: Instant,
+    looked: Instant,
+    pub preset_file: Watched,
+    pub shader_files: Watched,
+    /// When the change that is not kept yet was made.
+    pub unkept: Option<(Instant, Plan)>,
+    /// How often the device was opened again.
+    pub losses: u32,
+}
+
+impl Live {
+    /// A window that has just opened.
+    pub fn new(stage: Stage, options: Options) -> Self {
+        let ctx = egui::Context::default();
+        let device = stage.screen.device().clone();
+        let most = device.device.limits().max_texture_dimension_2d as usize;
+        let gui = egui_winit::State::new(
+            ctx.clone(),
+            egui::ViewportId::ROOT,
+            &stage.window,
+            Some(stage.window.scale_factor() as f32),
+            None,
+            Some(most),
+        );
+        let now = Instant::now();
+        let preset = &options.preset;
+        let mut pictures = Pictures::new(device);
+        let watched = |folder: &PathBuf| Watched::new(files_in(folder));
+        pictures.renderer.sources = options.wgsl.clone().map(sources);
+        let document = Document::new(
+            preset.name.clone(),
+            options.path.clone(),
+            preset.plan.clone(),
+        );
+        let offered = keep::find(options.kept.as_deref(), &document);
+        Self {
+            stage,
+            pictures,
+            ctx,
+            gui,
+            document,
+            first: preset.plan.clone(),
+            flight: Flight::default(),
+            play: Play::default(),
+            held: HashSet::new(),
+            modifiers: Modifiers::default(),
+            cursor: PhysicalPosition::default(),
+            drag: None,
+            clicked: None,
+            shot: Shot::Layer(Default::default()),
+            visible: Visible {
+                panel: true,
+                timeline: !preset.plan.tracks.is_empty(),
+                ..Visible::default()
+            },
+            over: Vec::new(),
+            panel_drag: false,
+            panel_due: Some(now),
+            redraw: true,
+            hidden: false,
+            closed: false,
+            notice: None,
+            still: None,
+            offered,
+            meter: Meter::default(),
+            taken: None,
+            drawn: now,
+            painted: now - MOVING_PANEL,
+            ticked: now,
+            looked: now,
+            preset_file: Watched::new(options.path.iter().cloned().collect()),
+            shader_files: options.wgsl.as_ref().map(watched).unwrap_or_default(),
+            unkept: None,
+            losses: 0,
+            options,
+        }
+    }
+
+    /// Whether the window is to be closed.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// How quickly the window answered.
+    pub fn figures(&self) -> Figures {
+        self.meter.figures(self.pictures.traffic())
+    }
+
+    /// Tells the user something.
+    pub fn tell(&mut self, text: impl Into<String>, is_error: bool) {
+        self.notice = Some(Notice {
+            text: text.into(),
+            is_error,
+            since: Instant::now(),
+        });
+        self.paint_soon(Duration::ZERO);
+    }
+
+    /// Tells what is wrong, once.
+    pub fn warn(&mut self, text: String) {
+        if self.notice.as_ref().is_none_or(|n| n.text != text) {
+            self.tell(text, true);
+        }
+    }
+
+    /// Paints the panel after a time, or earlier if that was asked for already.
+    pub fn paint_soon(&mut self, after: Duration) {
+        let at = Instant::now() + after;
+        self.panel_due = Some(self.panel_due.map_or(at, |due| due.min(at)));
+    }
+
+    /// The plan that is shown: that of the document, over the window.
+    pub fn shown(&self) -> Plan {
+        Plan {
+            size: self.stage.screen.size(),
+            tracks: Vec::new(),
+            ..self.document.plan.clone()
+        }
+    }
+
+    /// The heights, maps and textures of the scene.
+    pub fn assets(&self) -> &Assets {
+        &self.pictures.assets
+    }
+
+    /// Shows another moment of the film.
+    pub fn show_moment(&mut self) {
+        let beat = self.play.beat;
+        if let Some(wrong) = pose_at(&mut self.document.plan, beat) {
+            self.warn(wrong);
+        }
+        self.paint_soon(PANEL);
+    }
+
+    /// Does what is due, and returns how long it can sleep.
+    ///
+    /// # Errors
+    /// The window or its device cannot go on.
+    pub fn tick(&mut self) -> Result<Duration, PreviewError> {
+        let now = Instant::now();
+        let seconds = (now - self.ticked).as_secs_f64();
+        self.ticked = now;
+        if self.play.playing {
+            self.play.advance(&self.document.plan, seconds);
+            self.show_moment();
+        }
+        let flies = self.fly(seconds.min(LONGEST_STEP));
+        if now - self.looked > REST {
+            self.looked = now;
+            self.look_at_files();
+            self.keep_work();
+        }
+        if self.hidden {
+            return Ok(REST);
+        }
+        let moving = flies || self.play.playing || self.drag.is_some() || self.panel_drag;
+        self.render(moving)?;
+        let old = |n: &Notice| now - n.since > NOTICE && !n.is_error;
+        if self.notice.as_ref().is_some_and(old) {
+            self.notice = None;
+            self.paint_soon(Duration::ZERO);
+        }
+        // A panel costs a software device as much as a small picture.
+        let flies = moving && !self.panel_drag;
+        let pause = if flies { MOVING_PANEL } else { PAUSE };
+        let due = self.panel_due.map(|due| due.max(self.painted + pause));
+        self.panel_due = due;
+        if due.is_some_and(|due| due <= now) {
+            self.painted = now;
+            self.paint();
+        }
+        if self.redraw {
+            self.stage.window.request_redraw();
+        }
+        self.meter.turn(now);
+        let busy = moving || self.pictures.is_busy() || self.still.is_some();
+        Ok(match self.panel_due {
+            _ if busy => BUSY,
+            Some(due) => due.saturating_duration_since(Instant::now()).min(REST),
+            None => REST,
+        })
+    }
+
+    /// Moves the camera. Returns whether it flies.
+    fn fly(&mut self, seconds: f64) -> bool {
+        let thrust = thrust(&self.held, self.modifiers.state().shift_key());
+        let flies = thrust.way != DVec3::ZERO || thrust.roll != 0.0;
+        if !flies {
+            if self.drag.is_none() && !self.panel_drag {
+                self.document.end();
+            }
+            return false;
+        }
+        let plan = self.shown();
+        // Heights that are still made leave nothing to hit.
+        let far = plan.camera.eye.distance(plan.camera.target);
+        let clearance = ground::clearance(&plan, self.assets()).unwrap_or(far);
+        self.document.begin();
+        let camera = &mut self.document.plan.camera;
+        self.flight.step(camera, &thrust, clearance, seconds);
+        true
+    }
+
+    /// Asks for the picture of the plan, and takes in what is finished.
+    fn render(&mut self, moving: bool) -> Result<(), PreviewError> {
+        let plan = self.shown();
+        self.pictures.moving = moving;
+        if let Err(fault) = plan.check() {
+            self.warn(format!("{}: {}", fault.key, fault.why));
+            return Ok(());
+        }
+        let extras = self.shot.extras();
+        let figures = self.visible.figures;
+        self.pictures.keep(Extras {
+            time: figures,
+            count: figures || extras.count,
+            unread: self.shot == Shot::Layer(Layer::Color) && !figures,
+            ..extras
+        });
+        let (before, wish) = (self.pictures.is_busy(), self.pictures.wish());
+        self.pictures.want(&plan);
+        if self.pictures.wish() != wish {
+            self.meter.ask(self.pictures.wish());
+        }
+        match self.pictures.advance() {
+            Ok(false) => {}
+            Ok(true) => self.take(),
+            Err(e) => self.failed(e)?,
+        }
+        if !self.pictures.is_busy()
+            && let Some(still) = &mut self.still
+            && let Some(said) = still.advance()
+        {
+            self.still = None;
+            match said {
+                Ok(path) => self.tell(format!("wrote {}", path.display()), false),
+                Err(why) => self.tell(why, true),
+            }
+        }
+        if moving || before || self.pictures.is_busy() || self.still.is_some() {
+            // The last picture turns with the camera, unless the next one comes soon.
+            self.redraw |= moving && self.drawn.elapsed() > TURN;
+            self.paint_soon(PANEL);
+        }
+        Ok(())
+    }
+
+    /// Takes in a finished picture.
+    fn take(&mut self) {
+        let Some(finished) = self.pictures.finished() else {
+            return;
+        };
+        let view = finished.plan.view();
+        match (self.shot, finished.texture) {
+            (Shot::Layer(Layer::Color), Some(texture)) => {
+                self.stage.screen.hold(texture, view);
+            }
+            (shot, _) => {
+                let bytes = shot.bytes(finished.frame, finished.plan);
+                self.stage.screen.hold_pixels(&bytes, view);
+            }
+        }
+        let (wish, is_full) = (finished.wish, finished.is_full);
+        self.taken = Some((wish, is_full));
+        if is_full && self.notice.as_ref().is_some_and(|n| n.is_error) {
+            self.notice = None;
+        }
+        self.redraw = true;
+    }
+
+    /// Draws the window.
+    ///
+    /// # Errors
+    /// The surface is lost for good.
+    pub fn draw(&mut self) -> Result<(), PreviewError> {
+        if self.hidden {
+            return Ok(());
+        }
+        let view = self.shown().view();
+        let stage = &mut self.stage;
+        match stage.screen.show(&stage.window, &view, &self.over)? {
+            Shown::Yes => {
+                self.redraw = false;
+                self.drawn = Instant::now();
+                self.meter.show(self.pictures.moving);
+                if let Some((wish, is_full)) = self.taken.take() {
+                    self.meter.answer(self.options.started, wish, is_full);
+                }
+            }
+            Shown::Hidden => {}
+            Shown::Again => self.redraw = true,
+        }
+        Ok(())
+    }
+}

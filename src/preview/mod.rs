@@ -1,0 +1,40 @@
+//! The preview: a window in which a scene is flown through, tuned and timed.
+//!
+//! The window runs the passes of `render`. Only this room knows a window.
+//!
+//! - [`window`]: how it opens, and the loop of its events
+//! - `live`: the open window and its turns; `actions`: what events do to it; `gui`: what lies over
+//!   the picture; `upkeep`: files, unsaved work and lost devices
+//! - `input`: what keys and drags mean
+//! - [`document`]: the plan that is edited, its history and its file; `keep`: unsaved work;
+//!   `reload`: files that change
+//! - [`flight`]: how the camera moves; [`ground`]: what the CPU can tell about the scene at once
+//! - [`pictures`]: small pictures at once, full ones at rest; `still`: one for a file;
+//!   `views`: what of them is shown; `screen`: the window's surface, [`draw`]: its
+//!   pipelines
+//! - `panel`: the keys of the plan; [`play`] and `timeline`: the film; `overlay`: times, notices
+//!   and help
+//! - [`meter`]: how quickly the window answers; [`error`]: why a preview cannot go on
+
+mod actions;
+pub mod document;
+pub mod draw;
+pub mod error;
+pub mod flight;
+pub mod ground;
+mod gui;
+mod input;
+mod keep;
+mod live;
+pub mod meter;
+mod overlay;
+mod panel;
+pub mod pictures;
+pub mod play;
+mod reload;
+mod screen;
+mod still;
+mod timeline;
+mod upkeep;
+mod views;
+pub mod window;

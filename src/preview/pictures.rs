@@ -1,0 +1,369 @@
+//! The pictures of a plan that changes: a small one at once, and a full one when the plan rests.
+//!
+//! Each of the two has its own render under way, so that neither makes the buffers of the other
+//! again. A small picture is always finished, however fast the plan changes: else a flight would
+//! show nothing. A full one stops as soon as the plan changes.
+
+use std::sync::Arc;
+
+use crate::base::clock::clock;
+use crate::base::key::Redo;
+use crate::gpu::RenderError;
+use crate::gpu::device::Device;
+use crate::gpu::render::Renderer;
+use crate::gpu::work::Work;
+use crate::pass::progress::Progress;
+use crate::picture::frame::{Frame, Traffic};
+use crate::plan::{Extras, Plan};
+use crate::scene::{Assets, Scene};
+
+/// Milliseconds of work that are submitted at once. What was submitted must end before another plan
+/// begins, and a software device lets the host wait for it.
+const SLICE_MS: f64 = 6.0;
+/// The time that a small picture should take, in milliseconds. Below the first it becomes larger,
+/// above the second smaller.
+const AIM_MS: [f64; 2] = [11.0, 36.0];
+/// So many times decide about the size.
+const RECENT: usize = 5;
+/// Divisors of the size of a small picture.
+const DIVISORS: [u32; 5] = [1, 2, 4, 6, 8];
+/// A full picture that takes no longer than this needs no small one before it.
+const AT_ONCE_MS: f64 = 14.0;
+
+/// One of the two pictures.
+#[derive(Default)]
+struct Picture {
+    work: Option<Work>,
+    /// What is rendered, and the number of the wish.
+    under_way: Option<(u64, Plan)>,
+    /// The wish that was finished last, and its plan.
+    made: Option<(u64, Plan)>,
+    began: f64,
+    took_ms: Option<f64>,
+    frame: Option<Frame>,
+    /// Sums over all frames.
+    uploads: usize,
+    allocations: u32,
+    compilations: usize,
+}
+
+impl Picture {
+    /// Begins to render a plan.
+    fn begin(
+        &mut self,
+        renderer: &mut Renderer,
+        assets: &Assets,
+        extras: Extras,
+        wish: (u64, Plan),
+    ) -> Result<(), RenderError> {
+        self.began = clock();
+        let plan = &wish.1;
+        match &mut self.work {
+            Some(work) => renderer.set(work, plan, assets)?,
+            None => self.work = Some(renderer.begin(plan, assets, extras)?),
+        }
+        self.under_way = Some(wish);
+        Ok(())
+    }
+
+    /// Goes on. Returns whether the picture is finished.
+    fn advance(&mut self, budget_ms: f64) -> Result<bool, RenderError> {
+        let Some(work) = self.work.as_mut().filter(|_| self.under_way.is_some()) else {
+            return Ok(false);
+        };
+        work.advance(budget_ms)?;
+        let Some(frame) = work.poll()? else {
+            return Ok(false);
+        };
+        let traffic = frame.traffic.unwrap_or_default();
+        self.uploads += traffic.uploads;
+        self.allocations += traffic.allocations;
+        self.compilations += traffic.compilations;
+        self.took_ms = Some(clock() - self.began);
+        self.made = self.under_way.take();
+        self.frame = Some(frame);
+        Ok(true)
+    }
+
+    fn is_made(&self, wish: u64) -> bool {
+        self.made.as_ref().is_some_and(|(made, _)| *made == wish)
+    }
+}
+
+/// A finished picture.
+pub struct Finished<'a> {
+    /// The number of its plan.
+    pub wish: u64,
+    /// Whether it is a full one.
+    pub is_full: bool,
+    /// Its bytes on the device.
+    pub texture: Option<&'a wgpu::Texture>,
+    /// Its layers.
+    pub frame: &'a Frame,
+    /// Its plan.
+    pub plan: &'a Plan,
+}
+
+/// The pictures of a plan that changes.
+pub struct Pictures {
+    /// Renders both.
+    pub renderer: Renderer,
+    /// Heights, maps and textures.
+    pub assets: Assets,
+    extras: Extras,
+    /// What is wanted, counted from 1.
+    wish: u64,
+    plan: Option<Plan>,
+    /// Whether the plan goes on changing, so that only small pictures are made.
+    pub moving: bool,
+    divisor: usize,
+    /// The last times of small pictures.
+    recent: Vec<f64>,
+    /// Whether small pictures are to be larger from the next rest on.
+    larger: bool,
+    small: Picture,
+    full: Picture,
+}
+
+impl Pictures {
+    /// No pictures yet.
+    pub fn new(device: Arc<Device>) -> Self {
+        Self {
+            renderer: Renderer::sharing(device),
+            assets: Assets::default(),
+            extras: Self::extras_of(Extras::default()),
+            wish: 0,
+            plan: None,
+            moving: false,
+            divisor: 2,
+            recent: Vec::new(),
+            larger: false,
+            small: Picture::default(),
+            full: Picture::default(),
+        }
+    }
+
+    fn extras_of(extras: Extras) -> Extras {
+        Extras {
+            shown: true,
+            reuse: true,
+            ..extras
+        }
+    }
+
+    /// Keeps other layers from now on.
+    pub fn keep(&mut self, extras: Extras) {
+        let extras = Self::extras_of(extras);
+        if extras != self.extras {
+            self.extras = extras;
+            self.forget();
+        }
+    }
+
+    /// Makes everything again: shader texts or files have changed.
+    pub fn forget(&mut self) {
+        for picture in [&mut self.small, &mut self.full] {
+            picture.work = None;
+            picture.under_way = None;
+            picture.made = None;
+        }
+        self.wish += 1;
+    }
+
+    /// Asks for pictures of a plan that passes [`Plan::check`].
+    pub fn want(&mut self, plan: &Plan) {
+        if self.plan.as_ref() != Some(plan) {
+            self.wish += 1;
+            self.plan = Some(plan.clone());
+        }
+    }
+
+    /// Makes the pictures again with other texts of shaders. Until they are compiled, the old
+    /// programs stay.
+    pub fn again(&mut self) {
+        self.wish += 1;
+    }
+
+    /// The number of the plan that is wanted; it grows with every change.
+    pub fn wish(&self) -> u64 {
+        self.wish
+    }
+
+    /// Gives up what cannot be rendered, until another plan comes.
+    fn fail(&mut self) {
+        self.small.under_way = None;
+        self.full.under_way = None;
+        self.plan = None;
+    }
+
+    /// The small picture's plan. It has no cones where they are optional: so few pixels share few
+    /// steps, and cones that come and go with the view would make other buffers.
+    fn small_plan(&mut self, plan: &Plan) -> Plan {
+        if !self.moving && std::mem::take(&mut self.larger) {
+            self.divisor -= 1;
+        }
+        let mut small = plan.clone();
+        let divisor = DIVISORS[self.divisor];
+        small.size = plan.size.map(|n| n.div_ceil(divisor).max(1));
+        let optional = matches!(plan.scene, Scene::Distance(_)) && plan.march.may_drop_cones();
+        // Who looks at the levels wants to see some.
+        if optional && !self.extras.levels {
+            small.march.coarsest = Some(1);
+        }
+        small
+    }
+
+    /// Whether the full picture of a plan comes at once.
+    fn is_quick(&self, plan: &Plan) -> bool {
+        let Some((_, made)) = self.full.made.as_ref() else {
+            return false;
+        };
+        // Only what a change makes again takes time.
+        made.size == plan.size
+            && (redo(made, plan) <= Redo::Tone
+                || self.full.took_ms.is_some_and(|ms| ms <= AT_ONCE_MS))
+    }
+
+    /// Submits some work and never waits. Returns whether a picture was finished, which
+    /// [`Pictures::finished`] has then.
+    ///
+    /// # Errors
+    /// As [`Work::advance`]. Nothing more is tried until another plan comes.
+    pub fn advance(&mut self) -> Result<bool, RenderError> {
+        let advanced = self.try_advance();
+        if advanced.is_err() {
+            self.fail();
+        }
+        advanced
+    }
+
+    fn try_advance(&mut self) -> Result<bool, RenderError> {
+        self.renderer.device.check()?;
+        let Some(plan) = self.plan.clone() else {
+            return Ok(false);
+        };
+        let stale = |picture: &Picture, wish: u64| match &picture.under_way {
+            Some((of, _)) => *of != wish,
+            None => false,
+        };
+        if stale(&self.full, self.wish) {
+            // What is in flight ends by itself.
+            self.full.under_way = None;
+        }
+        if self.small.under_way.is_some() {
+            let finished = self.small.advance(SLICE_MS)?;
+            if finished {
+                self.follow_time();
+            }
+            return Ok(finished && !self.full.is_made(self.wish));
+        }
+        if self.full.is_made(self.wish) {
+            return Ok(false);
+        }
+        if self.full.under_way.is_none() {
+            if !self.small.is_made(self.wish) && !self.is_quick(&plan) {
+                let small = (self.wish, self.small_plan(&plan));
+                let assets = &self.assets;
+                self.small
+                    .begin(&mut self.renderer, assets, self.extras, small)?;
+                return self.small.advance(SLICE_MS);
+            }
+            if self.moving && !self.is_quick(&plan) {
+                return Ok(false);
+            }
+            let full = (self.wish, plan);
+            let assets = &self.assets;
+            self.full
+                .begin(&mut self.renderer, assets, self.extras, full)?;
+        }
+        self.full.advance(SLICE_MS)
+    }
+
+    /// Chooses the size of small pictures by the middle of the last times. Other sizes need other
+    /// buffers, so the size grows at rest only. It shrinks too if a flight would stutter.
+    fn follow_time(&mut self) {
+        self.recent.extend(self.small.took_ms);
+        if self.recent.len() < RECENT {
+            return;
+        }
+        let mut times = std::mem::take(&mut self.recent);
+        times.sort_by(f64::total_cmp);
+        let ms = times[RECENT / 2];
+        if ms > AIM_MS[1] && self.divisor + 1 < DIVISORS.len() {
+            self.divisor += 1;
+        } else if ms < AIM_MS[0] && self.divisor > 1 {
+            // Until the next rest.
+            self.larger = true;
+        }
+    }
+
+    /// The best finished picture: the full one of what is wanted, else the small one.
+    pub fn finished(&self) -> Option<Finished<'_>> {
+        let is_full = self.full.is_made(self.wish);
+        let picture = if is_full { &self.full } else { &self.small };
+        let (wish, plan) = picture.made.as_ref()?;
+        Some(Finished {
+            wish: *wish,
+            is_full,
+            texture: picture.work.as_ref()?.picture(),
+            frame: picture.frame.as_ref()?,
+            plan,
+        })
+    }
+
+    /// Whether there is something to do.
+    pub fn is_busy(&self) -> bool {
+        self.small.under_way.is_some()
+            || self.plan.is_some() && !self.full.is_made(self.wish) && !self.rests()
+    }
+
+    /// Whether a flight waits for its next change.
+    fn rests(&self) -> bool {
+        self.moving && self.small.is_made(self.wish) && self.full.under_way.is_none()
+    }
+
+    /// Whether the full picture of what is wanted is there.
+    pub fn is_full(&self) -> bool {
+        self.full.is_made(self.wish)
+    }
+
+    /// What is under way.
+    pub fn progress(&self) -> Option<Progress> {
+        let under_way = [&self.full, &self.small].into_iter();
+        let mut under_way = under_way.filter(|picture| picture.under_way.is_some());
+        Some(under_way.next()?.work.as_ref()?.progress())
+    }
+
+    /// The times of the last small and of the last full picture, in milliseconds.
+    pub fn times(&self) -> [Option<f64>; 2] {
+        [self.small.took_ms, self.full.took_ms]
+    }
+
+    /// Buffers that were made and programs that were compiled so far, over all pictures.
+    pub fn traffic(&self) -> Traffic {
+        Traffic {
+            allocations: self.small.allocations + self.full.allocations,
+            compilations: self.small.compilations + self.full.compilations,
+            uploads: self.small.uploads + self.full.uploads,
+            ..Traffic::default()
+        }
+    }
+}
+
+/// The most that the change from one plan to another makes again.
+pub fn redo(from: &Plan, to: &Plan) -> Redo {
+    let (mut from, mut to) = (from.clone(), to.clone());
+    if from.scene.kind() != to.scene.kind() || from.scene.formula() != to.scene.formula() {
+        return Redo::Assets;
+    }
+    let sections = crate::preset::SECTIONS.into_iter();
+    let changes = sections.flat_map(|section| {
+        let old = from.keys(section).unwrap_or_default();
+        let new = to.keys(section).unwrap_or_default();
+        let pairs = old.into_iter().zip(new);
+        let changed = pairs.filter(|(old, new)| old.slot.get() != new.slot.get());
+        let redo = changed.filter_map(|(old, _)| old.redo);
+        redo.collect::<Vec<_>>()
+    });
+    changes.max().unwrap_or(Redo::Nothing)
+}

@@ -1,0 +1,81 @@
+//! Files that change while they are shown: the preset, and the texts of shaders.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::SystemTime;
+
+use crate::base::shader::Sources;
+
+/// When files were written last.
+#[derive(Debug, Default)]
+pub struct Watched {
+    files: Vec<PathBuf>,
+    seen: Vec<Option<SystemTime>>,
+}
+
+fn written(path: &Path) -> Option<SystemTime> {
+    fs::metadata(path).ok()?.modified().ok()
+}
+
+impl Watched {
+    /// Watches files as they are now.
+    pub fn new(files: Vec<PathBuf>) -> Self {
+        let seen = files.iter().map(|file| written(file)).collect();
+        Self { files, seen }
+    }
+
+    /// Whether any was written since the last question. One that is gone for now did not change:
+    /// editors replace files.
+    pub fn changed(&mut self) -> bool {
+        let mut changed = false;
+        for (file, seen) in self.files.iter().zip(&mut self.seen) {
+            let now = written(file);
+            if now.is_some() && now != *seen {
+                *seen = now;
+                changed = true;
+            }
+        }
+        changed
+    }
+}
+
+/// The files of a folder and the folders in it.
+pub fn files_in(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let paths = entries.flatten().map(|entry| entry.path());
+    let files = paths.flat_map(|path| match path.is_dir() {
+        true => files_in(&path),
+        false => vec![path],
+    });
+    files.collect()
+}
+
+/// The texts of shaders in a folder laid out like `wgsl/` of the sources. The program has its own
+/// text for a file that is not there.
+pub fn sources(folder: PathBuf) -> Sources {
+    Arc::new(move |path: &str| {
+        let path = path.strip_prefix("wgsl/").unwrap_or(path);
+        fs::read_to_string(folder.join(path)).ok()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_is_written_again_has_changed_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.toml");
+        let mut watched = Watched::new(vec![file.clone()]);
+        assert!(!watched.changed());
+        fs::write(&file, "1").expect("written");
+        assert!(watched.changed() && !watched.changed());
+        fs::remove_file(&file).expect("removed");
+        assert!(!watched.changed());
+        assert_eq!(files_in(folder.path()), Vec::<PathBuf>::new());
+    }
+}

@@ -1,0 +1,86 @@
+//! A still that is rendered while the window rests.
+
+use std::io::Cursor;
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+use crate::gpu::render::Renderer;
+use crate::gpu::work::Work;
+use crate::picture::frame::Frame;
+use crate::picture::{BitDepth, Layer, Shades, write_png};
+use crate::plan::{Extras, Plan};
+use crate::preset;
+use crate::preview::document::write;
+use crate::scene::Assets;
+
+/// Milliseconds of work in each turn of the loop.
+const SLICE_MS: f64 = 20.0;
+
+/// A still under way.
+pub struct Still {
+    plan: Plan,
+    path: PathBuf,
+    work: Option<Work>,
+    written: Option<Receiver<Result<PathBuf, String>>>,
+}
+
+impl Still {
+    /// Begins a still of a plan that passes [`Plan::check`].
+    ///
+    /// # Errors
+    /// The device failed or has no room.
+    pub fn begin(
+        renderer: &mut Renderer,
+        plan: Plan,
+        assets: &Assets,
+        path: PathBuf,
+    ) -> Result<Self, String> {
+        let work = renderer.begin(&plan, assets, Extras::default());
+        Ok(Self {
+            work: Some(work.map_err(|e| e.to_string())?),
+            plan,
+            path,
+            written: None,
+        })
+    }
+
+    /// How much is done.
+    pub fn done(&self) -> f64 {
+        self.work.as_ref().map_or(1.0, |work| work.progress().done)
+    }
+
+    /// Goes on. Returns the file once it is written, or why it is not.
+    pub fn advance(&mut self) -> Option<Result<PathBuf, String>> {
+        if let Some(work) = &mut self.work {
+            let advanced = work.advance(SLICE_MS).and_then(|()| work.poll());
+            match advanced {
+                Ok(None) => return None,
+                Ok(Some(frame)) => self.write(frame),
+                Err(e) => return Some(Err(e.to_string())),
+            }
+            self.work = None;
+        }
+        match self.written.as_ref()?.try_recv() {
+            Ok(written) => Some(written),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Err("the still was not written".into())),
+        }
+    }
+
+    /// Writes the file on a thread of its own.
+    fn write(&mut self, frame: Frame) {
+        let (send, receive) = channel();
+        let (plan, path) = (self.plan.clone(), self.path.clone());
+        std::thread::spawn(move || {
+            let mut content = Vec::new();
+            let shades = Shades::new(Layer::Color, &frame, &plan);
+            let text = preset::write(&plan);
+            let to = &mut Cursor::new(&mut content);
+            let encoded = write_png(to, &shades, BitDepth::Eight, &plan.title, &text);
+            let written = encoded.and_then(|()| write(&path, &content));
+            // The window may be closed by now.
+            let _ = send.send(written.map(|()| path).map_err(|e| e.to_string()));
+        });
+        self.written = Some(receive);
+    }
+}

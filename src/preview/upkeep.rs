@@ -1,0 +1,100 @@
+//! What keeps a session going: files that change, unsaved work, and lost devices.
+
+use std::time::{Duration, Instant};
+
+use crate::gpu::RenderError;
+use crate::gpu::device::DeviceError;
+use crate::preset;
+use crate::preview::error::PreviewError;
+use crate::preview::keep;
+use crate::preview::live::Live;
+use crate::preview::pictures::Pictures;
+use crate::preview::reload::Watched;
+use crate::preview::window::REST;
+
+/// Time after a change until it is kept.
+const KEEP: Duration = Duration::from_secs(1);
+/// So often a device is opened again.
+const MOST_LOSSES: u32 = 3;
+
+impl Live {
+    /// After an error: a lost device is opened again, and everything else is told.
+    pub fn failed(&mut self, error: RenderError) -> Result<(), PreviewError> {
+        let RenderError::Device(lost @ DeviceError::Lost { .. }) = error else {
+            self.warn(error.to_string());
+            return Ok(());
+        };
+        self.losses += 1;
+        if self.losses > MOST_LOSSES {
+            return Err(lost.into());
+        }
+        self.stage.reopen()?;
+        let mut pictures = Pictures::new(self.stage.screen.device().clone());
+        pictures.assets = self.pictures.assets.clone();
+        pictures.renderer.sources = self.pictures.renderer.sources.clone();
+        self.pictures = pictures;
+        // The new device has no textures of the panel.
+        let device = &self.stage.screen.device().device;
+        let most = device.limits().max_texture_dimension_2d as usize;
+        self.ctx = egui::Context::default();
+        self.gui = egui_winit::State::new(
+            self.ctx.clone(),
+            egui::ViewportId::ROOT,
+            &self.stage.window,
+            Some(self.stage.window.scale_factor() as f32),
+            None,
+            Some(most),
+        );
+        self.tell("the device was lost and is open again", false);
+        Ok(())
+    }
+
+    /// Takes in files that have changed.
+    pub fn look_at_files(&mut self) {
+        if self.shader_files.changed() {
+            self.pictures.again();
+            self.tell("shaders read again", false);
+        }
+        if !self.preset_file.changed() {
+            return;
+        }
+        let Some(path) = self.document.path.clone() else {
+            return;
+        };
+        match preset::load(&path, &[]) {
+            Ok(preset) if preset.plan == *self.document.saved() => {}
+            Ok(preset) => {
+                self.document.reload(preset.plan);
+                self.show_moment();
+                self.tell(format!("read {} again", path.display()), false);
+            }
+            Err(e) => self.tell(e.to_string(), true),
+        }
+    }
+
+    /// After the document was saved: its file is the one to watch.
+    pub fn watch_file(&mut self) {
+        self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
+        keep::drop(self.options.kept.as_deref(), &self.document);
+        self.unkept = None;
+    }
+
+    /// Keeps unsaved work, so that it survives a crash.
+    pub fn keep_work(&mut self) {
+        if !self.document.is_changed() || self.offered.is_some() {
+            return;
+        }
+        let plan = &self.document.plan;
+        let since = match &self.unkept {
+            Some((since, kept)) if kept == plan => *since,
+            _ => {
+                self.unkept = Some((Instant::now(), plan.clone()));
+                return;
+            }
+        };
+        if since.elapsed() > KEEP && since.elapsed() < KEEP + 2 * REST {
+            // A cache that cannot be written is no reason to disturb.
+            let _ = keep::keep(self.options.kept.as_deref(), &self.document);
+        }
+    }
+}
