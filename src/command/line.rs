@@ -108,6 +108,8 @@ impl Line {
             Verb::Bench(Bench::Steps(args)) => bench::steps::run(args),
             Verb::Bench(Bench::Cones(args)) => bench::cones::run(args),
             Verb::Bench(Bench::Calibrate(args)) => bench::calibrate::run(args),
+            #[cfg(feature = "preview")]
+            Verb::Bench(Bench::Flight(args)) => bench::flight::run(args),
             Verb::ConeMap(ConeMapVerb::Make(args)) => conemap::make::run(args),
             Verb::ConeMap(ConeMapVerb::Inspect(args)) => conemap::inspect::run(args),
             Verb::ConeMap(ConeMapVerb::Convert(args)) => conemap::convert::run(args),

@@ -1,7 +1,8 @@
 //! Where a render writes its picture, and in which format.
 
 use std::ffi::OsStr;
-use std::io::Cursor;
+use std::fs::{self, File};
+use std::io::{BufReader, Cursor, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
@@ -10,9 +11,12 @@ use crate::command::failure::usage;
 use crate::command::render::Render;
 use crate::command::sink::{ending, is_stdout};
 use crate::picture::frame::Frame;
-use crate::picture::{Layer, OutputError, Shades, write_exr, write_jpeg, write_png, write_webp};
+use crate::picture::{
+    LAYER_KEYWORD, Layer, OutputError, Shades, write_exr, write_jpeg, write_png, write_webp,
+};
 use crate::plan::{Extras, Plan};
 use crate::preset;
+use crate::raster::text_chunk::{SIGNATURE, text};
 use crate::raster::{self, open::open};
 
 /// The format of a picture.
@@ -122,10 +126,20 @@ impl Format {
 /// The longest part of a file's name that tells settings. File systems allow 255 bytes in all.
 const MOST_SETTINGS: usize = 120;
 
+/// The layer that a PNG of this program shows.
+fn layer_of(file: &Path) -> Option<Layer> {
+    let mut file = BufReader::new(File::open(file).ok()?);
+    file.seek(SeekFrom::Start(SIGNATURE.len() as u64)).ok()?;
+    match text(&mut file, LAYER_KEYWORD).ok()? {
+        Some(name) => Layer::named(&name),
+        None => Some(Layer::Color),
+    }
+}
+
 /// The file that a picture goes to without -o: `NAME.png`, with other settings
 /// `NAME-camera.fov=33.png`, at a moment `NAME-at=2.png`, with another size `NAME-640x360.png`, and of another layer
-/// `NAME.depth.png`. Only a picture of this program is replaced. With `--set` or a built-in
-/// preset it must have the same settings. The preset in a file may have been edited since.
+/// `NAME.depth.png`. Only a picture of this program, of the same layer and settings, is replaced. The
+/// preset in a file may have been edited since.
 ///
 /// # Errors
 /// The file exists and may not be replaced.
@@ -160,9 +174,13 @@ pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<Pa
     }
     let is_png = open(&file).is_ok_and(|opened| opened.format == raster::open::Format::Png);
     let picture = preset::find(&file).ok().filter(|_| is_png);
-    let may_differ = args.set.is_empty() && preset::file(&args.preset).is_some();
+    let written = |path: &Path| fs::metadata(path).and_then(|m| m.modified()).ok();
+    // A file that was written after the picture was edited. An older one is another preset.
+    let edited = preset::file(&args.preset).is_some_and(|own| written(&own) > written(&file));
+    let may_differ = args.set.is_empty() && edited;
     let why = match picture {
         None => "is no picture of this program",
+        Some(_) if layer_of(&file) != Some(args.layer) => "shows another layer",
         Some(old) if !may_differ && old.text != preset::write(plan) => "has other settings",
         Some(_) => return Ok(file),
     };

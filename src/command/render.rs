@@ -37,8 +37,8 @@ pub struct Render {
     ///
     /// Without -o the picture goes to the current folder as NAME.png, with --set as
     /// NAME-camera.fov=60.png, with another --size as NAME-640x360.png, and with another
-    /// --layer as NAME.depth.png. Only a picture of this program is replaced, and with --set
-    /// or a built-in preset only one with the same settings.
+    /// --layer as NAME.depth.png. Only a picture of the same layer and settings is replaced, or
+    /// one that is older than a preset's file.
     ///
     /// A PNG carries its preset and can be rendered again; JPEG and WebP carry none. WebP is
     /// without loss. An EXR has the channels R, G, B (linear), A (1), Z (along the view

@@ -146,6 +146,11 @@ impl<'a> Shades<'a> {
         self.layer == Layer::Depth
     }
 
+    /// The layer.
+    pub fn layer(&self) -> Layer {
+        self.layer
+    }
+
     /// Whether the picture shows colours, and not data.
     pub fn is_color(&self) -> bool {
         self.layer == Layer::Color

@@ -8,6 +8,9 @@ use crate::picture::layer::Shades;
 use crate::preset::PNG_KEYWORD;
 use crate::raster::png::{self, BitDepth};
 
+/// Keyword of the text that names the layer, if it is not the colours.
+pub const LAYER_KEYWORD: &str = "conemarch layer";
+
 /// Writes a layer as PNG. `preset` is the text of the plan that it was rendered from.
 ///
 /// # Errors
@@ -19,9 +22,14 @@ pub fn write_png(
     title: &str,
     preset: &str,
 ) -> Result<(), OutputError> {
+    let layer = match shades.is_color() {
+        true => "",
+        false => shades.layer().name(),
+    };
     let texts = [
         ("Title", title),
         ("Software", SOFTWARE),
+        (LAYER_KEYWORD, layer),
         (PNG_KEYWORD, preset),
     ];
     let there = texts.into_iter().filter(|(_, text)| !text.is_empty());

@@ -20,6 +20,8 @@ use crate::scene::{Assets, Scene};
 /// Milliseconds of work that are submitted at once. What was submitted must end before another plan
 /// begins, and a software device lets the host wait for it.
 const SLICE_MS: f64 = 6.0;
+/// The same of full pictures. Small slices cost them time.
+const FULL_SLICE_MS: f64 = 14.0;
 /// The time that a small picture should take, in milliseconds. Below the first it becomes larger,
 /// above the second smaller.
 const AIM_MS: [f64; 2] = [11.0, 36.0];
@@ -276,7 +278,7 @@ impl Pictures {
             self.full
                 .begin(&mut self.renderer, assets, self.extras, full)?;
         }
-        self.full.advance(SLICE_MS)
+        self.full.advance(FULL_SLICE_MS)
     }
 
     /// Chooses the size of small pictures by the middle of the last times. Other sizes need other

@@ -45,7 +45,12 @@ pub struct Options {
 /// # Errors
 /// No window opens, or no adapter can draw to it.
 pub fn run(options: Options) -> Result<Option<Figures>, PreviewError> {
-    let no_display = |e: winit::error::EventLoopError| PreviewError::Display(e.to_string());
+    let no_display = |e: winit::error::EventLoopError| {
+        // The places in the sources before it tell a user nothing.
+        let text = e.to_string();
+        let why = text.rsplit(": ").next().unwrap_or_default();
+        PreviewError::Display(why.to_lowercase())
+    };
     let event_loop = EventLoop::new().map_err(no_display)?;
     let mut app = App {
         options: Some(options),

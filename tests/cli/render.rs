@@ -48,6 +48,19 @@ fn a_picture_without_a_name_replaces_only_its_own_like() {
     render("--size 8x4 --layer state");
     let all = "my-8x4.png my-8x4.state.png my.depth.png my.png my.toml";
     assert_eq!(folder.files().join(" "), all);
+    // A layer under the name of the picture, and another preset of the same name.
+    folder.done("render my.toml --device cpu --size 9x4 --layer depth -o my-9x4.png");
+    let says = "`my-9x4.png` exists and shows another layer|-o";
+    folder.fails("render my.toml --device cpu --size 9x4", 2, says);
+    std::fs::create_dir(folder.0.join("b")).unwrap();
+    folder.write(
+        "b/my.toml",
+        "[scene]\nkind = \"slab\"\n[image]\nsize = [24, 16]\n",
+    );
+    let old = std::fs::File::open(folder.0.join("b/my.toml")).unwrap();
+    old.set_modified(std::time::SystemTime::UNIX_EPOCH).unwrap();
+    let says = "`my.png` exists and has other settings|-o";
+    folder.fails("render b/my.toml --device cpu", 2, says);
     assert_eq!(folder.bytes("my.png"), whole);
     assert_eq!(pixels(folder.bytes("my-8x4.png")).0.width, 8);
     let other = "render my.toml --device cpu --set camera.fov=33";

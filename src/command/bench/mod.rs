@@ -7,6 +7,8 @@
 //! - [`common`]: the options of measurements; [`runner`]: their renders
 //! - [`files`]: rows as files; [`table`]: as tables; [`plot`]: as a picture
 
+//! - `flight`: how quickly a preview answers, without its window
+
 use clap::Subcommand;
 
 pub mod calibrate;
@@ -15,6 +17,8 @@ pub mod cone_rows;
 pub mod cones;
 pub mod error;
 pub mod files;
+#[cfg(feature = "preview")]
+pub mod flight;
 pub mod plot;
 pub mod row;
 pub mod runner;
@@ -34,4 +38,7 @@ pub enum Bench {
     Cones(cones::ConesBench),
     /// Propose values of scene.lipschitz, march.shell and march.fudge that get at most a given share of the pixels wrong
     Calibrate(calibrate::CalibrateBench),
+    /// How quickly a preview answers, without its window
+    #[cfg(feature = "preview")]
+    Flight(flight::FlightBench),
 }

@@ -1,0 +1,276 @@
+//! `conemarch bench flight`: how quickly a preview answers, without its window.
+//!
+//! The pictures are those of the window: small ones while the plan changes, full ones when it
+//! rests. What a screen adds is not in the times.
+
+use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use anyhow::Result;
+use clap::{Args, ValueHint};
+use serde::Serialize;
+
+use crate::command::arguments::size;
+use crate::command::executor::{Executor, device};
+use crate::command::failure::usage;
+use crate::command::print::{print, say};
+use crate::command::progress::Reporter;
+use crate::command::render::loaded;
+use crate::command::sink::{Parcel, Sink};
+use crate::command::table::table;
+use crate::command::{completions, interrupt};
+use crate::gpu::adapters::Choice;
+use crate::plan::{Extras, Plan};
+use crate::preview::flight::orbit;
+use crate::preview::pictures::Pictures;
+use crate::scene::Assets;
+
+/// What `bench flight` takes.
+#[derive(Args, Debug)]
+pub struct FlightBench {
+    /// Presets to fly through [default: mandelbox mandelbox-gate terrain]
+    #[arg(value_name = "PRESET", add = completions::presets())]
+    presets: Vec<PathBuf>,
+
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = size)]
+    size: [u32; 2],
+
+    /// Pictures of the flight
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    frames: u32,
+
+    /// Who renders: auto, gpu, software, or an index or part of a name from `devices`
+    #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
+    device: Choice,
+
+    /// Write the rows as JSON too, - for standard output
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    json: Option<PathBuf>,
+}
+
+/// The figures of one preset. Times are medians in milliseconds.
+#[derive(Debug, Serialize)]
+struct Row {
+    preset: String,
+    size: [u32; 2],
+    device: String,
+    /// From a change to its first picture, and 95 of 100 of them.
+    answer_ms: f64,
+    answer_p95_ms: f64,
+    /// Pictures per second in a flight.
+    frames_per_second: f64,
+    /// The longest turn: so long does an event wait for work that was submitted.
+    turn_p99_ms: f64,
+    /// Sets of buffers that the second half of the flight made.
+    allocations: u32,
+    /// A render without a preview, again on a warm device.
+    render_ms: f64,
+    /// From rest to the full picture from another eye, with another light, and with another
+    /// exposure.
+    full_ms: f64,
+    look_ms: f64,
+    exposure_ms: f64,
+}
+
+/// Times one session.
+struct Session<'a> {
+    pictures: Pictures,
+    progress: &'a mut Reporter,
+    turns: Vec<f64>,
+}
+
+fn ms(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}
+
+/// One of the sorted times.
+fn at(times: &[f64], share: f64) -> f64 {
+    let mut times = times.to_vec();
+    times.sort_by(f64::total_cmp);
+    let last = times.len().saturating_sub(1);
+    times
+        .get((share * last as f64).round() as usize)
+        .copied()
+        .unwrap_or(f64::NAN)
+}
+
+impl Session<'_> {
+    /// Milliseconds until there is a picture of a plan: a full one, unless the plan moves.
+    fn time(&mut self, plan: &Plan, moving: bool) -> Result<f64> {
+        let began = Instant::now();
+        self.pictures.moving = moving;
+        self.pictures.want(plan);
+        loop {
+            interrupt::check()?;
+            let turn = Instant::now();
+            let finished = self.pictures.advance()?;
+            self.turns.push(ms(turn));
+            if self.pictures.is_full() || (finished && moving) {
+                return Ok(ms(began));
+            }
+            // As the window does.
+            sleep(Duration::from_micros(500));
+        }
+    }
+
+    fn median(&mut self, plans: &[Plan]) -> Result<f64> {
+        let times: Result<Vec<f64>> = plans.iter().map(|plan| self.time(plan, false)).collect();
+        Ok(at(&times?, 0.5))
+    }
+}
+
+/// The plans of a flight: along the tracks, or a quarter around the target.
+fn flight(plan: &Plan, frames: u32) -> Result<Vec<Plan>> {
+    let share = |i: u32| f64::from(i) / f64::from(frames);
+    let one = |i: u32| {
+        if plan.tracks.is_empty() {
+            let mut plan = plan.clone();
+            let about = plan.camera.target;
+            orbit(&mut plan.camera, about, 1.5 * share(i), 0.0);
+            return Ok(plan);
+        }
+        let at = plan.at(share(i) * plan.time.length);
+        at.map_err(|fault| usage(format!("{}: {}", fault.key, fault.why)))
+    };
+    (0..frames).map(one).collect()
+}
+
+fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row> {
+    let (preset, assets) = loaded(preset, &[])?;
+    let plan = Plan {
+        size: args.size,
+        ..preset.plan
+    };
+    let plans = flight(&plan, args.frames.max(20))?;
+    let (executor, _) = Executor::open(&args.device)?;
+    let device = executor.name();
+    let Executor::Gpu(renderer) = executor else {
+        return Err(usage("a preview needs a device; leave --device cpu out"));
+    };
+    let mut pictures = Pictures::new(renderer.device.clone());
+    drop(renderer);
+    pictures.assets = assets;
+    pictures.keep(Extras {
+        unread: true,
+        ..Extras::default()
+    });
+    let mut session = Session {
+        pictures,
+        progress,
+        turns: Vec::new(),
+    };
+    let still = Plan {
+        tracks: Vec::new(),
+        ..plan.clone()
+    };
+    // Maps are made, programs compiled, and sizes chosen.
+    session.time(&still, false)?;
+    for plan in &plans[..10] {
+        session.time(plan, true)?;
+    }
+    let (mut answers, mut made) = (Vec::new(), 0);
+    session.turns.clear();
+    let began = Instant::now();
+    for (i, plan) in plans.iter().enumerate() {
+        session
+            .progress
+            .report(i as f64 / plans.len() as f64, &preset.name);
+        if i == plans.len() / 2 {
+            made = session.pictures.traffic().allocations;
+        }
+        answers.push(session.time(plan, true)?);
+    }
+    let frames_per_second = plans.len() as f64 / began.elapsed().as_secs_f64();
+    let allocations = session.pictures.traffic().allocations - made;
+    let changed = |change: &dyn Fn(&mut Plan, f64)| {
+        let one = |i: i32| {
+            let mut plan = still.clone();
+            change(&mut plan, f64::from(i));
+            plan
+        };
+        (1..=5).map(one).collect::<Vec<_>>()
+    };
+    let eyes: Vec<Plan> = plans.iter().step_by(plans.len() / 5).cloned().collect();
+    let full_ms = session.median(&eyes)?;
+    let turn_p99_ms = at(&session.turns, 0.99);
+    session.time(&still, false)?;
+    let look_ms = session.median(&changed(&|plan, i| plan.look.key += 0.1 * i))?;
+    session.time(&still, false)?;
+    let exposure_ms = session.median(&changed(&|plan, i| plan.look.exposure += 0.1 * i))?;
+    let assets: Assets = session.pictures.assets.clone();
+    let renders = eyes.iter().map(|plan| {
+        let began = Instant::now();
+        let renderer = &mut session.pictures.renderer;
+        renderer.render(plan, &assets, Extras::default(), &mut |_| true)?;
+        Ok(ms(began))
+    });
+    let renders: Result<Vec<f64>> = renders.collect();
+    Ok(Row {
+        preset: preset.name,
+        size: args.size,
+        device,
+        answer_ms: at(&answers, 0.5),
+        answer_p95_ms: at(&answers, 0.95),
+        frames_per_second,
+        turn_p99_ms,
+        allocations,
+        // The first one allocates.
+        render_ms: at(&renders?[1..], 0.5),
+        full_ms,
+        look_ms,
+        exposure_ms,
+    })
+}
+
+/// Measures flights.
+///
+/// # Errors
+/// A wrong preset, no device, a device that fails, an unwritable file, an interrupt.
+pub fn run(args: &FlightBench) -> Result<()> {
+    interrupt::listen();
+    let json = args.json.as_deref().map(Sink::prepare).transpose()?;
+    let usual = ["mandelbox", "mandelbox-gate", "terrain"].map(PathBuf::from);
+    let presets = match args.presets.is_empty() {
+        true => &usual[..],
+        false => &args.presets,
+    };
+    let mut progress = Reporter::start("flying");
+    let rows: Result<Vec<Row>> = presets
+        .iter()
+        .map(|p| row(args, p, &mut progress))
+        .collect();
+    drop(progress);
+    let rows = rows?;
+    if let Some(row) = rows.first() {
+        let [w, h] = row.size;
+        say(&format!("{w} x {h} on {}", row.device));
+    }
+    let whole = |x: f64| format!("{x:.0}");
+    let ratio = |x: f64| format!("{x:.2}");
+    print(
+        table(
+            &rows,
+            &[
+                ("preset", &|r| r.preset.clone()),
+                ("answer, ms", &|r| whole(r.answer_ms)),
+                ("p95", &|r| whole(r.answer_p95_ms)),
+                ("pictures per second", &|r| whole(r.frames_per_second)),
+                ("turn p99, ms", &|r| whole(r.turn_p99_ms)),
+                ("new buffers", &|r| r.allocations.to_string()),
+                ("render, ms", &|r| whole(r.render_ms)),
+                ("full / render", &|r| ratio(r.full_ms / r.render_ms)),
+                ("look / render", &|r| ratio(r.look_ms / r.render_ms)),
+                ("exposure, ms", &|r| whole(r.exposure_ms)),
+            ],
+        )
+        .as_bytes(),
+    )?;
+    if let Some(json) = json {
+        let mut parcel = Parcel::default();
+        parcel.put_json(json, &rows)?;
+        parcel.hand_over()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,245 @@
+//! The preview in a real window: what it shows at rest is what the other commands write.
+#![cfg(all(target_os = "linux", feature = "preview"))]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    reason = "tests are read by their names, and one that panics has failed"
+)]
+
+mod desktop;
+#[path = "../common/folder.rs"]
+#[allow(dead_code, reason = "other files use the rest")]
+mod folder;
+#[path = "../common/random.rs"]
+#[allow(dead_code, reason = "other files use the rest")]
+mod random;
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use conemarch::preset;
+use desktop::{Desktop, Preview, Shot};
+use folder::{Folder, output, said};
+use random::Random;
+
+/// A picture in a file.
+fn picture(folder: &Folder, name: &str) -> Shot {
+    let decoded = image::open(folder.0.join(name)).unwrap().into_rgb8();
+    Shot {
+        size: [decoded.width(), decoded.height()],
+        rgb: decoded.into_raw(),
+    }
+}
+
+const SIZE: &str = "--size 320x180";
+
+/// A film whose first moment is its still.
+const FILM: &str = r#"
+[scene]
+kind = "distance"
+formula = "mandelbox"
+[camera]
+eye = [10, -17, 12]
+[image]
+size = [320, 180]
+[time]
+length = 2
+fps = 10
+[[track]]
+key = "camera.eye"
+keys = [[0, [10, -17, 12]], [2, [17, 10, 12]]]
+"#;
+
+#[test]
+fn at_rest_the_window_shows_the_picture_of_the_file() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let view = Preview::open(&desktop, &folder.0, &format!("mandelbox {SIZE}"));
+    view.key("Tab");
+    folder.done(&format!("render mandelbox {SIZE} -o a.png"));
+    let first = picture(&folder, "a.png");
+    view.wait_for("the picture of the file", |shot| *shot == first);
+    // At rest nothing is drawn, and nearly no time is spent.
+    sleep(Duration::from_millis(500));
+    let before = view.processor_time();
+    sleep(Duration::from_secs(2));
+    let spent = view.processor_time() - before;
+    assert!(spent <= 0.05, "{spent} s of 2 at rest");
+    // A flight changes the picture, a step back brings it back.
+    view.hold("w", 400);
+    let flown = view.at_rest();
+    assert!(flown != first);
+    view.key("ctrl+z");
+    view.wait_for("the picture before the flight", |shot| *shot == first);
+    view.key("ctrl+shift+z");
+    view.wait_for("the picture after the flight", |shot| *shot == flown);
+    // What is saved is what was seen.
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(500));
+    folder.done(&format!("render mandelbox-1.toml {SIZE} -o b.png"));
+    assert!(picture(&folder, "b.png") == flown);
+    // The file is read again when it changes.
+    folder.done(&format!(
+        "render mandelbox {SIZE} --set look.fog=2 -o c.png"
+    ));
+    let text = String::from_utf8(folder.bytes("mandelbox-1.toml")).unwrap();
+    let edited = preset::read(&text, "edited").unwrap();
+    let mut foggy = preset::load("mandelbox", &[]).unwrap().plan;
+    foggy.look.fog = 2.0;
+    assert!(foggy != edited);
+    sleep(Duration::from_millis(20));
+    folder.write("mandelbox-1.toml", preset::write(&foggy));
+    let foggy = picture(&folder, "c.png");
+    view.wait_for("the edited preset", |shot| *shot == foggy);
+    // A broken file is told over the last good picture.
+    folder.write("mandelbox-1.toml", "[scene\n");
+    sleep(Duration::from_millis(800));
+    assert!(view.at_rest() == foggy);
+    view.key("Home");
+    view.wait_for("the camera of the preset", |shot| *shot == foggy);
+    view.close();
+}
+
+#[test]
+fn a_slider_is_one_step_and_the_layers_are_those_of_files() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
+    view.at_rest();
+    // The slider of `fill`, or whatever is about there: the preset tells what has changed.
+    view.drag(1, [792, 94], [812, 94]);
+    view.at_rest();
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(500));
+    let saved = preset::load(folder.0.join("mandelbox-1.toml"), &[])
+        .unwrap()
+        .plan;
+    let before = preset::load("mandelbox", &[]).unwrap().plan;
+    assert!(saved.scene != before.scene && saved.camera == before.camera);
+    view.key("ctrl+z");
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(500));
+    let undone = preset::load(folder.0.join("mandelbox-1.toml"), &[])
+        .unwrap()
+        .plan;
+    assert_eq!(undone.scene, before.scene);
+    view.key("Tab");
+    for (key, layer) in [("2", "depth"), ("3", "normal"), ("6", "state")] {
+        let file = format!("{layer}.png");
+        folder.done(&format!(
+            "render mandelbox --size 960x540 --layer {layer} -o {file}"
+        ));
+        let shown = picture(&folder, &file);
+        view.key(key);
+        view.wait_for(layer, |shot| *shot == shown);
+    }
+    view.close();
+}
+
+#[test]
+fn the_timeline_shows_the_frames_of_the_film() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    folder.write("film.toml", FILM);
+    folder.done("animate film.toml -o f-%02d.png --frames 0..7");
+    let view = Preview::open(&desktop, &folder.0, &format!("film.toml {SIZE}"));
+    view.key("Tab");
+    view.key("t");
+    let shows = |frame: u32| {
+        let wanted = picture(&folder, &format!("f-{frame:02}.png"));
+        view.wait_for(&format!("frame {frame}"), |shot| *shot == wanted);
+    };
+    shows(0);
+    for _ in 0..7 {
+        view.key("period");
+    }
+    shows(7);
+    view.key("comma");
+    shows(6);
+    // To the end, and it stops there.
+    view.key("space");
+    folder.done(&format!("render film.toml {SIZE} --at 2 -o end.png"));
+    let end = picture(&folder, "end.png");
+    view.wait_for("the end of the film", |shot| *shot == end);
+    // A key of another view at the end.
+    view.hold("d", 300);
+    view.at_rest();
+    view.key("k");
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(500));
+    let saved = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+    assert_eq!(saved.tracks.len(), 3);
+    assert!(saved.tracks[0].keys[1].value != [17.0, 10.0, 12.0]);
+    view.close();
+}
+
+#[test]
+fn a_still_and_unsaved_work_outlive_the_window() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    folder.write("film.toml", FILM);
+    let view = Preview::open(&desktop, &folder.0, &format!("film.toml {SIZE}"));
+    view.at_rest();
+    view.key("F12");
+    for _ in 0..100 {
+        if folder.files().contains(&"film-1.png".to_string()) {
+            break;
+        }
+        sleep(Duration::from_millis(100));
+    }
+    folder.done("render film.toml -o a.png");
+    assert_eq!(
+        folder.files(),
+        ["a.png", "cache", "film-1.png", "film.toml"]
+    );
+    assert!(picture(&folder, "film-1.png") == picture(&folder, "a.png"));
+    view.hold("w", 400);
+    sleep(Duration::from_millis(2500));
+    // A crash.
+    drop(view);
+    let kept = std::fs::read_dir(folder.0.join("cache/conemarch")).unwrap();
+    let kept: Vec<_> = kept.map(|file| file.unwrap().path()).collect();
+    assert_eq!(kept.len(), 1, "{kept:?}");
+    let before = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+    let plan = preset::load(&kept[0], &[]).unwrap().plan;
+    assert!(plan.camera != before.camera && plan.scene == before.scene);
+}
+
+#[test]
+fn any_size_and_any_events_do_no_harm() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let line = format!("terrain {SIZE} --stats stats.json");
+    let view = Preview::open(&desktop, &folder.0, &line);
+    let mut random = Random::new(7);
+    let keys =
+        "w a s d e q z x Home Tab t o 1 2 3 5 6 7 bracketleft bracketright k space comma ctrl+z F1";
+    let keys: Vec<&str> = keys.split(' ').collect();
+    for _ in 0..300 {
+        let mut to = |most: f64| (random.between(0.0, 1.0) * most) as u32;
+        match to(4.0) {
+            0 => view.resize(1 + to(900.0), 1 + to(600.0)),
+            1 => view.drag_at_once(
+                1 + 2 * to(2.0),
+                [to(300.0), to(150.0)],
+                [to(300.0), to(150.0)],
+            ),
+            _ => view.key(keys[to(keys.len() as f64) as usize]),
+        }
+    }
+    view.resize(320, 180);
+    view.wait_for("its size again", |shot| shot.size == [320, 180]);
+    view.close();
+    let stats = String::from_utf8(folder.bytes("stats.json")).unwrap();
+    assert!(stats.contains("answer_ms"), "{stats}");
+}
+
+#[test]
+fn without_a_display_a_sentence_tells_what_would_do() {
+    let folder = Folder::new();
+    let mut command = folder.command("preview mandelbox");
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+    let ended = output(&mut command);
+    assert_eq!(ended.status.code(), Some(1));
+    let said = said(&ended);
+    assert!(
+        said.starts_with("error: no window opens") && said.contains("render"),
+        "{said}"
+    );
+    folder.fails("preview mandelbox --wgsl none", 2, "`none` is no folder");
+}
