@@ -175,8 +175,9 @@ pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<Pa
     let is_png = open(&file).is_ok_and(|opened| opened.format == raster::open::Format::Png);
     let picture = preset::find(&file).ok().filter(|_| is_png);
     let written = |path: &Path| fs::metadata(path).and_then(|m| m.modified()).ok();
-    // A file that was written after the picture was edited. An older one is another preset.
-    let edited = preset::file(&args.preset).is_some_and(|own| written(&own) > written(&file));
+    // A file that is not older than the picture was edited, or is the picture. An older one is another
+    // preset.
+    let edited = preset::file(&args.preset).is_some_and(|own| written(&own) >= written(&file));
     let may_differ = args.set.is_empty() && edited;
     let why = match picture {
         None => "is no picture of this program",

@@ -13,7 +13,7 @@ use crate::base::outcome::State;
 use crate::base::view::footprint;
 use crate::measure::truth;
 use crate::picture::Layer;
-use crate::plan::Plan;
+use crate::plan::{Extras, Plan};
 use crate::preset::{self, SECTIONS};
 use crate::preview::document::unused;
 use crate::preview::error::PreviewError;
@@ -168,9 +168,10 @@ impl Live {
 
     /// Shows the passes one by one: the fronts of each cone level, and then the picture.
     fn next_pass(&mut self, by: i32) {
-        let levels = match self.pictures.finished() {
-            Some(finished) => finished.frame.levels.len(),
-            None => 0,
+        let plan = self.shown();
+        let levels = match plan.check() {
+            Ok(()) => plan.resolved(Extras::default()).levels().len(),
+            Err(_) => 0,
         };
         if levels == 0 {
             let text =

@@ -119,10 +119,14 @@ pub fn figures(ctx: &Context, frame: &picture::frame::Frame) {
 /// Shows the keys.
 pub fn help(ctx: &Context) {
     over(ctx, "help", Align2::CENTER_CENTER, 0.0, |ui| {
-        Grid::new("keys").show(ui, |ui| {
-            for (keys, what) in HELP {
-                ui.label(RichText::new(keys).strong());
-                ui.label(what);
+        Grid::new("keys").spacing([12.0, 3.0]).show(ui, |ui| {
+            // In two columns, for windows that are not high.
+            let half = HELP.len().div_ceil(2);
+            for row in 0..half {
+                for (keys, what) in HELP[row..].iter().step_by(half) {
+                    ui.label(RichText::new(*keys).strong());
+                    ui.label(*what);
+                }
                 ui.end_row();
             }
         });

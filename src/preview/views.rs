@@ -85,7 +85,7 @@ fn cell(frame: &Frame, level: &LevelLayer, i: usize) -> Option<(f32, u8)> {
 }
 
 /// Sky gets the colour of the level that found it, from violet for the coarsest to yellow for the
-/// ray. A hit is grey, the lighter the larger the share of the way that cones had proven.
+/// ray. A hit is grey, the lighter the less of the way was left to the ray, by powers of ten.
 fn end(frame: &Frame, i: usize) -> DVec3 {
     let passes = frame.levels.len().max(1) as f64;
     let at = frame.levels.iter().map(|level| cell(frame, level, i));
@@ -95,7 +95,9 @@ fn end(frame: &Frame, i: usize) -> DVec3 {
         (None, t) if t.is_infinite() => heat(1.0),
         (None, t) => {
             let front = at.flatten().last().map_or(0.0, |cell| cell.0);
-            DVec3::splat(0.1 + 0.85 * f64::from((front / t).clamp(0.0, 1.0)))
+            // What is left to the ray, from all of the way to a ten-thousandth.
+            let left = f64::from(1.0 - (front / t).clamp(0.0, 1.0)).max(1e-4);
+            DVec3::splat(0.95 + 0.2125 * (-4.0 - left.log10()))
         }
     }
 }

@@ -198,15 +198,15 @@ impl<'a> Preview<'a> {
         self.xdotool(&format!("mousemove --window {} {x} {y}", self.window));
     }
 
-    /// Drags with a button from one pixel to another.
+    /// Drags with a button from one pixel to another, slowly enough for a busy machine to follow.
     pub fn drag(&self, button: u32, from: [u32; 2], to: [u32; 2]) {
         self.point(from[0], from[1]);
         self.xdotool(&format!("mousedown {button}"));
-        sleep(Duration::from_millis(60));
+        sleep(Duration::from_millis(200));
         for i in 1..=4 {
             let at = [0, 1].map(|k| (from[k] * (4 - i) + to[k] * i) / 4);
             self.point(at[0], at[1]);
-            sleep(Duration::from_millis(60));
+            sleep(Duration::from_millis(200));
         }
         self.xdotool(&format!("mouseup {button}"));
     }
