@@ -125,8 +125,8 @@ impl Plan {
     }
 
     /// The keys before and after the two from `index` on, with their times. A film that loops
-    /// through the same pose goes on around its end; others start and end as slowly as they go
-    /// near it.
+    /// through the same pose goes on around its end. At the ends of other films the first or the last
+    /// pose stands twice.
     fn around(&self, times: &[f64], index: usize) -> [(f64, usize); 2] {
         let Timing {
             length, looping, ..

@@ -175,8 +175,8 @@ impl Source {
     /// Puts one entry into the plan.
     fn put(&self, plan: &mut Plan, entry: &Entry) -> Result<(), PresetError> {
         if entry.section == TRACK {
-            let known = keys().into_iter().map(|(path, _)| path).collect::<Vec<_>>();
             if plan.value(&entry.key).is_none() {
+                let known = keys().into_iter().map(|(path, _)| path).collect::<Vec<_>>();
                 let near = perhaps(nearest(&entry.key, known.iter().map(String::as_str)));
                 let why = format!("the plan has no key `{}`{near}", brief(&entry.key));
                 return Err(self.at(entry, format!("track: {why}")));

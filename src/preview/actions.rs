@@ -19,9 +19,10 @@ use crate::preview::document::unused;
 use crate::preview::error::PreviewError;
 use crate::preview::flight::{focus, look, orbit};
 use crate::preview::ground;
+use crate::preview::gui::is_in;
 use crate::preview::input::{Action, Drag, action};
 use crate::preview::live::Live;
-use crate::preview::play::{overwrite, set_view};
+use crate::preview::play::{overwrite, remove, set_view};
 use crate::preview::still::Still;
 use crate::preview::views::Shot;
 
@@ -44,7 +45,8 @@ impl Live {
         // A redraw is no input: the answer would ask for the next one.
         if !matches!(event, WindowEvent::RedrawRequested) {
             let response = self.gui.on_window_event(&self.stage.window, event);
-            taken = response.consumed;
+            // What egui knows may be older than the pointer's way onto the panel.
+            taken = response.consumed || is_in(&self.panels, self.cursor);
             if response.repaint && self.concerns_panel(event) {
                 self.paint_soon(Duration::ZERO);
             }
@@ -85,8 +87,10 @@ impl Live {
     fn concerns_panel(&self, event: &WindowEvent) -> bool {
         match event {
             WindowEvent::KeyboardInput { .. } => self.ctx.egui_wants_keyboard_input(),
-            WindowEvent::CursorMoved { .. } => {
-                self.ctx.is_pointer_over_egui() || self.ctx.egui_is_using_pointer()
+            WindowEvent::CursorMoved { position, .. } => {
+                self.ctx.egui_is_using_pointer()
+                    || is_in(&self.over, *position)
+                    || is_in(&self.over, self.cursor)
             }
             _ => true,
         }
@@ -162,6 +166,11 @@ impl Live {
                 Some(place) => self.document.change(|plan| overwrite(plan, place)),
                 None => self.tell("no key of the timeline is chosen; click one", true),
             },
+            Action::Remove => {
+                if let Some(place) = self.play.chosen.take() {
+                    self.document.change(|plan| remove(plan, place));
+                }
+            }
             Action::Quit => self.closed = true,
         }
     }

@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use egui::{Button, ComboBox, Context, Order, Panel, Rect, ScrollArea, Ui};
 
+use winit::dpi::PhysicalPosition;
+
 use crate::plan::Plan;
 use crate::preset::BUILTIN;
 use crate::preview::flight::Pace;
@@ -37,6 +39,7 @@ impl Live {
         self.gui
             .handle_platform_output(&self.stage.window, output.platform_output);
         let primitives = ctx.tessellate(output.shapes, output.pixels_per_point);
+        self.panels = pixels(&asked.parts, output.pixels_per_point);
         asked.parts.extend(areas(&ctx));
         self.over = pixels(&asked.parts, output.pixels_per_point);
         let textures = output.textures_delta;
@@ -220,6 +223,13 @@ fn areas(ctx: &Context) -> Vec<Rect> {
         let rects = over.filter_map(|layer| memory.area_rect(layer.id));
         rects.map(|rect| rect.expand(SHADOW)).collect()
     })
+}
+
+/// Whether one of some rectangles, of x, y, width and height, holds a point.
+pub fn is_in(rects: &[[u32; 4]], at: PhysicalPosition<f64>) -> bool {
+    let [px, py] = [at.x, at.y].map(|x| x.max(0.0) as u32);
+    let holds = |[x, y, w, h]: &[u32; 4]| (*x..x + w).contains(&px) && (*y..y + h).contains(&py);
+    rects.iter().any(holds)
 }
 
 /// A button of a few letters.

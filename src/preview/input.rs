@@ -77,6 +77,8 @@ pub enum Action {
     Key,
     /// Sets the chosen key to the present view.
     Overwrite,
+    /// Takes the chosen key away.
+    Remove,
     /// Closes the window.
     Quit,
 }
@@ -117,6 +119,7 @@ pub fn action(key: KeyCode, ctrl: bool, shift: bool) -> Option<Action> {
         KeyCode::Comma => Some(Action::Step(-1)),
         KeyCode::Period => Some(Action::Step(1)),
         KeyCode::KeyK => Some(Action::Key),
+        KeyCode::Delete => Some(Action::Remove),
         _ => None,
     }
 }

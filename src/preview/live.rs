@@ -77,6 +77,8 @@ pub struct Live {
     pub visible: Visible,
     /// What lies over the picture: x, y, width and height of each part in pixels.
     pub over: Vec<[u32; 4]>,
+    /// The same of the panel and the timeline alone, which take every press of a button.
+    pub panels: Vec<[u32; 4]>,
     /// Whether a value is dragged in the panel or the timeline.
     pub panel_drag: bool,
     /// When the panel is painted again.
@@ -151,6 +153,7 @@ impl Live {
                 ..Visible::default()
             },
             over: Vec::new(),
+            panels: Vec::new(),
             panel_drag: false,
             panel_due: Some(now),
             redraw: true,

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, CursorIcon, FontId, Pos2, Rect, Sense, Stroke, Ui, Vec2};
 
 use crate::plan::Plan;
-use crate::preview::play::{Place, Play, remove, retime};
+use crate::preview::play::{Place, Play, retime};
 
 /// Height of a row and of the ruler, and width of the names, in points.
 const ROW: f32 = 18.0;
@@ -96,14 +96,6 @@ pub fn show(ui: &mut Ui, plan: &Plan, play: &mut Play) -> Asked {
     let line = Stroke::new(1.5, Color32::from_rgb(240, 160, 60));
     ui.painter().vline(x, all.y_range(), line);
     ui.advance_cursor_after_rect(all);
-    if let Some(place) = play.chosen
-        && ui.input(|input| input.key_pressed(egui::Key::Delete))
-    {
-        let mut plan = plan.clone();
-        remove(&mut plan, place);
-        asked.plan = Some(plan);
-        play.chosen = None;
-    }
     asked
 }
 

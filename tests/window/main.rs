@@ -104,7 +104,7 @@ fn a_slider_is_one_step_and_the_layers_are_those_of_files() {
     let (desktop, folder) = (Desktop::new(), Folder::new());
     let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
     view.at_rest();
-    // The slider of `fill`, or whatever is about there: the preset tells what has changed.
+    // The slider of `scene.scale`.
     view.drag(1, [792, 94], [812, 94]);
     view.at_rest();
     view.key("ctrl+s");

@@ -74,8 +74,8 @@ struct Row {
     exposure_ms: f64,
 }
 
-/// Times one session.
-struct Session<'a> {
+/// Times the pictures of one preset.
+struct Flown<'a> {
     pictures: Pictures,
     progress: &'a mut Reporter,
     turns: Vec<f64>,
@@ -96,7 +96,7 @@ fn at(times: &[f64], share: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-impl Session<'_> {
+impl Flown<'_> {
     /// Milliseconds until there is a picture of a plan: a full one, unless the plan moves.
     fn time(&mut self, plan: &Plan, moving: bool) -> Result<f64> {
         let began = Instant::now();
@@ -156,7 +156,7 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         unread: true,
         ..Extras::default()
     });
-    let mut session = Session {
+    let mut flown = Flown {
         pictures,
         progress,
         turns: Vec::new(),
@@ -166,24 +166,24 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         ..plan.clone()
     };
     // Maps are made, programs compiled, and sizes chosen.
-    session.time(&still, false)?;
+    flown.time(&still, false)?;
     for plan in &plans[..10] {
-        session.time(plan, true)?;
+        flown.time(plan, true)?;
     }
     let (mut answers, mut made) = (Vec::new(), 0);
-    session.turns.clear();
+    flown.turns.clear();
     let began = Instant::now();
     for (i, plan) in plans.iter().enumerate() {
-        session
+        flown
             .progress
             .report(i as f64 / plans.len() as f64, &preset.name);
         if i == plans.len() / 2 {
-            made = session.pictures.traffic().allocations;
+            made = flown.pictures.traffic().allocations;
         }
-        answers.push(session.time(plan, true)?);
+        answers.push(flown.time(plan, true)?);
     }
     let frames_per_second = plans.len() as f64 / began.elapsed().as_secs_f64();
-    let allocations = session.pictures.traffic().allocations - made;
+    let allocations = flown.pictures.traffic().allocations - made;
     let changed = |change: &dyn Fn(&mut Plan, f64)| {
         let one = |i: i32| {
             let mut plan = still.clone();
@@ -193,16 +193,16 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         (1..=5).map(one).collect::<Vec<_>>()
     };
     let eyes: Vec<Plan> = plans.iter().step_by(plans.len() / 5).cloned().collect();
-    let full_ms = session.median(&eyes)?;
-    let turn_p99_ms = at(&session.turns, 0.99);
-    session.time(&still, false)?;
-    let look_ms = session.median(&changed(&|plan, i| plan.look.key += 0.1 * i))?;
-    session.time(&still, false)?;
-    let exposure_ms = session.median(&changed(&|plan, i| plan.look.exposure += 0.1 * i))?;
-    let assets: Assets = session.pictures.assets.clone();
+    let full_ms = flown.median(&eyes)?;
+    let turn_p99_ms = at(&flown.turns, 0.99);
+    flown.time(&still, false)?;
+    let look_ms = flown.median(&changed(&|plan, i| plan.look.key += 0.1 * i))?;
+    flown.time(&still, false)?;
+    let exposure_ms = flown.median(&changed(&|plan, i| plan.look.exposure += 0.1 * i))?;
+    let assets: Assets = flown.pictures.assets.clone();
     let renders = eyes.iter().map(|plan| {
         let began = Instant::now();
-        let renderer = &mut session.pictures.renderer;
+        let renderer = &mut flown.pictures.renderer;
         renderer.render(plan, &assets, Extras::default(), &mut |_| true)?;
         Ok(ms(began))
     });
