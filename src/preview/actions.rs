@@ -21,7 +21,7 @@ use crate::preview::flight::{focus, look, orbit};
 use crate::preview::ground;
 use crate::preview::gui::is_in;
 use crate::preview::input::{Action, Drag, action};
-use crate::preview::live::Live;
+use crate::preview::live::{Live, quoted};
 use crate::preview::play::{overwrite, remove, set_view};
 use crate::preview::still::Still;
 use crate::preview::views::Shot;
@@ -408,14 +408,5 @@ impl Live {
             }
             Err(e) => self.tell(e.to_string(), true),
         }
-    }
-}
-
-/// A name of a file as a shell takes it.
-fn quoted(text: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "_./=-,".contains(c);
-    match text.chars().all(plain) {
-        true => text.into(),
-        false => format!("'{}'", text.replace('\'', "'\\''")),
     }
 }

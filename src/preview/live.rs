@@ -393,3 +393,12 @@ impl Live {
         Ok(())
     }
 }
+
+/// A word of a command as a shell takes it.
+pub fn quoted(text: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "_./=-,".contains(c);
+    match text.chars().all(plain) {
+        true => text.into(),
+        false => format!("'{}'", text.replace('\'', "'\\''")),
+    }
+}
