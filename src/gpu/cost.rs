@@ -13,8 +13,6 @@ const FIRST_MS: f64 = 5.0;
 const FIRST_SLICE: u32 = 64 * 512;
 /// Rounds beyond the first that are expected of a stage with a step limit.
 const ROUNDS: u32 = 2;
-/// The most dispatches beyond those of the first round that are encoded ahead.
-const MOST_AHEAD: u32 = 8;
 /// The largest number of workgroups along an axis.
 const MOST_GROUPS: u32 = 65_535;
 
@@ -53,8 +51,7 @@ impl Cost {
             return first;
         }
         // One more, as another view may need it.
-        self.last
-            .map_or(first + ROUNDS, |last| last.min(first + MOST_AHEAD) + 1)
+        self.last.map_or(first + ROUNDS, |last| last + 1)
     }
 
     /// Learns from a stage that so far took so many dispatches of so many milliseconds, which

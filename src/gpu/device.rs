@@ -1,6 +1,6 @@
 //! A device, and how its loss is noticed.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use thiserror::Error;
 use wgpu::{Adapter, AdapterInfo, Features};
@@ -64,6 +64,8 @@ pub struct Device {
     /// Milliseconds since any fixed time.
     pub(super) clock: Clock,
     trouble: Arc<Mutex<Option<DeviceError>>>,
+    /// Held by the thread that submits, or that configures a surface.
+    turn: Mutex<()>,
 }
 
 impl Device {
@@ -100,7 +102,21 @@ impl Device {
             opened: None,
             clock,
             trouble,
+            turn: Mutex::default(),
         }
+    }
+
+    /// Does something while no other thread submits. wgpu fails if a surface is configured at the
+    /// time of a submission, and a map may be in the making.
+    pub fn alone<T>(&self, does: impl FnOnce() -> T) -> T {
+        let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+        does()
+    }
+
+    /// Submits commands.
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) -> wgpu::SubmissionIndex {
+        let commands = encoder.finish();
+        self.alone(|| self.queue.submit([commands]))
     }
 
     /// Bytes of the largest buffer that a program can bind.

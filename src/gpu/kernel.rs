@@ -240,7 +240,7 @@ impl Kernel {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         self.dispatch(&mut pass, &bind, groups);
         drop(pass);
-        device.queue.submit([encoder.finish()]);
+        device.submit(encoder);
         Ok(())
     }
 

@@ -118,7 +118,7 @@ impl Asked {
         drop(pass);
         let staging = Staging::new(gpu, bytes);
         staging.copy(&mut encoder, &[(&answer, 0, bytes)]);
-        gpu.queue.submit([encoder.finish()]);
+        gpu.submit(encoder);
         staging.map();
         Ok(Self {
             answer: staging,

@@ -24,11 +24,6 @@ impl Staging {
         }
     }
 
-    /// Whether it holds so many bytes.
-    pub fn holds(&self, bytes: u64) -> bool {
-        self.buffer.size() >= bytes
-    }
-
     /// Encodes copies of ranges, one after the other. Each range is a buffer, an offset and a
     /// number of bytes.
     pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, ranges: &[(&wgpu::Buffer, u64, u64)]) {
@@ -73,8 +68,50 @@ impl Staging {
     }
 
     /// Frees the buffer for the next copies.
-    pub fn unmap(&self) {
+    fn unmap(&self) {
         self.mapped.store(false, Ordering::Release);
         self.buffer.unmap();
+    }
+}
+
+/// Buffers for reading back, which many frames use.
+#[derive(Default)]
+pub struct Stagings {
+    free: Vec<Staging>,
+    /// Those that submissions of a discarded frame still fill.
+    discarded: Vec<Staging>,
+    /// How many were made.
+    pub made: u32,
+}
+
+impl Stagings {
+    /// A buffer of at least so many bytes: the smallest that is free, or a new one.
+    pub fn take(&mut self, device: &Device, bytes: u64) -> Staging {
+        for staging in std::mem::take(&mut self.discarded) {
+            match staging.is_mapped() {
+                true => self.put(staging),
+                false => self.discarded.push(staging),
+            }
+        }
+        let size = |i: &usize| self.free[*i].buffer.size();
+        let fitting = (0..self.free.len()).filter(|i| size(i) >= bytes);
+        match fitting.min_by_key(size) {
+            Some(i) => self.free.swap_remove(i),
+            None => {
+                self.made += 1;
+                Staging::new(device, bytes)
+            }
+        }
+    }
+
+    /// Takes back a buffer that was read.
+    pub fn put(&mut self, staging: Staging) {
+        staging.unmap();
+        self.free.push(staging);
+    }
+
+    /// Takes back a buffer that nobody will read.
+    pub fn discard(&mut self, staging: Staging) {
+        self.discarded.push(staging);
     }
 }

@@ -47,7 +47,7 @@ impl<T: Pod> Buffer<T> {
         let staging = create(device, "staging", size, BufferUsages::MAP_READ);
         let mut encoder = device.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&self.raw, 0, &staging, 0, size);
-        device.queue.submit([encoder.finish()]);
+        device.submit(encoder);
         let bytes = std::mem::size_of::<T>() * count.min(self.len);
         map(device, &staging, bytes)
     }
@@ -88,7 +88,7 @@ pub fn read_picture(device: &Device, picture: &wgpu::Texture) -> Result<Vec<u8>,
         layout,
     };
     encoder.copy_texture_to_buffer(picture.as_image_copy(), to, picture.size());
-    device.queue.submit([encoder.finish()]);
+    device.submit(encoder);
     let padded: Vec<u8> = map(device, &staging, bytes as usize)?;
     let rows = padded.chunks(pitch as usize);
     Ok(rows.flat_map(|r| &r[..row as usize]).copied().collect())

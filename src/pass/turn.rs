@@ -114,6 +114,16 @@ impl Turn {
         self.number + u32::from(self.begun == 1 && is_over && moving == 0)
     }
 
+    /// Dispatches that finish this round and the next one, if so many cells move so far.
+    pub fn dispatches_left(&self, moving: u32) -> u32 {
+        let groups = |chunk: u32| (self.stage.slice / chunk.max(1)).max(1);
+        let left = self
+            .groups_of_round()
+            .saturating_sub(self.first + self.groups);
+        let next = (4 * self.chunk).min(self.stage.most);
+        left.div_ceil(groups(self.chunk)) + moving.div_ceil(64).div_ceil(groups(next))
+    }
+
     /// The share of the stage that is done, about: most cells end in the first round.
     pub fn share(&self) -> f64 {
         if self.begun == 0 {

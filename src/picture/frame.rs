@@ -68,7 +68,7 @@ pub struct Traffic {
     pub uploads: usize,
     /// Programs that were compiled.
     pub compilations: usize,
-    /// How often buffers were created and bound.
+    /// Buffers that were created. Those of a frame on the device count as one.
     pub allocations: u32,
 }
 

@@ -89,7 +89,7 @@ impl Screen {
             },
         };
         let device = Arc::new(device);
-        surface.configure(&device.device, &config);
+        device.alone(|| surface.configure(&device.device, &config));
         let gpu = &device.device;
         let layout = layout(gpu);
         let shader = gpu.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -152,10 +152,15 @@ impl Screen {
             return;
         }
         [self.config.width, self.config.height] = size;
-        self.surface.configure(&self.device.device, &self.config);
+        self.configure();
         let usage = TextureUsages::RENDER_ATTACHMENT;
         self.panel.texture = texture(&self.device, "panel", size, usage);
         self.panel.bound = self.bind(&self.panel.texture);
+    }
+
+    fn configure(&self) {
+        let device = &self.device;
+        device.alone(|| self.surface.configure(&device.device, &self.config));
     }
 
     fn bind(&self, texture: &wgpu::Texture) -> wgpu::BindGroup {
@@ -189,7 +194,7 @@ impl Screen {
             to.as_image_copy(),
             picture.size(),
         );
-        device.queue.submit([encoder.finish()]);
+        device.submit(encoder);
     }
 
     /// Keeps a picture that the host made: four bytes to a pixel, row by row.
@@ -232,7 +237,7 @@ impl Screen {
         let pass =
             encoder.begin_render_pass(&render_pass(&[attachment(&view, wgpu::Color::TRANSPARENT)]));
         painter.render(&mut pass.forget_lifetime(), primitives, &screen);
-        device.queue.submit([encoder.finish()]);
+        device.submit(encoder);
         for id in &textures.free {
             painter.free_texture(id);
         }
@@ -257,7 +262,7 @@ impl Screen {
             Current::Suboptimal(frame) => (frame, true),
             Current::Timeout | Current::Occluded => return Ok(Shown::Hidden),
             Current::Outdated | Current::Lost => {
-                self.surface.configure(&device.device, &self.config);
+                self.configure();
                 return Ok(Shown::Again);
             }
             Current::Validation => {
@@ -268,7 +273,7 @@ impl Screen {
         window.pre_present_notify();
         device.queue.present(frame);
         if worn {
-            self.surface.configure(&device.device, &self.config);
+            self.configure();
         }
         Ok(Shown::Yes)
     }
@@ -312,6 +317,6 @@ impl Screen {
             }
         }
         drop(pass);
-        device.queue.submit([encoder.finish()]);
+        device.submit(encoder);
     }
 }

@@ -100,7 +100,9 @@ impl FrameRequest {
     /// # Errors
     /// A scene's settings do not fit.
     pub fn at_once(&self) -> Result<Option<FrameInputs>, RenderError> {
-        if !self.plan.scene.has_assets(&self.assets) {
+        // Another thread may be uploading arrays, which takes long.
+        let busy = self.shared.arrays.try_lock().is_err();
+        if busy || !self.plan.scene.has_assets(&self.assets) {
             return Ok(None);
         }
         let draft = self.draft()?;

@@ -2,7 +2,7 @@
 
 use crate::base::shader::Program;
 use crate::gpu::cost::Cost;
-use crate::gpu::staging::Staging;
+use crate::gpu::staging::Stagings;
 use crate::gpu::stamps::Stamps;
 use crate::gpu::target::{Needs, Parameters, Target};
 use crate::heightfield::assets::Preparation;
@@ -51,8 +51,7 @@ pub(in crate::gpu) struct Reusable {
     /// Milliseconds that dispatches are made for.
     pub aim_ms: f64,
     pub stamps: Option<Stamps>,
-    pub reports: Vec<Staging>,
-    pub readings: Vec<Staging>,
+    pub stagings: Stagings,
     /// What the last frame was made of, if it was finished.
     pub made: Option<Made>,
 }

@@ -83,8 +83,11 @@ impl Work {
             Some(old) => &mut old.reusable,
             None => &mut *shelf,
         };
-        let run = Run::begin(self.shared.clone(), inputs, reusable)?;
+        let mut run = Run::begin(self.shared.clone(), inputs, reusable)?;
         drop(shelf);
+        if let Some(old) = self.run.as_mut().filter(|_| run.traffic().allocations == 0) {
+            old.discard_flights(&mut run.reusable.stagings);
+        }
         self.run = Some(run);
         self.inputs.clear();
         Ok(())

@@ -23,17 +23,21 @@ impl Run {
         let has_ended = |f: &Flight| {
             f.report.is_mapped() && f.reading.as_ref().is_none_or(|(_, s)| s.is_mapped())
         };
+        let mut in_time = true;
         while self.flights.front().is_some_and(has_ended) {
             let Some(flight) = self.flights.pop_front() else {
                 break;
             };
-            self.land(flight)?;
+            self.land(flight, in_time)?;
+            in_time = false;
         }
         Ok(())
     }
 
-    /// Takes in a submission that has ended.
-    fn land(&mut self, flight: Flight) -> Result<(), RenderError> {
+    /// Takes in a submission that has ended. It is in time if the host could submit after the one
+    /// before had ended: software Vulkan runs a submission before it returns, so that two end at
+    /// once.
+    fn land(&mut self, flight: Flight, in_time: bool) -> Result<(), RenderError> {
         let shared = self.shared.clone();
         let device = &shared.device;
         let turn: Vec<Turn> = flight.report.read(device, 0, 1)?;
@@ -43,8 +47,7 @@ impl Run {
         let count = flight.encoded as usize + 1;
         let at = (REPORT - STAMPS) as usize;
         let stamps: Vec<u64> = flight.report.read(device, at, count)?;
-        flight.report.unmap();
-        self.reusable.reports.push(flight.report);
+        self.reusable.stagings.put(flight.report);
         let now = (device.clock)();
         let elapsed_ms = now - flight.submitted.max(self.ended);
         self.ended = now;
@@ -70,8 +73,7 @@ impl Run {
             if next >= (block as u32 + 1) * self.per_block() && is_next {
                 self.collect(block, &staging, &head)?;
             }
-            staging.unmap();
-            self.reusable.readings.push(staging);
+            self.reusable.stagings.put(staging);
         }
         // What is left of a stage that is over need not be encoded, except at the end of a block,
         // where the results are read.
@@ -87,9 +89,13 @@ impl Run {
                 let first = f.stages.start;
                 (first..first + f.encoded).contains(&next)
             };
-            let drained = !self.flights.iter().any(serves);
+            let drained = in_time && !self.flights.iter().any(serves);
             self.traffic_mut().drains += u32::from(drained);
             self.go_to(next);
+            if next == turn.number && turn.begun == 1 {
+                // And one for a further round.
+                self.dispatches = turn.dispatches_left(head.moving) + 1;
+            }
         }
         Ok(())
     }
@@ -134,6 +140,7 @@ impl Run {
         let all: u32 = (first..=last).map(ran).sum();
         let each = elapsed_ms / f64::from(all.max(1));
         let known = self.stages(block);
+        let slice = self.slice();
         let costs = self
             .reusable
             .costs
@@ -146,6 +153,7 @@ impl Run {
             }
         }
         self.told = head.dispatches;
+        self.follow_slice(slice);
     }
 
     fn collect(

@@ -6,7 +6,7 @@ use std::sync::{Arc, PoisonError};
 
 use crate::gpu::cost::{Cost, LONGEST_MS};
 use crate::gpu::error::RenderError;
-use crate::gpu::staging::Staging;
+use crate::gpu::staging::{Staging, Stagings};
 use crate::gpu::stamps::{STAMPS, Stamps};
 use crate::gpu::target::Target;
 use crate::gpu::work::job::{Job, Reusable};
@@ -180,7 +180,9 @@ impl Run {
             [stage.chunk, stage.most] = self.job.steps;
             stage.slice = cost.slice;
             stage.generation = self.generation(block);
-            if self.job.leaves_out(block, index) {
+            // A frame that goes on from the one before keeps its cells, which were counted then.
+            let counted = self.from > 0 && self.job.kinds[index] == StageKind::Census;
+            if counted || self.job.leaves_out(block, index) {
                 stage.tiles = 0;
             }
         }
@@ -194,6 +196,20 @@ impl Run {
             let (block, index) = self.place(stage);
             let stage = self.stages(block)[index];
             self.dispatches = self.reusable.costs[index].dispatches(&stage);
+        }
+    }
+
+    /// The size of dispatches of the stage that is encoded next.
+    pub(super) fn slice(&self) -> Option<u32> {
+        let within = self.cursor < self.end();
+        within.then(|| self.reusable.costs[self.place(self.cursor).1].slice)
+    }
+
+    /// Encodes as many dispatches as the rest of the stage needs, once their size has changed.
+    pub(super) fn follow_slice(&mut self, before: Option<u32>) {
+        if let (Some(before), Some(now)) = (before, self.slice()) {
+            let all = u64::from(self.dispatches) * u64::from(before);
+            self.dispatches = all.div_ceil(u64::from(now)) as u32;
         }
     }
 
@@ -255,9 +271,11 @@ impl Run {
         let factor = aim / self.reusable.aim_ms;
         if !(0.5..=2.0).contains(&factor) {
             self.reusable.aim_ms = aim;
+            let slice = self.slice();
             for cost in &mut self.reusable.costs {
                 cost.scale(factor);
             }
+            self.follow_slice(slice);
         }
         let mut left = budget_ms;
         while left > 0.0 && self.flights.len() < IN_FLIGHT && self.cursor < self.end() {
@@ -312,14 +330,15 @@ impl Run {
         self.delivered
     }
 
-    /// Waits a moment for the oldest submission.
+    /// Waits a moment for the oldest submission, unless there is something to submit.
     ///
     /// # Errors
     /// The device failed, or has not answered for two minutes: a dispatch has a bounded number of
     /// steps.
     #[cfg(feature = "cli")]
     pub fn wait(&self) -> Result<(), RenderError> {
-        if let Some(flight) = self.flights.front() {
+        let has_room = self.flights.len() < IN_FLIGHT && self.cursor < self.end();
+        if let Some(flight) = self.flights.front().filter(|_| !has_room) {
             let device = &self.shared.device;
             device.wait_a_moment(flight.index.clone())?;
             if (device.clock)() - flight.submitted.max(self.ended) > 120e3 {
@@ -331,11 +350,23 @@ impl Run {
 }
 
 impl Run {
+    /// Gives up what was submitted. Its buffers serve again once the device has filled them.
+    pub(super) fn discard_flights(&mut self, stagings: &mut Stagings) {
+        for flight in self.flights.drain(..) {
+            stagings.discard(flight.report);
+            if let Some((_, staging)) = flight.reading {
+                stagings.discard(staging);
+            }
+        }
+    }
+
     /// Leaves everything to the next render. The device may still run what was submitted; the
     /// next render is behind it.
     pub(super) fn lend(&mut self) {
+        let mut reusable = std::mem::take(&mut self.reusable);
+        self.discard_flights(&mut reusable.stagings);
         let shelf = self.shared.reusable.lock();
-        *shelf.unwrap_or_else(PoisonError::into_inner) = std::mem::take(&mut self.reusable);
+        *shelf.unwrap_or_else(PoisonError::into_inner) = reusable;
     }
 }
 

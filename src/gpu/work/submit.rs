@@ -1,7 +1,6 @@
 //! Encoding and submission.
 
 use crate::gpu::collect::Parts;
-use crate::gpu::staging::Staging;
 use crate::gpu::stamps::STAMPS;
 use crate::pass::turn::{CellsHead, StageKind, Turn};
 use crate::plan::Pass;
@@ -9,6 +8,22 @@ use crate::plan::Pass;
 use super::run::{Flight, REPORT, Run};
 
 impl Run {
+    /// The first stage of the next submission. The last one may have held too few dispatches of a
+    /// stage with rounds. The device goes on with that stage while the host learns of it, and need
+    /// not wait.
+    fn unsure_from(&self) -> u32 {
+        let has_rounds = |stage: &u32| {
+            let (block, index) = self.place(*stage);
+            let is_march = matches!(self.job.kinds[index], StageKind::Pass(p) if p.marches());
+            is_march && block == self.place(self.cursor).0
+        };
+        let last = self.flights.back().map(|flight| {
+            let from = flight.stages.start.max(self.reached);
+            (from..self.cursor).find(has_rounds)
+        });
+        last.flatten().unwrap_or(self.cursor)
+    }
+
     /// Encodes and submits work of about so many milliseconds, of one block. Returns its
     /// estimated milliseconds.
     pub(super) fn submit(&mut self, budget_ms: f64) -> f64 {
@@ -16,7 +31,7 @@ impl Run {
         let device = &shared.device;
         let (block, _) = self.place(self.cursor);
         let stages = self.stages(block);
-        let first = self.cursor;
+        let first = self.unsure_from();
         let mut encoder = device.device.create_command_encoder(&Default::default());
         if let Some(target) = &mut self.reusable.target {
             target.write_stages(device, &stages);
@@ -30,15 +45,8 @@ impl Run {
             .as_ref()
             .filter(|_| self.job.extras.time);
         let mut encoded = 0;
-        let mut cursor = self.cursor;
-        let mut estimate = 0.0;
-        let mut ends_block = false;
-        while estimate < budget_ms {
-            let (_, index) = self.place(cursor);
+        let mut dispatch = |index: usize, count: u32| {
             let bound = &target.stages[index];
-            let each = self.reusable.costs[index].dispatch_ms;
-            let room = ((budget_ms - estimate) / each).max(1.0) as u32;
-            let count = self.dispatches.min(room);
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: None,
                 timestamp_writes: stamps.map(|s| s.writes(encoded)),
@@ -53,7 +61,19 @@ impl Run {
                     .kernel
                     .dispatch_indirect(&mut compute, &bound.groups, workgroups);
             }
-            drop(compute);
+        };
+        for unsure in first..self.cursor {
+            dispatch(self.place(unsure).1, 1);
+        }
+        let mut cursor = self.cursor;
+        let mut estimate = 0.0;
+        let mut ends_block = false;
+        while estimate < budget_ms {
+            let (_, index) = self.place(cursor);
+            let each = self.reusable.costs[index].dispatch_ms;
+            let room = ((budget_ms - estimate) / each).max(1.0) as u32;
+            let count = self.dispatches.min(room);
+            dispatch(index, count);
             estimate += f64::from(count) * each;
             self.dispatches -= count;
             if self.dispatches > 0 {
@@ -71,8 +91,9 @@ impl Run {
                 break;
             }
         }
-        let report = self.reusable.reports.pop();
-        let report = report.unwrap_or_else(|| Staging::new(device, REPORT));
+        let stagings = &mut self.reusable.stagings;
+        let made = stagings.made;
+        let report = stagings.take(device, REPORT);
         let (turn, head) = (size_of::<Turn>() as u64, size_of::<CellsHead>() as u64);
         let mut ranges = vec![
             (&target.shared.turn, 0, turn),
@@ -86,20 +107,19 @@ impl Run {
         let reads = ends_block && block >= self.job.firsts;
         let reading = reads.then(|| {
             let parts = Parts::new(&self.job.made.blocks[block], self.job.extras);
-            let kept = self.reusable.readings.pop();
-            let staging = kept.filter(|s| s.holds(parts.bytes()));
-            // A buffer cannot be empty.
-            let bytes = parts.bytes().max(16);
-            let staging = staging.unwrap_or_else(|| Staging::new(device, bytes));
+            let staging = stagings.take(device, parts.bytes());
             staging.copy(&mut encoder, &parts.ranges(target));
             (block, staging)
         });
-        let _index = device.queue.submit([encoder.finish()]);
+        let _index = device.submit(encoder);
         report.map();
         if let Some((_, staging)) = &reading {
             staging.map();
         }
-        self.traffic_mut().submissions += 1;
+        let made = self.reusable.stagings.made - made;
+        let traffic = self.traffic_mut();
+        traffic.submissions += 1;
+        traffic.allocations += made;
         self.flights.push_back(Flight {
             #[cfg(feature = "cli")]
             index: _index,
