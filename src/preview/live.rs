@@ -103,7 +103,7 @@ pub struct Live {
     pub shader_files: Watched,
     /// When the change that is not kept yet was made.
     pub unkept: Option<(Instant, Plan)>,
-    /// How often the device was opened again.
+    /// How often the device was opened again since the last full picture.
     pub losses: u32,
 }
 
@@ -362,8 +362,9 @@ impl Live {
         }
         let (wish, is_full) = (finished.wish, finished.is_full);
         self.taken = Some((wish, is_full));
-        if is_full && self.notice.as_ref().is_some_and(|n| n.is_error) {
-            self.notice = None;
+        if is_full {
+            self.losses = 0;
+            self.notice.take_if(|n| n.is_error);
         }
         self.redraw = true;
     }

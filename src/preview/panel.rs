@@ -1,7 +1,8 @@
 //! The panel: every key of the plan, made from the lists of keys.
 
 use egui::{
-    Align, CollapsingHeader, ComboBox, DragValue, Label, Layout, Response, RichText, Slider, Ui,
+    Align, Button, CollapsingHeader, ComboBox, DragValue, Label, Layout, Response, RichText,
+    Slider, Ui,
 };
 use toml::Value;
 
@@ -66,7 +67,9 @@ fn row(ui: &mut Ui, section: &'static str, key: &Key<'_>, usual: &Value, asked: 
             asked.set = Some((section, key.name, value));
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if now != *usual && small(ui, "x", "back to the default") {
+            // Its place stays, so that the column of `k` is straight.
+            let reset = ui.add_visible(now != *usual, Button::new("x").small());
+            if reset.on_hover_text("back to the default").clicked() {
                 asked.set = Some((section, key.name, usual.clone()));
             }
             let film = matches!(

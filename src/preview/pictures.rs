@@ -31,6 +31,8 @@ const RECENT: usize = 5;
 const DIVISORS: [u32; 5] = [1, 2, 4, 6, 8];
 /// A full picture that takes no longer than this needs no small one before it.
 const AT_ONCE_MS: f64 = 14.0;
+/// The same of a picture with another look, at rest: it keeps the rays.
+const LOOK_AT_ONCE_MS: f64 = 700.0;
 
 /// One of the two pictures.
 #[derive(Default)]
@@ -220,10 +222,14 @@ impl Pictures {
         let Some((_, made)) = self.full.made.as_ref() else {
             return false;
         };
+        let within = |most| self.full.took_ms.is_some_and(|ms| ms <= most);
         // Only what a change makes again takes time.
-        made.size == plan.size
-            && (redo(made, plan) <= Redo::Tone
-                || self.full.took_ms.is_some_and(|ms| ms <= AT_ONCE_MS))
+        let is_quick = match redo(made, plan) {
+            Redo::Nothing | Redo::Tone => true,
+            Redo::Color if !self.moving => within(LOOK_AT_ONCE_MS),
+            _ => within(AT_ONCE_MS),
+        };
+        made.size == plan.size && is_quick
     }
 
     /// Submits some work and never waits. Returns whether a picture was finished, which

@@ -9,12 +9,12 @@ use crate::preview::error::PreviewError;
 use crate::preview::keep;
 use crate::preview::live::Live;
 use crate::preview::pictures::Pictures;
-use crate::preview::reload::Watched;
+use crate::preview::reload::{Watched, sources};
 use crate::preview::window::REST;
 
 /// Time after a change until it is kept.
 const KEEP: Duration = Duration::from_secs(1);
-/// So often a device is opened again.
+/// So often a device is opened again before there is a full picture.
 const MOST_LOSSES: u32 = 3;
 
 impl Live {
@@ -31,7 +31,6 @@ impl Live {
         self.stage.reopen()?;
         let mut pictures = Pictures::new(self.stage.screen.device().clone());
         pictures.assets = self.pictures.assets.clone();
-        pictures.renderer.sources = self.pictures.renderer.sources.clone();
         self.pictures = pictures;
         // The new device has no textures of the panel.
         let device = &self.stage.screen.device().device;
@@ -45,13 +44,22 @@ impl Live {
             None,
             Some(most),
         );
-        self.tell("the device was lost and is open again", false);
+        let shaders = match self.options.wgsl {
+            Some(_) => "; it has the program's own shaders until a file of --wgsl changes",
+            None => "",
+        };
+        self.tell(
+            format!("the device was lost and is open again{shaders}"),
+            false,
+        );
         Ok(())
     }
 
     /// Takes in files that have changed.
     pub fn look_at_files(&mut self) {
         if self.shader_files.changed() {
+            // After a loss they were set aside.
+            self.pictures.renderer.sources = self.options.wgsl.clone().map(sources);
             self.pictures.again();
             self.tell("shaders read again", false);
         }
