@@ -12,20 +12,30 @@ use crate::scene::Assets;
 /// Assumed if the system does not tell.
 const UNKNOWN: u64 = 16 << 30;
 
-/// Bytes that are available now: what the system says, within the limit of the control group
-/// if there is one.
+/// What a render takes beside its pixels: the program, the driver and compiled shaders. 90 MiB were
+/// measured with software Vulkan.
+const FIXED: u64 = 120 << 20;
+
+/// Bytes that are available now for pixels and maps: what the system says, within the limit of the
+/// control group if there is one.
 fn available() -> u64 {
     let read = |file: &str| fs::read_to_string(file).ok();
-    let free = read("/proc/meminfo").and_then(|text| meminfo(&text));
+    let free = read("/proc/meminfo").and_then(|text| line("MemAvailable:", &text));
     let group = |file| -> Option<u64> { read(file)?.trim().parse().ok() };
     let used = group("/sys/fs/cgroup/memory.current").unwrap_or(0);
     let rest = group("/sys/fs/cgroup/memory.max").map(|most| most.saturating_sub(used));
-    free.unwrap_or(UNKNOWN).min(rest.unwrap_or(u64::MAX))
+    let all = free.unwrap_or(UNKNOWN).min(rest.unwrap_or(u64::MAX));
+    all.saturating_sub(FIXED)
 }
 
-/// `MemAvailable` in bytes.
-fn meminfo(text: &str) -> Option<u64> {
-    let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
+/// Bytes of memory that the process has, if the system tells.
+pub fn used() -> Option<u64> {
+    line("VmRSS:", &fs::read_to_string("/proc/self/status").ok()?)
+}
+
+/// A number of KiB in a list of the system, in bytes.
+fn line(name: &str, text: &str) -> Option<u64> {
+    let line = text.lines().find_map(|l| l.strip_prefix(name))?;
     let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     kib.checked_mul(1024)
 }
@@ -137,10 +147,10 @@ mod tests {
     }
 
     #[test]
-    fn meminfo_is_read_in_kib() {
+    fn numbers_of_the_system_are_in_kib() {
         let text = "MemTotal:  9 kB\nMemAvailable:     2048 kB\n";
-        assert_eq!(meminfo(text), Some(2 << 20));
-        assert_eq!(meminfo("nothing"), None);
+        assert_eq!(line("MemAvailable:", text), Some(2 << 20));
+        assert_eq!(line("MemAvailable:", "nothing"), None);
     }
 
     #[test]

@@ -19,7 +19,7 @@ use crate::command::progress::Reporter;
 use crate::command::render::loaded;
 use crate::command::sink::{Parcel, Sink};
 use crate::command::table::table;
-use crate::command::{completions, interrupt};
+use crate::command::{completions, interrupt, memory};
 use crate::gpu::adapters::Choice;
 use crate::plan::{Extras, Plan};
 use crate::preview::flight::orbit;
@@ -65,6 +65,9 @@ struct Row {
     turn_p99_ms: f64,
     /// Sets of buffers that the second half of the flight made.
     allocations: u32,
+    /// Memory of the process after a tenth of the flight and after all of it, in MiB, if the system
+    /// tells.
+    memory_mib: [Option<u64>; 2],
     /// A render without a preview, again on a warm device.
     render_ms: f64,
     /// From rest to the full picture from another eye, with another light, and with another
@@ -170,7 +173,7 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
     for plan in &plans[..10] {
         flown.time(plan, true)?;
     }
-    let (mut answers, mut made) = (Vec::new(), 0);
+    let (mut answers, mut made, mut memory) = (Vec::new(), 0, None);
     flown.turns.clear();
     let began = Instant::now();
     for (i, plan) in plans.iter().enumerate() {
@@ -180,10 +183,14 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         if i == plans.len() / 2 {
             made = flown.pictures.traffic().allocations;
         }
+        if i == plans.len() / 10 {
+            memory = memory::used();
+        }
         answers.push(flown.time(plan, true)?);
     }
     let frames_per_second = plans.len() as f64 / began.elapsed().as_secs_f64();
     let allocations = flown.pictures.traffic().allocations - made;
+    let memory_mib = [memory, memory::used()].map(|bytes| bytes.map(|n| n >> 20));
     let changed = |change: &dyn Fn(&mut Plan, f64)| {
         let one = |i: i32| {
             let mut plan = still.clone();
@@ -216,6 +223,7 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         frames_per_second,
         turn_p99_ms,
         allocations,
+        memory_mib,
         // The first one allocates.
         render_ms: at(&renders?[1..], 0.5),
         full_ms,
@@ -259,6 +267,10 @@ pub fn run(args: &FlightBench) -> Result<()> {
                 ("pictures per second", &|r| whole(r.frames_per_second)),
                 ("turn p99, ms", &|r| whole(r.turn_p99_ms)),
                 ("new buffers", &|r| r.allocations.to_string()),
+                ("memory, MiB", &|r| match r.memory_mib {
+                    [Some(early), Some(late)] => format!("{early} to {late}"),
+                    _ => String::new(),
+                }),
                 ("render, ms", &|r| whole(r.render_ms)),
                 ("full / render", &|r| ratio(r.full_ms / r.render_ms)),
                 ("look / render", &|r| ratio(r.look_ms / r.render_ms)),

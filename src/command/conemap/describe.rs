@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use rayon::slice::ParallelSliceMut;
+
 use crate::heightfield::conemap::WIDEST;
 use crate::heightfield::conemap::file::{Channel, MapFile, RatioScale, Slopes};
 use crate::heightfield::conemap::generate::generator::{Generator, Quality};
@@ -20,7 +22,7 @@ struct Sorted(Vec<f64>);
 impl Sorted {
     fn new(values: impl Iterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.collect();
-        values.sort_unstable_by(f64::total_cmp);
+        values.par_sort_unstable_by(f64::total_cmp);
         Self(values)
     }
 
@@ -28,10 +30,6 @@ impl Sorted {
         let last = self.0.len().saturating_sub(1);
         let found = self.0.get((share * last as f64) as usize);
         found.copied().unwrap_or(0.0)
-    }
-
-    fn mean(&self) -> f64 {
-        self.0.iter().sum::<f64>() / self.0.len().max(1) as f64
     }
 
     /// How many are not above 0.
@@ -209,20 +207,33 @@ fn short(x: f64) -> String {
 pub fn describe_heights(name: &str, loaded: &Loaded) -> String {
     let heights = &loaded.heights;
     let ([w, h], wrap) = (heights.size(), wrap_name(heights.wrap()));
-    let sorted = Sorted::new(heights.data().iter().map(|z| f64::from(*z)));
-    let [low, high, median] = [0.0, 1.0, 0.5].map(|share| figure(sorted.at(share)));
-    let steep = Sorted::new(slopes(heights).into_iter().map(steepness));
-    let [mean, mean_slope] = [&sorted, &steep].map(|s| figure(s.mean()));
-    let steepest = figure(steep.at(1.0));
+    let data = heights.data();
+    let all = data.len();
+    let range = data.iter().fold([f32::INFINITY, 0.0], |[low, high], z| {
+        [z.min(low), z.max(high)]
+    });
+    let mut halves = data.to_vec();
+    let (_, median, _) = halves.select_nth_unstable_by((all - 1) / 2, f32::total_cmp);
+    let [low, high, median] = [range[0], range[1], *median].map(|z| figure(z.into()));
+    let mean = |sum: f64| figure(sum / all as f64);
+    let slopes = slopes(heights).into_iter().map(steepness);
+    let (sum, steepest) = slopes.fold((0.0, 0.0), |(sum, most): (f64, f64), s| {
+        (sum + s, most.max(s))
+    });
+    let (mean_slope, steepest) = (mean(sum), figure(steepest));
+    let mean = mean(data.iter().map(|z| f64::from(*z)).sum());
     let samples = format!("{w} x {h} samples, wrap {wrap}, {}", loaded.form);
     let range = format!("from {low} to {high}, mean {mean}, median {median}");
     let slopes = format!("mean {mean_slope} of the height per texel, steepest {steepest}");
     let rows = [("heights", samples), ("", range), ("slopes", slopes)];
-    let bound = |i: usize| i as f64 / 10.0;
-    let bars: [_; 10] = std::array::from_fn(|i| {
-        let end = if i == 9 { f64::INFINITY } else { bound(i + 1) };
-        let n = sorted.count_under(end) - sorted.count_under(bound(i));
-        (format!("{:.1} to {:.1}", bound(i), bound(i + 1)), n)
-    });
-    report(name, &rows, "heights", &bars, sorted.0.len())
+    let bounds: [f64; 10] = std::array::from_fn(|i| i as f64 / 10.0);
+    let mut counts = [0; 10];
+    for z in data {
+        let under = bounds.iter().take_while(|b| f64::from(*z) >= **b);
+        counts[under.count().max(1) - 1] += 1;
+    }
+    let bars = counts.into_iter().zip(bounds);
+    let bars = bars.map(|(n, from)| (format!("{from:.1} to {:.1}", from + 0.1), n));
+    let bars: Vec<_> = bars.collect();
+    report(name, &rows, "heights", &bars, all)
 }
