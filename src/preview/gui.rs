@@ -32,6 +32,9 @@ impl Live {
     /// Runs the panel and paints it.
     pub fn paint(&mut self) {
         self.panel_due = None;
+        if !self.stage.screen.works() {
+            return;
+        }
         let input = self.gui.take_egui_input(&self.stage.window);
         let mut asked = Asked::default();
         let ctx = self.ctx.clone();

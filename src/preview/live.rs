@@ -374,7 +374,7 @@ impl Live {
     /// # Errors
     /// The surface is lost for good.
     pub fn draw(&mut self) -> Result<(), PreviewError> {
-        if self.hidden {
+        if self.hidden || !self.stage.screen.works() {
             return Ok(());
         }
         let view = self.shown().view();

@@ -141,6 +141,19 @@ impl Screen {
         &self.device
     }
 
+    /// Whether the device takes commands. If not, the next picture fails and tells why; egui's painter
+    /// would panic.
+    pub fn works(&self) -> bool {
+        let bytes = wgpu::BufferSize::new(size_of::<ScreenParameters>() as u64);
+        // They are written again before each drawing.
+        let write = |bytes| {
+            self.device
+                .queue
+                .write_buffer_with(&self.parameters, 0, bytes)
+        };
+        bytes.and_then(write).is_some()
+    }
+
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         [self.config.width, self.config.height]
