@@ -22,7 +22,7 @@ const LARGE: u32 = 3_000_000;
 const HEIGHTS: [u32; 7] = [90, 180, 360, 720, 1080, 2160, 4320];
 const ZOOMS: [f64; 5] = [1.0, 2.0, 4.0, 8.0, 16.0];
 const ITERATIONS: [u32; 5] = [5, 10, 20, 40, 80];
-const MAPS: [u32; 4] = [256, 512, 1024, 2048];
+const MAPS: [u32; 5] = [256, 512, 1024, 2048, 4096];
 
 /// What one row is measured at, and its times: `safe`, rival.
 type Row = (f64, [f64; 2]);

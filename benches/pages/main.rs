@@ -2,7 +2,8 @@
 //!
 //! - `presets` writes `docs/presets.md`, the reference of all keys. A test fails while the page
 //!   differs from what this would write.
-//! - `benchmarks FOLDER DATE` fills the tables of `docs/benchmarks.md` from the rows in a folder.
+//! - `benchmarks FOLDER DATE` fills the tables of `docs/benchmarks.md` from the rows in a folder, and
+//!   draws its plots.
 //! - `heightfields FOLDER DATE` does so for `docs/heightfields.md`.
 //! - `frames FILE FIELD MAP` measures whole frames over a field and writes rows as JSON. MAP is
 //!   the file of the field's relaxed cone map, which takes long to make.
@@ -16,6 +17,7 @@ mod distances;
 mod frames;
 mod pictures;
 mod presets;
+mod scale;
 mod tables;
 
 #[path = "../common/markdown.rs"]
@@ -27,6 +29,7 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
+use conemarch::command::bench::plot;
 use conemarch::command::bench::row::Row;
 use conemarch::command::bench::steps_row::StepsRow;
 use conemarch::command::bench::table;
@@ -94,6 +97,8 @@ fn benchmarks(folder: &Path, date: &str) -> Result<()> {
     let presets = rows.chunk_by(|a, b| a.preset == b.preset);
     let error: String = presets.map(table::preset).collect();
     let error = error + &table::means(&rows) + &table::better_than_safe(&rows);
+    fs::write(format!("{DOCS}/benchmarks.svg"), plot::draw(&rows))?;
+    fs::write(format!("{DOCS}/scale.svg"), scale::draw(&text("scale.md")?))?;
     let levels = steps.chunk_by(|a, b| a.preset == b.preset && a.mode == b.mode);
     fill(
         "benchmarks.md",

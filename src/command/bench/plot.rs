@@ -1,17 +1,18 @@
-//! Time against error as an SVG: a panel for each preset, both axes logarithmic.
+//! Time against error, and against sharpness, as an SVG: two panels for each preset, with
+//! logarithmic axes.
 //!
 //! Each mode has a colour; settings that change one key of a mode are small dots of its
-//! colour. The line joins the settings that no other beats in both: the Pareto front.
+//! colour. The line joins the settings that no other beats in both time and error: the Pareto front.
 //!
 //! Drawn by hand: the logarithmic axes of `plotters` have no ticks within a decade, where most
 //! measurements lie, and its dots cannot tell their names to a pointer.
 
 use crate::command::bench::row::Row;
 
-const PANEL: [f64; 2] = [460.0, 330.0];
+/// Width and height of a panel.
+pub const PANEL: [f64; 2] = [460.0, 330.0];
 /// Left, top, right and bottom of the axes within a panel.
 const MARGIN: [f64; 4] = [58.0, 34.0, 18.0, 44.0];
-const COLUMNS: usize = 2;
 const LEGEND: f64 = 58.0;
 /// Modes and their colours (Okabe and Ito's, which colour-blind people can tell apart).
 const COLORS: [(&str, &str); 9] = [
@@ -29,19 +30,53 @@ const COLORS: [(&str, &str); 9] = [
 /// The colour of the line that joins the best.
 const LINE: &str = "#8c564b";
 
+/// What is drawn over the time.
+struct Measure {
+    what: &'static str,
+    of: fn(&Row) -> Option<f64>,
+    unit: &'static str,
+    /// Whether the Pareto front is drawn, and named.
+    has_front: bool,
+}
+
+const MEASURES: [Measure; 2] = [
+    Measure {
+        what: "wrong pixels, %",
+        of: |row| Some(shown(row)),
+        unit: "%",
+        has_front: true,
+    },
+    Measure {
+        what: "sharpness: median distance before the set, footprints",
+        // A logarithmic axis has no place for a surface behind the set.
+        of: |row| Some(row.sharpness.before_set.median).filter(|median| *median > 0.0),
+        unit: "footprints",
+        has_front: false,
+    },
+];
+
+/// The begin of a picture of a size.
+pub fn head(w: f64, h: f64) -> String {
+    format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="11" fill="#333">
+<rect width="{w}" height="{h}" fill="#fff"/>"##
+    )
+}
+
 /// The picture of all rows.
 pub fn draw(rows: &[Row]) -> String {
     let presets: Vec<&[Row]> = rows.chunk_by(|a, b| a.preset == b.preset).collect();
-    let columns = presets.len().clamp(1, COLUMNS);
-    let lines = presets.len().div_ceil(columns).max(1);
-    let (w, h) = (columns as f64 * PANEL[0], lines as f64 * PANEL[1] + LEGEND);
-    let mut svg = vec![format!(
-        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="11" fill="#333">
-<rect width="{w}" height="{h}" fill="#fff"/>"##
-    )];
-    for (i, own) in presets.into_iter().enumerate() {
-        let [x, y] = [i % columns, i / columns].map(|n| n as f64);
-        panel(&mut svg, own, [x * PANEL[0], y * PANEL[1]]);
+    let lines = presets.len().max(1);
+    let (w, h) = (
+        MEASURES.len() as f64 * PANEL[0],
+        lines as f64 * PANEL[1] + LEGEND,
+    );
+    let mut svg = vec![head(w, h)];
+    for (line, own) in presets.into_iter().enumerate() {
+        for (column, measure) in MEASURES.iter().enumerate() {
+            let at = [column as f64 * PANEL[0], line as f64 * PANEL[1]];
+            panel(&mut svg, own, measure, at);
+        }
     }
     legend(&mut svg, h - LEGEND + 18.0);
     svg.push("</svg>\n".into());
@@ -66,15 +101,18 @@ pub fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
 }
 
 /// A logarithmic axis over some values, from `at` over `length`.
-struct Axis {
+pub struct Axis {
     low: f64,
     high: f64,
-    at: f64,
-    length: f64,
+    /// Where it begins.
+    pub at: f64,
+    /// How far it goes on; negative upwards.
+    pub length: f64,
 }
 
 impl Axis {
-    fn new(values: impl Iterator<Item = f64>, at: f64, length: f64) -> Self {
+    /// An axis with some room beyond the values.
+    pub fn new(values: impl Iterator<Item = f64>, at: f64, length: f64) -> Self {
         // Without values any range will do.
         let values: Vec<f64> = values.collect();
         let low = values.iter().copied().reduce(f64::min).unwrap_or(1.0);
@@ -87,7 +125,8 @@ impl Axis {
         }
     }
 
-    fn place(&self, v: f64) -> f64 {
+    /// Where a value is.
+    pub fn place(&self, v: f64) -> f64 {
         let share = (v.max(self.low) / self.low).ln() / (self.high / self.low).ln();
         self.at + share * self.length
     }
@@ -113,8 +152,12 @@ impl Axis {
 }
 
 /// A tick's number without the rounding error of its power of ten.
-fn rounded(t: f64) -> f64 {
-    (t * 1e6).round() / 1e6
+fn rounded(t: f64) -> String {
+    match t {
+        t if t >= 1e6 => format!("{:.0} M", 1e-6 * t),
+        t if t >= 1e4 => format!("{:.0} k", 1e-3 * t),
+        t => ((t * 1e6).round() / 1e6).to_string(),
+    }
 }
 
 /// Wrong pixels in percent. None at all is drawn as half a pixel: the axis is logarithmic.
@@ -123,19 +166,13 @@ fn shown(row: &Row) -> f64 {
     100.0 * row.report.wrong().max(0.5 / pixels)
 }
 
-fn panel(svg: &mut Vec<String>, rows: &[Row], [left, top]: [f64; 2]) {
-    let preset = rows.first().map_or("", |r| &r.preset);
-    let rows: Vec<&Row> = rows.iter().filter(|r| r.is_comparable()).collect();
-    let [x0, y0] = [left + MARGIN[0], top + MARGIN[1]];
-    let [x1, y1] = [left + PANEL[0] - MARGIN[2], top + PANEL[1] - MARGIN[3]];
-    let [w, h] = [x1 - x0, y1 - y0];
-    let x = Axis::new(rows.iter().map(|r| r.wall_ms), x0, w);
-    // Downwards is better, so the least error is at the bottom.
-    let y = Axis::new(rows.iter().map(|r| shown(r)), y1, -h);
-    let place = |row: &Row| [x.place(row.wall_ms), y.place(shown(row))];
+/// The axes over and beside the corner at which they begin, with a title and what they show.
+pub fn axes(svg: &mut Vec<String>, [x, y]: [&Axis; 2], title: &str, [across, up]: [&str; 2]) {
+    let (x0, y1, w, h) = (x.at, y.at, x.length, -y.length);
+    let y0 = y1 - h;
     let above = y0 - 12.0;
     svg.push(format!(
-        r##"<text x="{x0}" y="{above:.1}" font-size="13" font-weight="bold">{preset}</text>"##
+        r##"<text x="{x0}" y="{above:.1}" font-size="13" font-weight="bold">{title}</text>"##
     ));
     for t in x.ticks() {
         let (at, below, label) = (x.place(t), y1 + 14.0, rounded(t));
@@ -151,29 +188,72 @@ fn panel(svg: &mut Vec<String>, rows: &[Row], [left, top]: [f64; 2]) {
     }
     let (middle, below) = (x0 + 0.5 * w, y1 + 32.0);
     let (beside, height) = (x0 - 44.0, y0 + 0.5 * h);
-    let best = front(&rows);
-    let line = best.iter().map(|r| place(r));
-    let line = line.map(|[x, y]| format!("{x:.1},{y:.1}"));
-    let line = line.collect::<Vec<_>>().join(" ");
     svg.push(format!(
         r##"<rect x="{x0}" y="{y0}" width="{w}" height="{h}" fill="none" stroke="#999"/>
-<text x="{middle:.1}" y="{below:.1}" text-anchor="middle">march and trace, ms</text><text transform="translate({beside:.1} {height:.1}) rotate(-90)" text-anchor="middle">wrong pixels, %</text>
-<polyline points="{line}" fill="none" stroke="{LINE}" stroke-width="1.5"/>"##
+<text x="{middle:.1}" y="{below:.1}" text-anchor="middle">{across}</text><text transform="translate({beside:.1} {height:.1}) rotate(-90)" text-anchor="middle">{up}</text>"##
     ));
-    for row in &rows {
-        let [x, y] = place(row);
+}
+
+/// The axes of a panel whose upper left corner is at a place.
+pub fn axes_at(
+    [left, top]: [f64; 2],
+    across: impl Iterator<Item = f64>,
+    up: impl Iterator<Item = f64>,
+) -> [Axis; 2] {
+    let [w, h] = [
+        PANEL[0] - MARGIN[0] - MARGIN[2],
+        PANEL[1] - MARGIN[1] - MARGIN[3],
+    ];
+    [
+        Axis::new(across, left + MARGIN[0], w),
+        // Downwards is better.
+        Axis::new(up, top + MARGIN[1] + h, -h),
+    ]
+}
+
+/// A line through points.
+pub fn line(svg: &mut Vec<String>, points: impl Iterator<Item = [f64; 2]>, color: &str) {
+    let points = points.map(|[x, y]| format!("{x:.1},{y:.1}"));
+    let points = points.collect::<Vec<_>>().join(" ");
+    svg.push(format!(
+        r##"<polyline points="{points}" fill="none" stroke="{color}" stroke-width="1.5"/>"##
+    ));
+}
+
+fn panel(svg: &mut Vec<String>, rows: &[Row], measure: &Measure, at: [f64; 2]) {
+    let preset = rows.first().map_or("", |r| &r.preset);
+    let comparable = rows.iter().filter(|r| r.is_comparable());
+    let rows: Vec<(&Row, f64)> = comparable
+        .filter_map(|row| Some((row, (measure.of)(row)?)))
+        .collect();
+    let times = rows.iter().map(|(row, _)| row.wall_ms);
+    let [x, y] = axes_at(at, times, rows.iter().map(|(_, value)| *value));
+    let labels = ["march and trace, ms", measure.what];
+    axes(svg, [&x, &y], preset, labels);
+    let dots: Vec<[f64; 2]> = rows
+        .iter()
+        .map(|(row, value)| [x.place(row.wall_ms), y.place(*value)])
+        .collect();
+    let all: Vec<&Row> = rows.iter().map(|(row, _)| *row).collect();
+    let best = front(&all);
+    if measure.has_front {
+        let place = |row: &&Row| [x.place(row.wall_ms), y.place(shown(row))];
+        line(svg, best.iter().map(place), LINE);
+    }
+    for ((row, value), [x, y]) in rows.iter().zip(&dots) {
         let (radius, stroke) = match row.baseline {
             true => (5.0, "#fff"),
             false => (2.6, "none"),
         };
         let (color, label) = (color(row.name()), row.label());
-        let (ms, wrong) = (row.wall_ms, 100.0 * row.report.wrong());
+        let (ms, unit) = (row.wall_ms, measure.unit);
         svg.push(format!(
-            r##"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" fill="{color}" stroke="{stroke}"><title>{label}: {ms:.1} ms, {wrong:.4} %</title></circle>"##
+            r##"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" fill="{color}" stroke="{stroke}"><title>{label}: {ms:.1} ms, {value:.4} {unit}</title></circle>"##
         ));
     }
-    let dots: Vec<[f64; 2]> = rows.iter().map(|row| place(row)).collect();
-    names(svg, &best, &dots, &x, &y);
+    if measure.has_front {
+        names(svg, &best, &dots, &x, &y);
+    }
 }
 
 /// Places for a name beside its dot: right or left; level, above or below.
