@@ -14,7 +14,7 @@ use crate::command::output::Format;
 use crate::command::print::say;
 use crate::command::progress::Reporter;
 use crate::command::render::{loaded, moment};
-use crate::command::sink::{Parcel, Sink, ending, folder_of};
+use crate::command::sink::{Parcel, Sink, ending, folder_of, spared};
 use crate::command::{completions, interrupt, memory};
 use crate::gpu::adapters::Choice;
 use crate::pass::progress::Progress;
@@ -149,6 +149,12 @@ pub fn run(args: &Animate) -> Result<()> {
         )));
     }
     if let Some(video) = &args.video {
+        if ending(video).is_empty() {
+            return Err(usage(format!(
+                "--video `{}` does not say which format to write; name a file like film.mp4",
+                video.display()
+            )));
+        }
         find_ffmpeg()?;
         Sink::prepare(video)?;
     }
@@ -159,6 +165,14 @@ pub fn run(args: &Animate) -> Result<()> {
     // A film that fails does so before its first frame.
     let frames: Vec<u32> = (first..=last).filter(|f| f % parts == part - 1).collect();
     let plans: Vec<Plan> = frames.iter().map(|f| plan(*f)).collect::<Result<_>>()?;
+    // A frame must not take the place of what the film is made from.
+    let preset = preset::file(&args.preset).map(|file| ("the preset", file));
+    let mut inputs = film.scene.files();
+    inputs.extend(preset);
+    spared(&[("--video", args.video.as_deref())], &inputs)?;
+    for frame in &frames {
+        spared(&[("a frame", Some(&pattern.name(*frame)))], &inputs)?;
+    }
     let missing: Vec<(u32, Plan)> = frames
         .iter()
         .copied()

@@ -1,6 +1,6 @@
 //! What events do to the open window.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use toml::Value;
@@ -14,13 +14,14 @@ use crate::base::view::footprint;
 use crate::measure::truth;
 use crate::picture::Layer;
 use crate::plan::{Extras, Plan};
-use crate::preset::{self, SECTIONS};
-use crate::preview::document::unused;
+use crate::preset::SECTIONS;
+use crate::preview::document::{Document, unused};
 use crate::preview::error::PreviewError;
 use crate::preview::flight::{focus, look, orbit};
 use crate::preview::ground;
 use crate::preview::gui::is_in;
 use crate::preview::input::{Action, Drag, action};
+use crate::preview::keep;
 use crate::preview::live::{Live, quoted};
 use crate::preview::play::{overwrite, remove, set_view};
 use crate::preview::still::Still;
@@ -43,7 +44,10 @@ impl Live {
     pub fn event(&mut self, event: &WindowEvent) -> Result<(), PreviewError> {
         let mut taken = false;
         // A redraw is no input: the answer would ask for the next one.
-        if !matches!(event, WindowEvent::RedrawRequested) {
+        // Keys are for widgets only while text is typed: Tab would move egui's focus.
+        let flies = matches!(event, WindowEvent::KeyboardInput { .. });
+        let typed = !flies || self.ctx.text_edit_focused();
+        if typed && !matches!(event, WindowEvent::RedrawRequested) {
             let response = self.gui.on_window_event(&self.stage.window, event);
             // What egui knows may be older than the pointer's way onto the panel.
             taken = response.consumed || is_in(&self.panels, self.cursor);
@@ -52,7 +56,7 @@ impl Live {
             }
         }
         match event {
-            WindowEvent::CloseRequested => self.closed = true,
+            WindowEvent::CloseRequested => self.close(),
             WindowEvent::Resized(size) => {
                 self.hidden = size.width == 0 || size.height == 0;
                 if !self.hidden {
@@ -80,6 +84,12 @@ impl Live {
             _ => {}
         }
         Ok(())
+    }
+
+    /// Closes the window. Unsaved work is offered at the next start.
+    fn close(&mut self) {
+        self.keep_now();
+        self.closed = true;
     }
 
     /// Whether the panel may change by an event. Keys that fly and a pointer over the picture change
@@ -141,8 +151,8 @@ impl Live {
                 let camera = self.first.camera.clone();
                 self.document.change(|plan| plan.camera = camera);
             }
-            Action::Undo => _ = self.document.undo(),
-            Action::Redo => _ = self.document.redo(),
+            Action::Undo => self.go_back(Document::undo),
+            Action::Redo => self.go_back(Document::redo),
             Action::Save => self.save(),
             Action::Still => self.begin_still(),
             Action::Copy => self.copy(),
@@ -169,9 +179,18 @@ impl Live {
             Action::Remove => {
                 if let Some(place) = self.play.chosen.take() {
                     self.document.change(|plan| remove(plan, place));
+                    self.show_moment();
                 }
             }
-            Action::Quit => self.closed = true,
+            Action::Quit => self.close(),
+        }
+    }
+
+    /// Undoes or redoes a step. If it changed tracks, the moment under the playhead is another one.
+    fn go_back(&mut self, step: fn(&mut Document) -> bool) {
+        let tracks = self.document.plan.tracks.clone();
+        if step(&mut self.document) && tracks != self.document.plan.tracks {
+            self.show_moment();
         }
     }
 
@@ -200,8 +219,11 @@ impl Live {
     }
 
     fn save(&mut self) {
+        let before = self.document.clone();
         match self.document.save(Path::new(".")) {
             Ok(path) => {
+                // It was kept under the name that it had.
+                keep::drop(self.options.kept.as_deref(), &before);
                 self.watch_file();
                 self.tell(format!("saved to {}", path.display()), false);
             }
@@ -389,24 +411,5 @@ impl Live {
             self.tell(format!("{section}.{name} must be {expects}"), true);
         }
         self.paint_soon(Duration::ZERO);
-    }
-
-    /// Opens another preset in the place of this one.
-    pub fn open(&mut self, name: &str) {
-        match preset::load(Path::new(name), &[]) {
-            Ok(preset) => {
-                let path: Option<PathBuf> = preset::file(Path::new(name));
-                self.first = preset.plan.clone();
-                self.stage
-                    .window
-                    .set_title(&format!("{} - conemarch", preset.name));
-                self.visible.timeline = !preset.plan.tracks.is_empty();
-                self.play = Default::default();
-                self.document =
-                    crate::preview::document::Document::new(preset.name, path, preset.plan);
-                self.watch_file();
-            }
-            Err(e) => self.tell(e.to_string(), true),
-        }
     }
 }

@@ -10,7 +10,7 @@ use crate::preset;
 const MOST_STEPS: usize = 1000;
 
 /// A plan that is edited.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Document {
     /// The preset's name.
     pub name: String,

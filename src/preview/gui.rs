@@ -84,7 +84,8 @@ impl Live {
                 });
             asked.parts.push(line.response.rect);
         }
-        if self.visible.panel {
+        // Without the panel only what is to be told lies over the picture.
+        if self.visible.panel || self.notice.is_some() {
             let free = ui.available_rect_before_wrap();
             overlay::status(&ctx, free, &self.status());
         }

@@ -101,8 +101,9 @@ pub struct Live {
     looked: Instant,
     pub preset_file: Watched,
     pub shader_files: Watched,
-    /// When the change that is not kept yet was made.
-    pub unkept: Option<(Instant, Plan)>,
+    /// When the first change was made that is not kept yet, and what is kept.
+    pub unkept: Option<Instant>,
+    pub kept: Option<Plan>,
     /// How often the device was opened again since the last full picture.
     pub losses: u32,
 }
@@ -171,6 +172,7 @@ impl Live {
             preset_file: Watched::new(options.path.iter().cloned().collect()),
             shader_files: options.wgsl.as_ref().map(watched).unwrap_or_default(),
             unkept: None,
+            kept: None,
             losses: 0,
             options,
         }

@@ -117,6 +117,8 @@ pub struct Pictures {
     extras: Extras,
     /// What is wanted, counted from 1.
     wish: u64,
+    /// The wish that cannot be rendered.
+    failed: Option<u64>,
     plan: Option<Plan>,
     /// Whether the plan goes on changing, so that only small pictures are made.
     pub moving: bool,
@@ -137,6 +139,7 @@ impl Pictures {
             assets: Assets::default(),
             extras: Self::extras_of(Extras::default()),
             wish: 0,
+            failed: None,
             plan: None,
             moving: false,
             divisor: 2,
@@ -197,7 +200,7 @@ impl Pictures {
     fn fail(&mut self) {
         self.small.under_way = None;
         self.full.under_way = None;
-        self.plan = None;
+        self.failed = Some(self.wish);
     }
 
     /// The small picture's plan. It has no cones where they are optional: so few pixels share few
@@ -250,6 +253,9 @@ impl Pictures {
         let Some(plan) = self.plan.clone() else {
             return Ok(false);
         };
+        if self.failed == Some(self.wish) {
+            return Ok(false);
+        }
         let stale = |picture: &Picture, wish: u64| match &picture.under_way {
             Some((of, _)) => *of != wish,
             None => false,
@@ -321,8 +327,8 @@ impl Pictures {
 
     /// Whether there is something to do.
     pub fn is_busy(&self) -> bool {
-        self.small.under_way.is_some()
-            || self.plan.is_some() && !self.full.is_made(self.wish) && !self.rests()
+        let wanted = self.plan.is_some() && self.failed != Some(self.wish);
+        self.small.under_way.is_some() || wanted && !self.full.is_made(self.wish) && !self.rests()
     }
 
     /// Whether a flight waits for its next change.

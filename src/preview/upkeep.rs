@@ -1,16 +1,17 @@
-//! What keeps a session going: files that change, unsaved work, and lost devices.
+//! What keeps a session going: files that change or are opened, unsaved work, and lost devices.
 
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::gpu::RenderError;
 use crate::gpu::device::DeviceError;
 use crate::preset;
+use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
 use crate::preview::keep;
 use crate::preview::live::Live;
 use crate::preview::pictures::Pictures;
 use crate::preview::reload::{Watched, sources};
-use crate::preview::window::REST;
 
 /// Time after a change until it is kept.
 const KEEP: Duration = Duration::from_secs(1);
@@ -69,7 +70,11 @@ impl Live {
         let Some(path) = self.document.path.clone() else {
             return;
         };
-        match preset::load(&path, &[]) {
+        let loaded = preset::load(&path, &[]);
+        if loaded.is_ok() && self.notice.take_if(|n| n.is_error).is_some() {
+            self.paint_soon(Duration::ZERO);
+        }
+        match loaded {
             Ok(preset) if preset.plan == *self.document.saved() => {}
             Ok(preset) => {
                 self.document.reload(preset.plan);
@@ -84,25 +89,46 @@ impl Live {
     pub fn watch_file(&mut self) {
         self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
         keep::drop(self.options.kept.as_deref(), &self.document);
-        self.unkept = None;
+        (self.unkept, self.kept) = (None, None);
     }
 
-    /// Keeps unsaved work, so that it survives a crash.
-    pub fn keep_work(&mut self) {
-        if !self.document.is_changed() || self.offered.is_some() {
-            return;
-        }
-        let plan = &self.document.plan;
-        let since = match &self.unkept {
-            Some((since, kept)) if kept == plan => *since,
-            _ => {
-                self.unkept = Some((Instant::now(), plan.clone()));
-                return;
+    /// Opens another preset in the place of this one.
+    pub fn open(&mut self, name: &str) {
+        match preset::load(Path::new(name), &[]) {
+            Ok(preset) => {
+                let path: Option<PathBuf> = preset::file(Path::new(name));
+                self.first = preset.plan.clone();
+                self.stage
+                    .window
+                    .set_title(&format!("{} - conemarch", preset.name));
+                self.visible.timeline = !preset.plan.tracks.is_empty();
+                self.play = Default::default();
+                self.keep_now();
+                self.document = Document::new(preset.name, path, preset.plan);
+                self.offered = keep::find(self.options.kept.as_deref(), &self.document);
+                self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
+                (self.unkept, self.kept) = (None, None);
             }
-        };
-        if since.elapsed() > KEEP && since.elapsed() < KEEP + 2 * REST {
+            Err(e) => self.tell(e.to_string(), true),
+        }
+    }
+
+    /// Keeps unsaved work now and then, so that it survives a crash.
+    pub fn keep_work(&mut self) {
+        let is_kept = self.kept.as_ref() == Some(&self.document.plan);
+        if is_kept || !self.document.is_changed() {
+            self.unkept = None;
+        } else if self.unkept.get_or_insert_with(Instant::now).elapsed() > KEEP {
+            self.keep_now();
+        }
+    }
+
+    /// Keeps unsaved work, unless older work is still offered.
+    pub fn keep_now(&mut self) {
+        if self.document.is_changed() && self.offered.is_none() {
             // A cache that cannot be written is no reason to disturb.
             let _ = keep::keep(self.options.kept.as_deref(), &self.document);
+            (self.unkept, self.kept) = (None, Some(self.document.plan.clone()));
         }
     }
 }

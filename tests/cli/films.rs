@@ -148,6 +148,7 @@ fn wrong_films_are_refused_before_the_first_frame() {
             "the first and the last frame",
         ),
         ("film.toml -o f-%03d.png --shard 4/3", "from 1/4 to 4/4"),
+        ("film.toml -o f-%03d.png --video f", "a file like film.mp4"),
         ("mandelbox -o f-%03d.png", "no [[track]]"),
     ] {
         folder.fails(&format!("animate {line} --device cpu"), 2, says);
@@ -162,6 +163,12 @@ fn wrong_films_are_refused_before_the_first_frame() {
         1,
         "no folder",
     );
+    // A still carries its film, and must not become one of the frames.
+    let mut still = folder.command("render film.toml -o f-002.png --device cpu");
+    assert_eq!(output(&mut still).status.code(), Some(0));
+    let line = "animate f-002.png -o f-%03d.png --device cpu";
+    folder.fails(line, 2, "a frame would overwrite the preset, `f-002.png`");
+    fs::remove_file(folder.0.join("f-002.png")).unwrap();
     let line = "animate film.toml -o f-%03d.png --video f.mp4 --device cpu";
     let without = output(folder.command(line).env("PATH", ""));
     assert_eq!(without.status.code(), Some(1));

@@ -88,12 +88,14 @@ fn at_rest_the_window_shows_the_picture_of_the_file() {
     assert!(foggy != edited);
     sleep(Duration::from_millis(20));
     folder.write("mandelbox-1.toml", preset::write(&foggy));
+    let foggy_plan = foggy;
     let foggy = picture(&folder, "c.png");
     view.wait_for("the edited preset", |shot| *shot == foggy);
     // A broken file is told over the last good picture.
     folder.write("mandelbox-1.toml", "[scene\n");
-    sleep(Duration::from_millis(800));
-    assert!(view.at_rest() == foggy);
+    view.wait_for("what is wrong", |shot| *shot != foggy);
+    folder.write("mandelbox-1.toml", preset::write(&foggy_plan));
+    view.wait_for("the mended preset", |shot| *shot == foggy);
     view.key("Home");
     view.wait_for("the camera of the preset", |shot| *shot == foggy);
     view.close();
