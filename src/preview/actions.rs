@@ -14,7 +14,7 @@ use crate::base::view::footprint;
 use crate::measure::truth;
 use crate::picture::Layer;
 use crate::plan::{Extras, Plan};
-use crate::preset::SECTIONS;
+use crate::preset::{self, SECTIONS};
 use crate::preview::document::{Document, unused};
 use crate::preview::error::PreviewError;
 use crate::preview::flight::{focus, look, orbit};
@@ -272,13 +272,13 @@ impl Live {
             Some(path) => path.display().to_string(),
             None => self.document.name.clone(),
         };
-        let mut known = self.document.saved().clone();
+        // What a render reads, without what this window was started with.
+        let loaded = preset::load(Path::new(&name), &[]);
+        let mut known = loaded.map_or_else(|_| self.document.saved().clone(), |p| p.plan);
         let mut now = self.shown();
         let mut line = format!("conemarch render {}", quoted(&name));
-        for section in SECTIONS {
-            if section == "image" || section == "time" {
-                continue;
-            }
+        let others = |section: &&str| !["image", "time"].contains(section);
+        for section in SECTIONS.into_iter().filter(others) {
             let old = known.keys(section).unwrap_or_default();
             let new = now.keys(section).unwrap_or_default();
             for (old, new) in old.into_iter().zip(new) {
@@ -288,6 +288,11 @@ impl Live {
                     line += &format!(" --set {}", quoted(&set));
                 }
             }
+        }
+        if let Shot::Layer(layer) = self.shot
+            && layer != Layer::Color
+        {
+            line += &format!(" --layer {}", layer.name());
         }
         line + &format!(" --size {width}x{height} -o picture.png")
     }
