@@ -1,7 +1,8 @@
 //! From light to the bytes of a picture.
 //!
 //! The curve is monotonic, so a table of 255 radiances decides every byte. It is found in f64,
-//! and f32 compares against it without an error. The curve in f32 says where to look. Twin: `wgsl/pass/tone.wgsl`.
+//! and f32 compares against it without an error. The curve in f32 says where to look.
+//! Twin: `wgsl/pass/tone.wgsl`.
 
 use glam::DVec3;
 
