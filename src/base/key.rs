@@ -288,6 +288,13 @@ pub fn auto<T: Copy + Into<Value>>(
     Place::new(at, format!("\"auto\" or {other}"), write, read).of(kind)
 }
 
+/// A whole number in a closed range.
+pub fn count(at: &mut u32, low: u32, high: u32) -> impl Slot {
+    let expects = format!("a whole number from {low} to {high}");
+    let read = move |v: &Value| count_in(v, low, high);
+    Place::new(at, expects, |n| (*n).into(), read).of(Kind::Count([low, high]))
+}
+
 /// A whole number in a closed range, or `"auto"`, which is stored as `None`.
 pub fn auto_count(at: &mut Option<u32>, low: u32, high: u32) -> impl Slot {
     let other = format!("a whole number from {low} to {high}");

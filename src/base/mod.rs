@@ -14,6 +14,7 @@
 pub mod array;
 pub mod clock;
 pub mod cone;
+pub mod filter;
 pub mod key;
 pub mod named;
 pub mod outcome;

@@ -8,7 +8,7 @@
 //! Twin: `wgsl/base/view.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// The view as WGSL reads it.
 #[repr(C)]
@@ -24,8 +24,8 @@ pub struct ViewUniform {
     pub slack: f32,
     /// Unit vector into the image.
     pub forward: Vec3,
-    /// Unused.
-    pub pad: f32,
+    /// How far rays of a pixel go from its centre, in pixels.
+    pub reach: f32,
     /// Width and height of the full image in pixels.
     pub size: [u32; 2],
     /// Unused.
@@ -94,6 +94,8 @@ pub struct View {
     pub pixel: f64,
     /// Width and height of the full image in pixels.
     pub size: [u32; 2],
+    /// How far rays of a pixel go from its centre along each axis, in pixels.
+    pub reach: f64,
 }
 
 impl View {
@@ -108,6 +110,7 @@ impl View {
             forward,
             pixel: 2.0 * (fov.to_radians() * 0.5).tan() / f64::from(size[1]),
             size,
+            reach: 0.0,
         }
     }
 
@@ -119,6 +122,7 @@ impl View {
             up: self.up.as_vec3(),
             slack: CHORD_SLACK as f32,
             forward: self.forward.as_vec3(),
+            reach: self.reach as f32,
             size: self.size,
             ..Zeroable::zeroed()
         }
@@ -134,12 +138,18 @@ impl View {
 
     /// The ray through the centre of a pixel.
     pub fn view_ray(&self, pixel: [u32; 2]) -> Beam {
-        let u = self.view_direction(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
+        self.view_ray_at(pixel, DVec2::ZERO)
+    }
+
+    /// The ray through a place in pixels from the centre of a pixel.
+    pub fn view_ray_at(&self, pixel: [u32; 2], offset: DVec2) -> Beam {
+        let [x, y] = pixel.map(|p| f64::from(p) + 0.5);
+        let u = self.view_direction(x + offset.x, y + offset.y);
         let n = u.length();
         Beam::pinhole(u / n, 0.0, 0.5 * self.pixel / n)
     }
 
-    /// The cone over the pixel centres of a cell. The image's border cuts the cell.
+    /// The cone over all rays of the pixels of a cell. The image's border cuts the cell.
     ///
     /// `k = min(2, 2|h| / (2|u| - |h|))`, where h is half the diagonal and u the axis in the
     /// image plane, and 2 for a cell wider than that (docs/method.md, 1).
@@ -149,7 +159,7 @@ impl View {
         let middle = [0, 1].map(|i| 0.5 * f64::from(low[i] + high[i]));
         let u = self.view_direction(middle[0], middle[1]);
         let n = u.length();
-        let span = [0, 1].map(|i| f64::from(high[i] - low[i] - 1));
+        let span = [0, 1].map(|i| f64::from(high[i] - low[i] - 1) + 2.0 * self.reach);
         let h = 0.5 * self.pixel * span[0].hypot(span[1]);
         let k = if h < n {
             (2.0 * h / (2.0 * n - h) + CHORD_SLACK).min(2.0)
@@ -157,5 +167,39 @@ impl View {
             2.0
         };
         Beam::pinhole(u / n, k, 0.5 * self.pixel / (n - h).max(1.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cone_holds_all_rays_of_its_pixels() {
+        let (eye, target) = (DVec3::new(4.0, -9.0, 6.0), DVec3::ZERO);
+        for fov in [1.0, 48.5, 120.0, 170.0] {
+            for reach in [0.0, 0.25, 1.5] {
+                let view = View {
+                    reach,
+                    ..View::new(eye, target, DVec3::Z, fov, [37, 21])
+                };
+                let mut widest: f64 = 0.0;
+                for (x, y) in (0..21).flat_map(|y| (0..37).map(move |x| (x, y))) {
+                    for divisor in [1, 2, 8, 32] {
+                        let cone = view.view_cone([x / divisor, y / divisor], divisor);
+                        for corner in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
+                            let offset = reach * DVec2::from(corner);
+                            let ray = view.view_ray_at([x, y], offset);
+                            let chord = ray.axis.distance(cone.axis);
+                            assert!(chord <= cone.k, "{fov} {reach} {divisor} {chord} {cone:?}");
+                            assert!(ray.grain <= cone.grain, "{fov} {reach} {divisor}");
+                            widest = widest.max(chord / cone.k);
+                        }
+                    }
+                }
+                // Nor is it much wider than they need.
+                assert!(widest > 0.9, "{fov} {reach} {widest}");
+            }
+        }
     }
 }

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, anyhow};
 use clap::{Args, ValueHint};
 
-use crate::command::arguments::{bits, size};
+use crate::command::arguments::{bits, pixel_samples, size};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::output::Format;
@@ -52,6 +52,10 @@ pub struct Animate {
     /// Width and height in pixels, in place of the preset's
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
+
+    /// Rays through each pixel, in place of the preset's: 1 is quick, 16 is smooth
+    #[arg(long, value_name = "N", value_parser = pixel_samples())]
+    samples: Option<u32>,
 
     /// Set one value of the preset; may be given again
     #[arg(long, value_name = "SECTION.KEY=VALUE", allow_hyphen_values = true)]
@@ -127,6 +131,7 @@ pub fn run(args: &Animate) -> Result<()> {
     let (preset, assets) = loaded(&args.preset, &args.set)?;
     let mut film = preset.plan;
     film.size = args.size.unwrap_or(film.size);
+    film.samples = args.samples.unwrap_or(film.samples);
     if film.tracks.is_empty() {
         return Err(usage(format!(
             "`{}` has no [[track]], so that nothing moves; docs/presets.md tells how to write one, and `render` makes a still",

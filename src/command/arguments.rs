@@ -4,7 +4,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::base::units;
 use crate::heightfield::heights::MOST_SAMPLES;
-use crate::plan::MOST_PIXELS;
+use crate::plan::{MOST_PIXEL_SAMPLES, MOST_PIXELS};
 use crate::raster::png::BitDepth;
 
 /// Reads the size of a picture, like `1280x720`.
@@ -25,6 +25,11 @@ pub fn samples(text: &str) -> Result<[u32; 2], String> {
     units::size(text, MOST_SAMPLES).ok_or_else(|| {
         format!("must be columns x rows, each from 1 to {MOST_SAMPLES}, like 512x256")
     })
+}
+
+/// Reads how many samples a pixel has.
+pub fn pixel_samples() -> impl TypedValueParser<Value = u32> {
+    clap::value_parser!(u32).range(1..=i64::from(MOST_PIXEL_SAMPLES))
 }
 
 /// Reads how many bits a channel of a PNG has.

@@ -137,9 +137,10 @@ fn layer_of(file: &Path) -> Option<Layer> {
 }
 
 /// The file that a picture goes to without -o: `NAME.png`, with other settings
-/// `NAME-camera.fov=33.png`, at a moment `NAME-at=2.png`, with another size `NAME-640x360.png`, and of another layer
-/// `NAME.depth.png`. Only a picture of this program, of the same layer and settings, is replaced. The
-/// preset in a file may have been edited since.
+/// `NAME-camera.fov=33.png`, at a moment `NAME-at=2.png`, with another size `NAME-640x360.png`, with
+/// samples `NAME-samples=16.png`, and of another layer `NAME.depth.png`. Only a picture of this
+/// program, of the same layer and settings, is replaced. The preset in a file may have been edited
+/// since.
 ///
 /// # Errors
 /// The file exists and may not be replaced.
@@ -163,6 +164,9 @@ pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<Pa
     }
     if plan.size != own_size {
         file.push(format!("-{}x{}", plan.size[0], plan.size[1]));
+    }
+    if let Some(samples) = args.samples {
+        file.push(format!("-samples={samples}"));
     }
     if args.layer != Layer::Color {
         file.push(format!(".{}", args.layer.name()));

@@ -6,7 +6,7 @@ use anyhow::{Result, anyhow};
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint, value_parser};
 
-use crate::command::arguments::{bits, size, words};
+use crate::command::arguments::{bits, pixel_samples, size, words};
 use crate::command::bench::common::of_how_many;
 use crate::command::bench::runner::{Runner, TIMED};
 use crate::command::executor::{Executor, device};
@@ -36,9 +36,9 @@ pub struct Render {
     /// Where to write: a .png, .jpg, .webp or .exr file, or - for PNG on standard output
     ///
     /// Without -o the picture goes to the current folder as NAME.png, with --set as
-    /// NAME-camera.fov=60.png, with another --size as NAME-640x360.png, and with another
-    /// --layer as NAME.depth.png. Only a picture of the same layer and settings is replaced, or
-    /// one that is older than a preset's file.
+    /// NAME-camera.fov=60.png, with another --size as NAME-640x360.png, with --samples as
+    /// NAME-samples=16.png, and with another --layer as NAME.depth.png. Only a picture of the same
+    /// layer and settings is replaced, or one that is older than a preset's file.
     ///
     /// A PNG carries its preset and can be rendered again; JPEG and WebP carry none. WebP is
     /// without loss. An EXR has the channels R, G, B (linear), A (1), Z (along the view
@@ -51,6 +51,10 @@ pub struct Render {
     /// Width and height in pixels, in place of the preset's
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
+
+    /// Rays through each pixel, in place of the preset's: 1 is quick, 16 is smooth
+    #[arg(long, value_name = "N", value_parser = pixel_samples())]
+    pub(crate) samples: Option<u32>,
 
     /// Set one value of the preset; may be given again
     ///
@@ -110,6 +114,7 @@ pub fn run(args: &Render) -> Result<()> {
     }
     let own_size = plan.size;
     plan.size = args.size.unwrap_or(own_size);
+    plan.samples = args.samples.unwrap_or(plan.samples);
     let output = match &args.output {
         Some(path) => path.clone(),
         None => default_name(args, &plan, own_size)?,

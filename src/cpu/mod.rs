@@ -3,9 +3,11 @@
 //! It renders where a machine has no adapter, it makes the truths, and the GPU is compared
 //! with it.
 
+use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::base::clock::clock;
+use crate::base::filter::offset;
 use crate::base::outcome::{Counts, State};
 use crate::base::view::View;
 use crate::heightfield::conemap::generate::cpu::generate;
@@ -98,13 +100,24 @@ impl Task for Render<'_> {
             frame: Frame::blank(plan, extras),
             parents: None,
             hits: Vec::new(),
+            place: DVec2::ZERO,
+            undecided: Vec::new(),
         };
-        for (at, &pass) in passes.iter().enumerate() {
+        // The cones serve all samples. The last one is that of the pixels' centres, whose depths stay.
+        let rays = passes.iter().position(|pass| *pass == Pass::Trace);
+        let (cones, rays) = passes.split_at(rays.unwrap_or(passes.len()));
+        let samples = (0..plan.samples).rev();
+        let all = cones.iter().map(|pass| (0, pass));
+        let all = all.chain(samples.flat_map(|i| rays.iter().map(move |pass| (i, pass))));
+        let share = 1.0 / (cones.len() + rays.len() * plan.samples as usize) as f64;
+        for (nth, (sample, &pass)) in all.enumerate() {
+            let at = nth.min(cones.len()) + usize::from(pass == Pass::Color);
+            run.place = offset(sample);
             let start = clock();
             let mut bands = Bands {
                 pass: pass.name(),
-                before: at as f64 / passes.len() as f64,
-                share: 1.0 / passes.len() as f64,
+                before: nth as f64 * share,
+                share,
                 watch: &mut *self.watch,
             };
             let work = match pass {
@@ -115,12 +128,17 @@ impl Task for Render<'_> {
                 Pass::Prepare(_) => continue,
             };
             let figures = &mut run.frame.passes[at];
-            figures.wall_ms = clock() - start;
+            figures.wall_ms += clock() - start;
             if extras.count && pass.marches() {
-                figures.evaluations = Some(work.0);
-                figures.iterations = Some(work.1);
+                *figures.evaluations.get_or_insert(0) += work.0;
+                *figures.iterations.get_or_insert(0) += work.1;
             }
         }
+        let of_all = 1.0 / plan.samples as f32;
+        for sum in &mut run.frame.radiance {
+            *sum = sum.map(|light| light * of_all);
+        }
+        run.frame.undecided = run.undecided.iter().filter(|u| **u).count();
         Ok(run.frame)
     }
 }
@@ -133,6 +151,10 @@ struct Run<'a, S> {
     parents: Option<Proofs>,
     /// What the rays hit, for the colour pass.
     hits: Vec<Hit>,
+    /// Where the rays of the sample go, in pixels from the centres of their pixels.
+    place: DVec2,
+    /// Pixels with a shadow ray that reached its step limit.
+    undecided: Vec<bool>,
 }
 
 /// Evaluations and iterations of a whole pass.
@@ -170,13 +192,14 @@ impl<S: Solid> Run<'_, S> {
 
     fn trace(&mut self, limit: u32, bands: &mut Bands) -> Result<Sum, FrameError> {
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
+        let place = self.place;
         let one = |pixel| {
             let parent = parent_of(parents, pixel);
             let mut work = Counts::default();
             if parent.ended == Ended::Sky {
                 return (Hit::default(), State::Sky, work);
             }
-            let ray = view.view_ray(pixel);
+            let ray = view.view_ray_at(pixel, place);
             let (hit, state) = trace::trace(solid, &ray, parent.front, limit, &mut work);
             (hit, state, work)
         };
@@ -187,13 +210,16 @@ impl<S: Solid> Run<'_, S> {
         bands.over(frame.size, one, |i, (hit, state, work)| {
             add(&mut sum, work);
             frame.state[i] = state as u8;
-            if state != State::Sky {
-                frame.depth[i] = hit.t as f32;
+            frame.depth[i] = match state {
+                State::Sky => f32::INFINITY,
+                _ => hit.t as f32,
+            };
+            if let Some(all) = frame.work.get_mut(i) {
+                all.evaluations += work.evaluations;
+                all.iterations += work.iterations;
             }
-            set(&mut frame.work, i, work);
             set(hits, i, hit);
         })?;
-        self.parents = None;
         Ok(sum)
     }
 
@@ -201,16 +227,26 @@ impl<S: Solid> Run<'_, S> {
         let (solid, view, hits) = (self.solid, &self.view, &self.hits);
         let size = self.frame.size;
         let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
-        let (states, undecided) = (&self.frame.state, &mut self.frame.undecided);
+        let (states, undecided) = (&self.frame.state, &mut self.undecided);
+        undecided.resize(states.len(), false);
+        let place = self.place;
         let one = |pixel: [u32; 2]| {
             let at = pixel[1] as usize * size[0] as usize + pixel[0] as usize;
             let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
-            color::color(solid, light, &view.view_ray(pixel), &hits[at], state)
+            color::color(
+                solid,
+                light,
+                &view.view_ray_at(pixel, place),
+                &hits[at],
+                state,
+            )
         };
         bands.over(size, one, |i, pixel| {
-            set(radiance, i, pixel.radiance.as_vec3().to_array());
+            for (sum, light) in radiance[i].iter_mut().zip(pixel.radiance.to_array()) {
+                *sum += light as f32;
+            }
             set(normals, i, pixel.normal.as_vec3().to_array());
-            *undecided += usize::from(!pixel.decided);
+            undecided[i] |= !pixel.decided;
         })?;
         Ok((0, 0))
     }

@@ -45,7 +45,7 @@ settings! {
         min_radius: f64 = 0.5, number(1e-6, 1e3), "inner radius of the ball fold";
         fixed_radius: f64 = 1.0, number(1e-6, 1e3), "outer radius of the ball fold";
         fold_limit: f64 = 1.0, number(1e-3, 1e3), "half edge of the box at whose sides the box fold mirrors points";
-        rotation: DVec3 = DVec3::ZERO, triple(-360.0, 360.0),
+        rotation: DVec3 = DVec3::ZERO, triple(-36e3, 36e3),
             "rotation about x, then y, then z in degrees, between the folds and the scale" => Program;
         julia: bool = false, switch(), "whether each iteration adds julia_constant instead of the starting point" => Program;
         julia_constant: DVec3 = DVec3::ZERO, triple(-1e3, 1e3), "the constant that each iteration adds if julia is true";

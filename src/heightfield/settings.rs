@@ -34,7 +34,7 @@ settings! {
             "world length of the height 1";
         centre: DVec3 = DVec3::ZERO, triple(-1e6, 1e6),
             "the middle of the block's base";
-        turn: DVec3 = DVec3::ZERO, triple(-360.0, 360.0),
+        turn: DVec3 = DVec3::ZERO, triple(-36e3, 36e3),
             "rotation in degrees about x, then y, then z";
         paint: Option<Generator> = None, word(PAINTS),
             "what picks the colour from the palette: the height, or the width of the cones that this generator makes" => Assets;

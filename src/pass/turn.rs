@@ -24,7 +24,7 @@ pub struct Stage {
     pub chunk: u32,
     /// The largest step limit of a dispatch.
     pub most: u32,
-    /// The largest product of the workgroups and the step limit of a dispatch.
+    /// The largest product of workgroups and step limit of a dispatch.
     pub slice: u32,
     /// Workgroups that visit every cell; 0 if the stage is left out.
     pub tiles: u32,
@@ -56,11 +56,16 @@ pub struct Stage {
     pub tally: u32,
     /// Where the marks of hits start, three words to a pixel.
     pub mark: u32,
-    /// Where the light of the pixels starts, and after it the normals if they are kept, four words
-    /// to a pixel.
+    /// Where the light of the pixels starts, and then kept normals, four words to a pixel.
     pub light: u32,
     /// The number of the block, which is part of every state.
     pub generation: u32,
+    /// Samples of the pixels whose light is summed already.
+    pub before: u32,
+    /// Where the rays of this sample go, in pixels from the upper left corner of their pixels.
+    pub place: [f32; 2],
+    /// A factor on the sum of the light.
+    pub scale: f32,
     /// Unused.
     pub pad: u32,
 }
@@ -151,8 +156,8 @@ pub struct CellsHead {
     pub parents: u32,
     /// Cells that were left out.
     pub wrong: u32,
-    /// Unused.
-    pub pad: u32,
+    /// Cells of the finest cone level whose pixels have rays.
+    pub traced: u32,
     /// Dispatches of each stage of the block.
     pub dispatches: [u32; MOST_STAGES],
 }
@@ -188,8 +193,8 @@ impl StageKind {
         passes.chain([Self::Census]).collect()
     }
 
-    /// Stages of a block that are enough for a first picture of it: up to the sketch of the level of
-    /// 1/4, which takes a few percent of the time; 0 without such a sketch.
+    /// Stages that are enough for a first picture of a block: up to the sketch of the level of 1/4,
+    /// which takes a few percent of the time; 0 without such a sketch.
     pub fn first_picture(kinds: &[Self]) -> usize {
         let is_coarse = |kind: &Self| matches!(kind, Self::Sketch(level) if level.divisor >= 4);
         kinds.iter().rposition(is_coarse).map_or(0, |last| last + 1)
@@ -230,13 +235,11 @@ pub fn arrange() -> Program {
     Program::new("arrange", modules)
 }
 
-/// Where the values of a block's cells are in one buffer of words: first the states of all
-/// levels, the finest first, then the counts of work, the fronts, the marks and the light of the pixels, and last
-/// the lists.
+/// Where the values of a block's cells are in one buffer of words: the states of all levels, the
+/// finest first, the counts of work, the fronts, the marks, the light of the pixels, and the lists.
 ///
-/// Blocks of different sizes use one buffer. Only states may stand where a state is looked for, as
-/// another word could be taken for the state of a cell that was not visited. So all blocks of an
-/// image reserve as many words for states as the largest one.
+/// Blocks of different sizes use one buffer. Another word could be taken for the state of a cell
+/// that was not visited. So all blocks reserve as many words for states as the largest one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// The block.
@@ -379,6 +382,8 @@ impl Layout {
             tally: self.tally(divisor),
             mark: self.mark(),
             light: self.light(),
+            place: [0.5; 2],
+            scale: 1.0,
             ..Stage::zeroed()
         };
         match kind {

@@ -3,6 +3,7 @@
 //! The tracks of `camera.eye`, `camera.target` and `camera.up` are the path of one camera
 //! ([`crate::time::pose`]). Every other track sets one number, point or colour.
 
+use glam::DVec3;
 use toml::Value;
 
 use super::{Plan, camera::Camera};
@@ -31,6 +32,22 @@ fn value_of(kind: &Kind, numbers: &[f64]) -> Option<Value> {
         (Kind::Number(_), [x]) => Some(Value::Float(*x)),
         (Kind::Triple(_), [_, _, _]) => Some(numbers.to_vec().into()),
         _ => None,
+    }
+}
+
+/// The part of a camera that a track of [`POSE`] sets.
+fn field<'a>(camera: &'a mut Camera, of: &str) -> &'a mut DVec3 {
+    match of {
+        "camera.eye" => &mut camera.eye,
+        "camera.target" => &mut camera.target,
+        _ => &mut camera.up,
+    }
+}
+
+/// Sets what a track of [`POSE`] says of a time.
+fn set(camera: &mut Camera, track: &Track, time: f64) {
+    if let [x, y, z] = track.at(time)[..] {
+        *field(camera, &track.of) = [x, y, z].into();
     }
 }
 
@@ -91,6 +108,7 @@ impl Plan {
             if self.track("camera.up").is_some() {
                 still.camera.up = pose.up();
             }
+            self.hold(&mut still.camera, beat);
         }
         still.check().map(|()| still)
     }
@@ -111,10 +129,17 @@ impl Plan {
         let index = index.min(times.len() - 2);
         let [from, to] = [times[index], times[index + 1]];
         let u = (beat - from) / (to - from);
-        let between = own().map(|track| track.between_at(track.index_at(from)));
+        // A track that holds its value says nothing of the way.
+        let between = own()
+            .map(|track| track.between_at(track.index_at(from)))
+            .max_by_key(|between| match between {
+                Between::Step => 0,
+                Between::Smooth => 2,
+                _ => 1,
+            })?;
         let pose = |index: usize| self.key_pose(times[index]);
         let [here, there] = [pose(index), pose(index + 1)];
-        Some(match between.max_by_key(|b| *b == Between::Smooth)? {
+        Some(match between {
             Between::Smooth => {
                 let around = self.around(&times, index);
                 let [before, after] = around.map(|(time, i)| (time, pose(i)));
@@ -150,27 +175,50 @@ impl Plan {
         [before, after]
     }
 
+    /// The pose at a key of one of the camera's tracks. A track without a key there goes the way
+    /// between its own keys as a camera does, so that a key of another track does not bend it.
     fn key_pose(&self, time: f64) -> Pose {
-        let camera = self.key_camera(time);
+        let mut camera = self.key_camera(time);
+        for track in POSE.iter().filter_map(|of| self.track(of)) {
+            let index = track.index_at(time);
+            let key = &track.keys[index];
+            let Some(next) = track.keys.get(index + 1).filter(|_| key.time < time) else {
+                continue;
+            };
+            let pose = |time: f64| {
+                let camera = self.key_camera(time);
+                Pose::new(camera.eye, camera.target, camera.up)
+            };
+            let share = (time - key.time) / (next.time - key.time);
+            let share = match track.between_at(index) {
+                Between::Smooth => share,
+                between => between.share(share),
+            };
+            let there = pose(key.time).toward(&pose(next.time), share);
+            *field(&mut camera, &track.of) = match track.of.as_str() {
+                "camera.eye" => there.eye,
+                "camera.target" => there.target(),
+                _ => there.up(),
+            };
+        }
         Pose::new(camera.eye, camera.target, camera.up)
     }
 
     /// The camera by its tracks alone, each on its own.
     fn key_camera(&self, time: f64) -> Camera {
         let mut camera = self.camera.clone();
-        for of in POSE {
-            if let Some(track) = self.track(of)
-                && let [x, y, z] = track.at(time)[..]
-            {
-                let at = match of {
-                    "camera.eye" => &mut camera.eye,
-                    "camera.target" => &mut camera.target,
-                    _ => &mut camera.up,
-                };
-                *at = [x, y, z].into();
-            }
+        for track in POSE.iter().filter_map(|of| self.track(of)) {
+            set(&mut camera, track, time);
         }
         camera
+    }
+
+    /// Sets what tracks that hold their value hold at a time.
+    fn hold(&self, camera: &mut Camera, time: f64) {
+        let own = POSE.iter().filter_map(|of| self.track(of));
+        for track in own.filter(|t| t.between_at(t.index_at(time)) == Between::Step) {
+            set(camera, track, time);
+        }
     }
 
     /// Checks the tracks: their keys exist, and their values fit.

@@ -17,7 +17,10 @@ pub mod pyramid;
 
 use std::borrow::Cow;
 
-use crate::base::key::{Fault, Key, Redo, size, text};
+use glam::DVec2;
+
+use crate::base::filter::RADIUS;
+use crate::base::key::{Fault, Key, Redo, count, size, text};
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::keys;
@@ -32,6 +35,9 @@ use pyramid::Level;
 
 /// The largest width and height of an image.
 pub const MOST_PIXELS: u32 = 65_536;
+
+/// The most samples of a pixel. Their sum has the precision of an f32.
+pub const MOST_PIXEL_SAMPLES: u32 = 65_536;
 
 /// Everything that decides a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +54,8 @@ pub struct Plan {
     pub look: Look,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// Samples of each pixel, from 1 to [`MOST_PIXEL_SAMPLES`].
+    pub samples: u32,
     /// When the frames of a film are.
     pub time: Timing,
     /// What changes in the film.
@@ -69,6 +77,7 @@ impl Plan {
             march: Marching::default(),
             look,
             size: [1280, 720],
+            samples: 1,
             time: Timing::default(),
             tracks: Vec::new(),
         }
@@ -91,6 +100,7 @@ impl Plan {
             "look" => self.look.keys(),
             "image" => keys![
                 "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
+                "samples" = count(&mut self.samples, 1, MOST_PIXEL_SAMPLES), "rays through each pixel, whose colours are averaged: 1 is quick and has jagged edges, 16 is smooth, 256 is for print";
             ],
             "time" => self.time.keys(),
             _ => return None,
@@ -121,7 +131,11 @@ impl Plan {
 
     /// The camera over the image.
     pub fn view(&self) -> View {
-        self.camera.view(self.size)
+        let reach = if self.samples > 1 { RADIUS } else { 0.0 };
+        View {
+            reach,
+            ..self.camera.view(self.size)
+        }
     }
 
     /// The cone levels, coarsest first; none in modes without cones.
@@ -136,9 +150,10 @@ impl Plan {
 
     /// The eye, the finest pixel and the steps of the plan.
     pub fn viewpoint(&self) -> Viewpoint {
+        let view = self.view();
         Viewpoint {
             eye: self.camera.eye,
-            grain: self.view().view_ray([0, 0]).grain,
+            grain: view.view_ray_at([0, 0], DVec2::splat(-view.reach)).grain,
             stepping: self.march.stepping(),
         }
     }
@@ -161,8 +176,8 @@ impl Plan {
         levels.chain([Pass::Trace]).chain(colours).collect()
     }
 
-    /// The plan as it is rendered. It has no maps and textures that only colours need, if these
-    /// extras ask for no colours. It has no cones where they do not pay, unless the plan says how
+    /// The plan as it is rendered. It has no maps and textures that only colours need, and a single
+    /// sample, if these extras ask for no colours. It has no cones where they do not pay, unless the plan says how
     /// coarse they are; over heightfields they always pay.
     pub fn resolved(&self, extras: Extras) -> Cow<'_, Self> {
         let mut plan = Cow::Borrowed(self);
@@ -170,6 +185,9 @@ impl Plan {
             && extras.depth_only
         {
             plan.to_mut().scene = scene;
+        }
+        if extras.depth_only && self.samples > 1 {
+            plan.to_mut().samples = 1;
         }
         if let Scene::Distance(settings) = &self.scene
             && self.march.may_drop_cones()

@@ -23,7 +23,7 @@ use crate::preview::gui::is_in;
 use crate::preview::input::{Action, Drag, action};
 use crate::preview::keep;
 use crate::preview::live::{Live, quoted};
-use crate::preview::play::{overwrite, remove, set_view};
+use crate::preview::play::{set_view, with_still};
 use crate::preview::still::Still;
 use crate::preview::views::Shot;
 
@@ -170,27 +170,12 @@ impl Live {
             Action::Key => {
                 let beat = self.play.beat;
                 self.document.change(|plan| set_view(plan, beat));
+                self.show_moment();
                 self.visible.timeline = true;
             }
-            Action::Overwrite => match self.play.chosen {
-                Some(place) => self.document.change(|plan| overwrite(plan, place)),
-                None => self.tell("no key of the timeline is chosen; click one", true),
-            },
-            Action::Remove => {
-                if let Some(place) = self.play.chosen.take() {
-                    self.document.change(|plan| remove(plan, place));
-                    self.show_moment();
-                }
-            }
+            Action::Overwrite => self.overwrite_key(),
+            Action::Remove => self.remove_key(),
             Action::Quit => self.close(),
-        }
-    }
-
-    /// Undoes or redoes a step. If it changed tracks, the moment under the playhead is another one.
-    fn go_back(&mut self, step: fn(&mut Document) -> bool) {
-        let tracks = self.document.plan.tracks.clone();
-        if step(&mut self.document) && tracks != self.document.plan.tracks {
-            self.show_moment();
         }
     }
 
@@ -220,7 +205,8 @@ impl Live {
 
     fn save(&mut self) {
         let before = self.document.clone();
-        match self.document.save(Path::new(".")) {
+        let plan = with_still(&self.document.plan, before.saved(), self.play.beat);
+        match self.document.save(Path::new("."), plan) {
             Ok(path) => {
                 // It was kept under the name that it had.
                 keep::drop(self.options.kept.as_deref(), &before);

@@ -114,21 +114,21 @@ impl Document {
         self.saved_at = self.past.len();
     }
 
-    /// Writes the plan to its file, or a new one for a built-in preset, in `folder`. The file is
-    /// replaced at once or not at all.
+    /// Writes a plan, which is this one but for its still, to its file, or a new one for a built-in
+    /// preset, in `folder`. The file is replaced at once or not at all.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn save(&mut self, folder: &Path) -> Result<PathBuf, OutputError> {
+    pub fn save(&mut self, folder: &Path, plan: Plan) -> Result<PathBuf, OutputError> {
         let is_toml = |path: &&PathBuf| path.extension().is_some_and(|e| e == "toml");
         // A picture that carries a preset stays as it is.
         let path = match self.path.as_ref().filter(is_toml) {
             Some(path) => path.clone(),
             None => unused(folder, &self.name, "toml"),
         };
-        write(&path, preset::write(&self.plan).as_bytes())?;
+        write(&path, preset::write(&plan).as_bytes())?;
         self.end();
-        self.saved = self.plan.clone();
+        self.saved = plan;
         self.saved_at = self.past.len();
         self.path = Some(path.clone());
         Ok(path)
@@ -192,15 +192,16 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let mut doc = document();
         doc.change(|plan| plan.camera.fov = 33.0);
-        let path = doc.save(folder.path()).expect("saved");
+        let save = |doc: &mut Document| doc.save(folder.path(), doc.plan.clone()).expect("saved");
+        let path = save(&mut doc);
         assert_eq!(path, folder.path().join("box-1.toml"));
         assert!(!doc.is_changed());
         doc.change(|plan| plan.camera.fov = 34.0);
         assert!(doc.is_changed());
-        assert_eq!(doc.save(folder.path()).expect("saved"), path);
+        assert_eq!(save(&mut doc), path);
         let text = std::fs::read_to_string(&path).expect("a file");
         assert_eq!(preset::read(&text, "box").expect("a preset"), doc.plan);
-        let again = document().save(folder.path()).expect("saved");
+        let again = save(&mut document());
         assert_eq!(again, folder.path().join("box-2.toml"));
     }
 }

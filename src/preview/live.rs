@@ -17,7 +17,7 @@ use crate::preview::flight::Flight;
 use crate::preview::input::{Drag, thrust};
 use crate::preview::meter::{Figures, Meter};
 use crate::preview::pictures::Pictures;
-use crate::preview::play::{Play, pose_at};
+use crate::preview::play::Play;
 use crate::preview::reload::{Watched, files_in, sources};
 use crate::preview::screen::Shown;
 use crate::preview::still::Still;
@@ -29,7 +29,7 @@ use crate::scene::Assets;
 /// How long the loop sleeps while the device works, or the camera flies.
 const BUSY: Duration = Duration::from_millis(1);
 /// Time after which the panel follows what the device does.
-const PANEL: Duration = Duration::from_millis(400);
+pub const PANEL: Duration = Duration::from_millis(400);
 /// The least time between two paintings of the panel, and while the camera moves.
 const PAUSE: Duration = Duration::from_millis(40);
 const MOVING_PANEL: Duration = Duration::from_millis(1000);
@@ -133,7 +133,7 @@ impl Live {
             preset.plan.clone(),
         );
         let offered = keep::find(options.kept.as_deref(), &document);
-        Self {
+        let mut live = Self {
             stage,
             pictures,
             ctx,
@@ -175,7 +175,9 @@ impl Live {
             kept: None,
             losses: 0,
             options,
-        }
+        };
+        live.show_moment();
+        live
     }
 
     /// Whether the window is to be closed.
@@ -223,15 +225,6 @@ impl Live {
     /// The heights, maps and textures of the scene.
     pub fn assets(&self) -> &Assets {
         &self.pictures.assets
-    }
-
-    /// Shows another moment of the film.
-    pub fn show_moment(&mut self) {
-        let beat = self.play.beat;
-        if let Some(wrong) = pose_at(&mut self.document.plan, beat) {
-            self.warn(wrong);
-        }
-        self.paint_soon(PANEL);
     }
 
     /// Does what is due, and returns how long it can sleep.

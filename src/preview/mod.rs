@@ -9,10 +9,10 @@
 //! - [`document`]: the plan that is edited, its history and its file; `keep`: unsaved work;
 //!   `reload`: files that change
 //! - [`flight`]: how the camera moves; [`ground`]: what the CPU can tell about the scene at once
-//! - [`pictures`]: small pictures at once, full ones at rest; `still`: one for a file;
+//! - [`pictures`], each a `picture`: small ones at once, full ones at rest; `still`: one for a file;
 //!   `views`: what of them is shown; `screen`: the window's surface, [`draw`]: its
 //!   pipelines
-//! - `panel`: the keys of the plan; [`play`] and `timeline`: the film; `overlay`: times, notices
+//! - `panel`: the keys of the plan; [`play`], `film` and `timeline`: the film; `overlay`: times, notices
 //!   and help
 //! - [`meter`]: how quickly the window answers; [`error`]: why a preview cannot go on
 
@@ -20,6 +20,7 @@ mod actions;
 pub mod document;
 pub mod draw;
 pub mod error;
+mod film;
 pub mod flight;
 pub mod ground;
 mod gui;
@@ -29,6 +30,7 @@ mod live;
 pub mod meter;
 mod overlay;
 mod panel;
+mod picture;
 pub mod pictures;
 pub mod play;
 mod reload;

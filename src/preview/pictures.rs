@@ -1,20 +1,20 @@
-//! The pictures of a plan that changes: a small one at once, and a full one when the plan rests.
+//! The pictures of a plan that changes: a small one at once, a full one when the plan rests, and
+//! then, if the plan has several samples, a fine one.
 //!
-//! Each of the two has its own render under way, so that neither makes the buffers of the other
+//! Each of the three has its own render under way, so that none makes the buffers of another
 //! again. A small picture is always finished, however fast the plan changes: else a flight would
-//! show nothing. A full one stops as soon as the plan changes.
+//! show nothing. The others stop as soon as the plan changes.
 
 use std::sync::Arc;
 
-use crate::base::clock::clock;
 use crate::base::key::Redo;
 use crate::gpu::RenderError;
 use crate::gpu::device::Device;
 use crate::gpu::render::Renderer;
-use crate::gpu::work::Work;
 use crate::pass::progress::Progress;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::{Extras, Plan};
+use crate::preview::picture::Picture;
 use crate::scene::{Assets, Scene};
 
 /// Milliseconds of work that are submitted at once. What was submitted must end before another plan
@@ -34,65 +34,8 @@ const AT_ONCE_MS: f64 = 14.0;
 /// The same of a picture with another look, at rest: it keeps the rays.
 const LOOK_AT_ONCE_MS: f64 = 700.0;
 
-/// One of the two pictures.
-#[derive(Default)]
-struct Picture {
-    work: Option<Work>,
-    /// What is rendered, and the number of the wish.
-    under_way: Option<(u64, Plan)>,
-    /// The wish that was finished last, and its plan.
-    made: Option<(u64, Plan)>,
-    began: f64,
-    took_ms: Option<f64>,
-    frame: Option<Frame>,
-    /// Sums over all frames.
-    uploads: usize,
-    allocations: u32,
-    compilations: usize,
-}
-
-impl Picture {
-    /// Begins to render a plan.
-    fn begin(
-        &mut self,
-        renderer: &mut Renderer,
-        assets: &Assets,
-        extras: Extras,
-        wish: (u64, Plan),
-    ) -> Result<(), RenderError> {
-        self.began = clock();
-        let plan = &wish.1;
-        match &mut self.work {
-            Some(work) => renderer.set(work, plan, assets)?,
-            None => self.work = Some(renderer.begin(plan, assets, extras)?),
-        }
-        self.under_way = Some(wish);
-        Ok(())
-    }
-
-    /// Goes on. Returns whether the picture is finished.
-    fn advance(&mut self, budget_ms: f64) -> Result<bool, RenderError> {
-        let Some(work) = self.work.as_mut().filter(|_| self.under_way.is_some()) else {
-            return Ok(false);
-        };
-        work.advance(budget_ms)?;
-        let Some(frame) = work.poll()? else {
-            return Ok(false);
-        };
-        let traffic = frame.traffic.unwrap_or_default();
-        self.uploads += traffic.uploads;
-        self.allocations += traffic.allocations;
-        self.compilations += traffic.compilations;
-        self.took_ms = Some(clock() - self.began);
-        self.made = self.under_way.take();
-        self.frame = Some(frame);
-        Ok(true)
-    }
-
-    fn is_made(&self, wish: u64) -> bool {
-        self.made.as_ref().is_some_and(|(made, _)| *made == wish)
-    }
-}
+/// The fine picture is shown whenever so much more of it is done.
+const FINER: f64 = 0.125;
 
 /// A finished picture.
 pub struct Finished<'a> {
@@ -110,7 +53,7 @@ pub struct Finished<'a> {
 
 /// The pictures of a plan that changes.
 pub struct Pictures {
-    /// Renders both.
+    /// Renders them.
     pub renderer: Renderer,
     /// Heights, maps and textures.
     pub assets: Assets,
@@ -129,6 +72,9 @@ pub struct Pictures {
     larger: bool,
     small: Picture,
     full: Picture,
+    fine: Picture,
+    /// How much of the fine picture of what is wanted is shown.
+    refined: f64,
 }
 
 impl Pictures {
@@ -147,6 +93,8 @@ impl Pictures {
             larger: false,
             small: Picture::default(),
             full: Picture::default(),
+            fine: Picture::default(),
+            refined: 0.0,
         }
     }
 
@@ -169,7 +117,7 @@ impl Pictures {
 
     /// Makes everything again: shader texts or files have changed.
     pub fn forget(&mut self) {
-        for picture in [&mut self.small, &mut self.full] {
+        for picture in [&mut self.small, &mut self.full, &mut self.fine] {
             picture.work = None;
             picture.under_way = None;
             picture.made = None;
@@ -200,6 +148,7 @@ impl Pictures {
     fn fail(&mut self) {
         self.small.under_way = None;
         self.full.under_way = None;
+        self.fine.under_way = None;
         self.failed = Some(self.wish);
     }
 
@@ -209,7 +158,7 @@ impl Pictures {
         if !self.moving && std::mem::take(&mut self.larger) {
             self.divisor -= 1;
         }
-        let mut small = plan.clone();
+        let mut small = one_sample(plan);
         let divisor = DIVISORS[self.divisor];
         small.size = plan.size.map(|n| n.div_ceil(divisor).max(1));
         let optional = matches!(plan.scene, Scene::Distance(_)) && plan.march.may_drop_cones();
@@ -227,7 +176,7 @@ impl Pictures {
         };
         let within = |most| self.full.took_ms.is_some_and(|ms| ms <= most);
         // Only what a change makes again takes time.
-        let is_quick = match redo(made, plan) {
+        let is_quick = match redo(made, &one_sample(plan)) {
             Redo::Nothing | Redo::Tone => true,
             Redo::Color if !self.moving => within(LOOK_AT_ONCE_MS),
             _ => within(AT_ONCE_MS),
@@ -256,13 +205,9 @@ impl Pictures {
         if self.failed == Some(self.wish) {
             return Ok(false);
         }
-        let stale = |picture: &Picture, wish: u64| match &picture.under_way {
-            Some((of, _)) => *of != wish,
-            None => false,
-        };
-        if stale(&self.full, self.wish) {
+        for picture in [&mut self.full, &mut self.fine] {
             // What is in flight ends by itself.
-            self.full.under_way = None;
+            picture.under_way.take_if(|(of, _)| *of != self.wish);
         }
         if self.small.under_way.is_some() {
             let finished = self.small.advance(SLICE_MS)?;
@@ -272,7 +217,7 @@ impl Pictures {
             return Ok(finished && !self.full.is_made(self.wish));
         }
         if self.full.is_made(self.wish) {
-            return Ok(false);
+            return self.refine(&plan);
         }
         if self.full.under_way.is_none() {
             if !self.small.is_made(self.wish) && !self.is_quick(&plan) {
@@ -285,12 +230,43 @@ impl Pictures {
             if self.moving && !self.is_quick(&plan) {
                 return Ok(false);
             }
-            let full = (self.wish, plan);
+            let full = (self.wish, one_sample(&plan));
             let assets = &self.assets;
             self.full
                 .begin(&mut self.renderer, assets, self.extras, full)?;
         }
         self.full.advance(FULL_SLICE_MS)
+    }
+
+    /// Whether the full picture of what is wanted is to be followed by a fine one, which is not
+    /// there yet.
+    fn is_coarse(&self) -> bool {
+        let samples = self.plan.as_ref().map_or(1, |plan| plan.samples);
+        // Layers but the colour are those of one sample, and so are the figures of passes.
+        samples > 1 && self.extras.unread && !self.moving && !self.fine.is_made(self.wish)
+    }
+
+    /// Goes on with the fine picture. Returns whether there is more of it to show.
+    fn refine(&mut self, plan: &Plan) -> Result<bool, RenderError> {
+        if !self.is_coarse() {
+            return Ok(false);
+        }
+        if self.fine.under_way.is_none() {
+            self.refined = 0.0;
+            let fine = (self.wish, plan.clone());
+            let assets = &self.assets;
+            self.fine
+                .begin(&mut self.renderer, assets, self.extras, fine)?;
+        }
+        let finished = self.fine.advance(FULL_SLICE_MS)?;
+        let done = self.fine.work.as_ref().map_or(0.0, |w| w.progress().done);
+        // A first sample off the centre is no better than the full picture.
+        let more =
+            finished || (done >= self.refined + FINER && done * f64::from(plan.samples) > 2.0);
+        if more {
+            self.refined = done;
+        }
+        Ok(more)
     }
 
     /// Chooses the size of small pictures by the middle of the last times. Other sizes need other
@@ -311,15 +287,23 @@ impl Pictures {
         }
     }
 
-    /// The best finished picture: the full one of what is wanted, else the small one.
+    /// The best picture that there is: the full one of what is wanted, with as many samples as are
+    /// made of the fine one, else the small one.
     pub fn finished(&self) -> Option<Finished<'_>> {
         let is_full = self.full.is_made(self.wish);
         let picture = if is_full { &self.full } else { &self.small };
         let (wish, plan) = picture.made.as_ref()?;
+        let under_way = matches!(self.fine.under_way, Some((of, _)) if of == self.wish);
+        let is_finer = (under_way && self.refined > 0.0) || self.fine.is_made(self.wish);
+        let shown = if is_full && is_finer {
+            &self.fine
+        } else {
+            picture
+        };
         Some(Finished {
             wish: *wish,
             is_full,
-            texture: picture.work.as_ref()?.picture(),
+            texture: shown.work.as_ref()?.picture(),
             frame: picture.frame.as_ref()?,
             plan,
         })
@@ -328,7 +312,8 @@ impl Pictures {
     /// Whether there is something to do.
     pub fn is_busy(&self) -> bool {
         let wanted = self.plan.is_some() && self.failed != Some(self.wish);
-        self.small.under_way.is_some() || wanted && !self.full.is_made(self.wish) && !self.rests()
+        let unmade = !self.full.is_made(self.wish) || self.is_coarse();
+        self.small.under_way.is_some() || wanted && unmade && !self.rests()
     }
 
     /// Whether a flight waits for its next change.
@@ -343,7 +328,7 @@ impl Pictures {
 
     /// What is under way.
     pub fn progress(&self) -> Option<Progress> {
-        let under_way = [&self.full, &self.small].into_iter();
+        let under_way = [&self.fine, &self.full, &self.small].into_iter();
         let mut under_way = under_way.filter(|picture| picture.under_way.is_some());
         Some(under_way.next()?.work.as_ref()?.progress())
     }
@@ -356,11 +341,23 @@ impl Pictures {
     /// Buffers that were made and programs that were compiled so far, over all pictures.
     pub fn traffic(&self) -> Traffic {
         Traffic {
-            allocations: self.small.allocations + self.full.allocations,
-            compilations: self.small.compilations + self.full.compilations,
-            uploads: self.small.uploads + self.full.uploads,
+            allocations: self.sum(|picture| picture.allocations as usize) as u32,
+            compilations: self.sum(|picture| picture.compilations),
+            uploads: self.sum(|picture| picture.uploads),
             ..Traffic::default()
         }
+    }
+
+    fn sum(&self, of: fn(&Picture) -> usize) -> usize {
+        [&self.small, &self.full, &self.fine].map(of).iter().sum()
+    }
+}
+
+/// The plan with one sample for each pixel.
+fn one_sample(plan: &Plan) -> Plan {
+    Plan {
+        samples: 1,
+        ..plan.clone()
     }
 }
 

@@ -1,19 +1,29 @@
 //! The moment of the film that is shown.
 
 use crate::plan::Plan;
+use crate::plan::camera::Camera;
 use crate::plan::film::{POSE, numbers_of};
 use crate::time::track::{Track, TrackKey};
 
 /// Two keys nearer than this are one, in beats.
 const SAME: f64 = 1e-6;
 
-/// A key on the timeline: its track and its place in it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A key on the timeline.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// The track.
-    pub track: usize,
-    /// The key.
-    pub key: usize,
+    /// The setting of its track, as `section.key`.
+    pub of: String,
+    /// Its time in beats.
+    pub time: f64,
+}
+
+impl Place {
+    /// Its track, and its index there; `None` if it is gone.
+    fn find<'a>(&self, plan: &'a mut Plan) -> Option<(&'a mut Track, usize)> {
+        let track = plan.tracks.iter_mut().find(|track| track.of == self.of)?;
+        let index = track.keys.iter().position(|key| key.time == self.time)?;
+        Some((track, index))
+    }
 }
 
 /// The moment of the film that is shown.
@@ -68,7 +78,7 @@ pub fn pose_at(plan: &mut Plan, beat: f64) -> Option<String> {
 /// Sets a key of a setting at a beat to its present value, in a new track if it has none. Returns
 /// whether the setting can have one.
 pub fn set_key(plan: &mut Plan, of: &str, beat: f64) -> bool {
-    let Some(value) = plan.value(of).as_ref().and_then(numbers_of) else {
+    let Some(value) = numbers(plan, of) else {
         return false;
     };
     let key = TrackKey {
@@ -93,82 +103,112 @@ pub fn set_key(plan: &mut Plan, of: &str, beat: f64) -> bool {
     true
 }
 
+/// The present value of a setting in numbers.
+fn numbers(plan: &Plan, of: &str) -> Option<Vec<f64>> {
+    plan.value(of).as_ref().and_then(numbers_of)
+}
+
+/// Whether a setting has the value that its track says. A track's value of a count is rounded.
+fn is_tracked(plan: &Plan, track: &Track, beat: f64) -> bool {
+    let mut tracked = plan.clone();
+    let set = tracked.set_numbers(&track.of, &track.at(beat));
+    set.is_ok() && numbers(plan, &track.of) == numbers(&tracked, &track.of)
+}
+
 /// Sets a key of the present view: of the camera, and of every other track whose setting was
 /// changed.
 pub fn set_view(plan: &mut Plan, beat: f64) {
-    let changed = |track: &&Track| {
-        let now = plan.value(&track.of).as_ref().and_then(numbers_of);
-        now.is_some_and(|now| now != track.at(beat))
-    };
-    let others: Vec<String> = plan
+    let others = plan
         .tracks
         .iter()
-        .filter(changed)
-        .map(|t| t.of.clone())
-        .collect();
+        .filter(|track| !POSE.contains(&track.of.as_str()) && !is_tracked(plan, track, beat));
+    let others = others.map(|track| track.of.clone());
     let all = POSE.into_iter().map(String::from).chain(others);
     for of in all.collect::<Vec<_>>() {
         set_key(plan, &of, beat);
     }
 }
 
-/// Sets the chosen key to the present value of its setting; a key of the camera to the present
-/// view.
-pub fn overwrite(plan: &mut Plan, place: Place) {
-    let Some(track) = plan.tracks.get(place.track) else {
-        return;
-    };
-    let Some(time) = track.keys.get(place.key).map(|key| key.time) else {
-        return;
-    };
-    match POSE.contains(&track.of.as_str()) {
-        true => set_view(plan, time),
-        false => _ = set_key(plan, &track.of.clone(), time),
+/// Sets a key to the present value of its setting; a key of the camera to the present view.
+/// Returns whether the key is still there.
+pub fn overwrite(plan: &mut Plan, place: &Place) -> bool {
+    if place.find(plan).is_none() {
+        return false;
+    }
+    match POSE.contains(&place.of.as_str()) {
+        true => POSE.into_iter().all(|of| set_key(plan, of, place.time)),
+        false => set_key(plan, &place.of, place.time),
     }
 }
 
 /// Moves a key in time, or a copy of it. Keys of one track never share a time, so a key may stop
 /// beside another. Returns its new place.
-pub fn retime(plan: &mut Plan, place: Place, to: f64, copy: bool) -> Place {
+pub fn retime(plan: &mut Plan, place: &Place, to: f64, copy: bool) -> Place {
     let to = to.clamp(0.0, plan.time.length);
-    let Some(track) = plan.tracks.get_mut(place.track) else {
-        return place;
-    };
-    let Some(key) = track.keys.get(place.key).cloned() else {
-        return place;
+    let Some((track, index)) = place.find(plan) else {
+        return place.clone();
     };
     let others = track.keys.iter().enumerate();
     let taken = others
-        .filter(|(i, _)| copy || *i != place.key)
+        .filter(|(i, _)| copy || *i != index)
         .any(|(_, other)| (other.time - to).abs() <= SAME);
     if taken {
-        return place;
+        return place.clone();
     }
-    if !copy {
-        track.keys.remove(place.key);
-    }
+    let key = match copy {
+        true => track.keys[index].clone(),
+        false => track.keys.remove(index),
+    };
     let at = track.keys.partition_point(|key| key.time < to);
     track.keys.insert(at, TrackKey { time: to, ..key });
-    Place { key: at, ..place }
+    Place {
+        time: to,
+        ..place.clone()
+    }
 }
 
 /// Takes a key away, and a track that has no more.
-pub fn remove(plan: &mut Plan, place: Place) {
-    let Some(track) = plan.tracks.get_mut(place.track) else {
-        return;
+pub fn remove(plan: &mut Plan, place: &Place) {
+    if let Some((track, index)) = place.find(plan) {
+        track.keys.remove(index);
+        plan.tracks.retain(|track| !track.keys.is_empty());
+    }
+}
+
+/// The plan to save while a moment of its film is shown. Settings with the values of that moment
+/// keep those of the file, so that the still stays the one that it was.
+pub fn with_still(plan: &Plan, saved: &Plan, beat: f64) -> Plan {
+    let mut still = plan.clone();
+    let Ok(moment) = plan.at(beat) else {
+        return still;
     };
-    if place.key < track.keys.len() {
-        track.keys.remove(place.key);
+    let is_pose = |track: &&Track| POSE.contains(&track.of.as_str());
+    for track in plan.tracks.iter().filter(|track| !is_pose(track)) {
+        if numbers(plan, &track.of) == numbers(&moment, &track.of)
+            && let Some(own) = numbers(saved, &track.of)
+        {
+            // What the file has fits.
+            let _ = still.set_numbers(&track.of, &own);
+        }
     }
-    if track.keys.is_empty() {
-        plan.tracks.remove(place.track);
+    let camera = |plan: &Plan| [plan.camera.eye, plan.camera.target, plan.camera.up];
+    if plan.tracks.iter().any(|track| is_pose(&track)) && camera(plan) == camera(&moment) {
+        let [eye, target, up] = camera(saved);
+        still.camera = Camera {
+            eye,
+            target,
+            up,
+            ..still.camera
+        };
     }
+    still
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::Scene;
+    use crate::time::track::Between;
     use glam::DVec3;
 
     fn plan() -> Plan {
@@ -216,19 +256,65 @@ mod tests {
         plan.camera.eye = DVec3::ONE;
         assert_eq!(pose_at(&mut plan, 4.0), None);
         assert!(plan.camera.eye.distance(eye) < 1e-12);
-        let place = Place { track: 0, key: 1 };
-        let moved = retime(&mut plan, place, 2.0, false);
-        assert_eq!((moved.key, plan.tracks[0].keys.len()), (1, 2));
+        let place = |of: &str, time| Place {
+            of: of.into(),
+            time,
+        };
+        let moved = retime(&mut plan, &place("camera.eye", 4.0), 2.0, false);
+        assert_eq!((moved.time, plan.tracks[0].keys.len()), (2.0, 2));
         assert_eq!(plan.tracks[0].keys[1].time, 2.0);
         // Not onto another key.
-        assert_eq!(retime(&mut plan, moved, 0.0, false), moved);
-        let copy = retime(&mut plan, Place { track: 0, key: 0 }, 3.0, true);
-        assert_eq!((copy.key, plan.tracks[0].keys.len()), (2, 3));
+        assert_eq!(retime(&mut plan, &moved, 0.0, false), moved);
+        let copy = retime(&mut plan, &place("camera.eye", 0.0), 3.0, true);
+        assert_eq!((copy.time, plan.tracks[0].keys.len()), (3.0, 3));
+        // Other tracks keep their keys, and a key that is gone is told.
         plan.camera.eye = DVec3::new(7.0, 7.0, 7.0);
-        overwrite(&mut plan, copy);
+        plan.camera.fov = 12.0;
+        assert!(overwrite(&mut plan, &copy));
         assert_eq!(plan.tracks[0].keys[2].value, [7.0; 3]);
-        remove(&mut plan, Place { track: 3, key: 0 });
+        assert_eq!(plan.track("camera.fov").map(|t| t.keys.len()), Some(1));
+        assert!(!overwrite(&mut plan, &place("camera.eye", 9.0)));
+        remove(&mut plan, &place("camera.fov", 4.0));
         assert!(plan.track("camera.fov").is_none());
         assert!(plan.check().is_ok());
+    }
+
+    #[test]
+    fn a_key_of_the_view_leaves_tracks_that_were_not_touched() {
+        let mut plan = plan();
+        plan.tracks = vec![Track {
+            of: "march.steps".into(),
+            between: Between::Linear,
+            keys: [(0.0, 100.0), (3.0, 200.0)]
+                .map(|(time, value)| TrackKey {
+                    time,
+                    value: vec![value],
+                    between: None,
+                })
+                .into(),
+        }];
+        // 133.3 steps are 133.
+        assert_eq!(pose_at(&mut plan, 1.0), None);
+        set_view(&mut plan, 1.0);
+        assert_eq!(plan.tracks[0].keys.len(), 2);
+        let (key, value) = ("march.steps", [150.0]);
+        assert_eq!(plan.set_numbers(key, &value), Ok(()));
+        set_view(&mut plan, 1.0);
+        assert_eq!(plan.tracks[0].keys[1].value, value);
+    }
+
+    #[test]
+    fn another_moment_does_not_change_the_still() {
+        let mut plan = plan();
+        let saved = plan.clone();
+        set_view(&mut plan, 0.0);
+        plan.camera.eye.x = 5.0;
+        set_view(&mut plan, 4.0);
+        assert_eq!(pose_at(&mut plan, 3.0), None);
+        let kept = with_still(&plan, &saved, 3.0);
+        assert_eq!((&kept.camera, &kept.tracks), (&saved.camera, &plan.tracks));
+        // Another view is a new still.
+        plan.camera.eye.x = 6.0;
+        assert_eq!(with_still(&plan, &saved, 3.0), plan);
     }
 }

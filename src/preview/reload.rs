@@ -7,11 +7,16 @@ use std::time::SystemTime;
 
 use crate::base::shader::Sources;
 
+/// A file that is missing at so many questions one after the other has vanished: an editor that
+/// replaces it is quicker.
+const VANISHED: u32 = 4;
+
 /// When files were written last.
 #[derive(Debug, Default)]
 pub struct Watched {
     files: Vec<PathBuf>,
     seen: Vec<Option<SystemTime>>,
+    missing: u32,
 }
 
 fn written(path: &Path) -> Option<SystemTime> {
@@ -22,7 +27,18 @@ impl Watched {
     /// Watches files as they are now.
     pub fn new(files: Vec<PathBuf>) -> Self {
         let seen = files.iter().map(|file| written(file)).collect();
-        Self { files, seen }
+        Self {
+            files,
+            seen,
+            missing: 0,
+        }
+    }
+
+    /// A file that is gone and will not come back by itself, once.
+    pub fn vanished(&mut self) -> Option<PathBuf> {
+        let gone = self.files.iter().find(|file| written(file).is_none());
+        self.missing = if gone.is_some() { self.missing + 1 } else { 0 };
+        gone.filter(|_| self.missing == VANISHED).cloned()
     }
 
     /// Whether any was written since the last question. One that is gone for now did not change:
@@ -76,6 +92,11 @@ mod tests {
         assert!(watched.changed() && !watched.changed());
         fs::remove_file(&file).expect("removed");
         assert!(!watched.changed());
+        let said: Vec<bool> = (0..6).map(|_| watched.vanished().is_some()).collect();
+        assert_eq!(said, [false, false, false, true, false, false]);
+        fs::write(&file, "2").expect("written");
+        assert!(watched.vanished().is_none() && watched.changed());
+        fs::remove_file(&file).expect("removed");
         assert_eq!(files_in(folder.path()), Vec::<PathBuf>::new());
     }
 }

@@ -19,6 +19,7 @@ use crate::preview::error::PreviewError;
 /// A finished picture.
 struct Held {
     texture: wgpu::Texture,
+    bound: wgpu::BindGroup,
     view: View,
 }
 
@@ -191,10 +192,17 @@ impl Screen {
     fn room(&mut self, view: View) -> &wgpu::Texture {
         let size = view.size;
         let fits = |held: &Held| [held.texture.width(), held.texture.height()] == size;
-        let kept = self.held.take().filter(fits).map(|held| held.texture);
-        let usage = TextureUsages::COPY_DST;
-        let texture = kept.unwrap_or_else(|| texture(&self.device, "shown", size, usage));
-        &self.held.insert(Held { texture, view }).texture
+        let held = self.held.take().filter(fits);
+        let held = held.map(|held| Held { view, ..held }).unwrap_or_else(|| {
+            let texture = texture(&self.device, "shown", size, TextureUsages::COPY_DST);
+            let bound = self.bind(&texture);
+            Held {
+                texture,
+                bound,
+                view,
+            }
+        });
+        &self.held.insert(held).texture
     }
 
     /// Keeps a picture of a view, so that the next one can be made in its place.
@@ -299,12 +307,11 @@ impl Screen {
             ..Default::default()
         });
         let mut encoder = device.device.create_command_encoder(&Default::default());
-        let picture = self.held.as_ref().map(|held| {
+        if let Some(held) = &self.held {
             let parameters = ScreenParameters::new(&held.view, view);
             let bytes = bytemuck::bytes_of(&parameters);
             device.queue.write_buffer(&self.parameters, 0, bytes);
-            self.bind(&held.texture)
-        });
+        }
         let grey = wgpu::Color {
             r: 0.1,
             g: 0.1,
@@ -312,9 +319,9 @@ impl Screen {
             a: 1.0,
         };
         let mut pass = encoder.begin_render_pass(&render_pass(&[attachment(&target, grey)]));
-        if let Some(picture) = &picture {
+        if let Some(held) = &self.held {
             pass.set_pipeline(&self.show_picture);
-            pass.set_bind_group(0, picture, &[]);
+            pass.set_bind_group(0, &held.bound, &[]);
             pass.draw(0..3, 0..1);
         }
         pass.set_pipeline(&self.show_panel);

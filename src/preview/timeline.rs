@@ -1,14 +1,17 @@
 //! The timeline: a row for each track, its keys, and the moment that is shown.
 
-use egui::{Align2, Color32, CursorIcon, FontId, Pos2, Rect, Sense, Stroke, Ui, Vec2};
+use egui::{Align2, Color32, CursorIcon, FontId, Pos2, Rect, ScrollArea, Sense, Stroke, Ui, Vec2};
 
 use crate::plan::Plan;
 use crate::preview::play::{Place, Play, retime};
+use crate::time::track::Track;
 
 /// Height of a row and of the ruler, and width of the names, in points.
 const ROW: f32 = 18.0;
 const RULER: f32 = 20.0;
 const NAMES: f32 = 110.0;
+/// Rows that are shown at once; the others are scrolled to.
+const ROWS: usize = 8;
 /// Half the size of a key's mark.
 const MARK: f32 = 5.0;
 
@@ -25,7 +28,7 @@ pub struct Asked {
 
 /// The height that the timeline needs.
 pub fn height(plan: &Plan) -> f32 {
-    RULER + ROW * (plan.tracks.len().clamp(1, 8)) as f32 + 6.0
+    RULER + ROW * (plan.tracks.len().clamp(1, ROWS)) as f32 + 6.0
 }
 
 /// Places of beats in a rectangle.
@@ -68,35 +71,48 @@ pub fn show(ui: &mut Ui, plan: &Plan, play: &mut Play) -> Asked {
         length: plan.time.length,
     };
     ruler(ui, plan, play, &scale, &mut asked);
-    for (index, track) in plan.tracks.iter().enumerate() {
-        let top = all.top() + RULER + ROW * index as f32;
-        let middle = top + 0.5 * ROW;
-        if top + ROW > all.bottom() + 1.0 {
-            break;
+    let below = Rect::from_min_max(Pos2::new(all.left(), all.top() + RULER), all.max);
+    let mut rows = ui.new_child(egui::UiBuilder::new().max_rect(below));
+    ScrollArea::vertical().show(&mut rows, |ui| {
+        let size = Vec2::new(below.width(), ROW * plan.tracks.len() as f32);
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        for (index, track) in plan.tracks.iter().enumerate() {
+            let middle = rect.top() + ROW * (index as f32 + 0.5);
+            row(ui, plan, play, &scale, (track, middle), &mut asked);
         }
-        let painter = ui.painter();
-        painter.text(
-            Pos2::new(all.left() + 4.0, middle),
-            Align2::LEFT_CENTER,
-            track.of.replace('.', " "),
-            FontId::proportional(11.5),
-            Color32::LIGHT_GRAY,
-        );
-        painter.hline(
-            scale.rect.x_range(),
-            middle,
-            Stroke::new(1.0, Color32::from_gray(60)),
-        );
-        for key in 0..track.keys.len() {
-            let place = Place { track: index, key };
-            mark(ui, plan, play, &scale, (place, middle), &mut asked);
-        }
-    }
+    });
     let x = scale.x(play.beat);
     let line = Stroke::new(1.5, Color32::from_rgb(240, 160, 60));
     ui.painter().vline(x, all.y_range(), line);
     ui.advance_cursor_after_rect(all);
     asked
+}
+
+/// The name of a track and its keys.
+fn row(
+    ui: &mut Ui,
+    plan: &Plan,
+    play: &mut Play,
+    scale: &Scale,
+    (track, middle): (&Track, f32),
+    asked: &mut Asked,
+) {
+    ui.painter().text(
+        Pos2::new(scale.rect.left() - NAMES + 4.0, middle),
+        Align2::LEFT_CENTER,
+        track.of.replace('.', " "),
+        FontId::proportional(11.5),
+        Color32::LIGHT_GRAY,
+    );
+    let line = Stroke::new(1.0, Color32::from_gray(60));
+    ui.painter().hline(scale.rect.x_range(), middle, line);
+    for (index, key) in track.keys.iter().enumerate() {
+        let place = Place {
+            of: track.of.clone(),
+            time: key.time,
+        };
+        mark(ui, plan, play, scale, (place, index, middle), asked);
+    }
 }
 
 /// Marks of beats, the played part, and where the moment is dragged.
@@ -166,22 +182,21 @@ fn mark(
     plan: &Plan,
     play: &mut Play,
     scale: &Scale,
-    (place, y): (Place, f32),
+    (place, index, y): (Place, usize, f32),
     asked: &mut Asked,
 ) {
-    let time = plan.tracks[place.track].keys[place.key].time;
-    let center = Pos2::new(scale.x(time), y);
+    let center = Pos2::new(scale.x(place.time), y);
     let rect = Rect::from_center_size(center, Vec2::splat(2.0 * MARK + 4.0));
-    let id = ui.scope_id().with(("key", place.track, place.key));
+    let id = ui.scope_id().with(("key", &place.of, index));
     let response = ui.interact(rect, id, Sense::click_and_drag());
     if response.clicked() || response.drag_started() {
-        play.chosen = Some(place);
-        play.beat = time;
+        play.chosen = Some(place.clone());
+        play.beat = place.time;
         asked.moved = true;
     }
     // The mark under the pointer changes its number on its way, so the chosen one is moved.
     if response.dragged()
-        && let (Some(at), Some(chosen)) = (ui.input(|i| i.pointer.interact_pos()), play.chosen)
+        && let (Some(at), Some(chosen)) = (ui.input(|i| i.pointer.interact_pos()), &play.chosen)
     {
         asked.dragging = true;
         let copy = response.drag_started() && ui.input(|input| input.modifiers.alt);

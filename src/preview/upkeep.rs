@@ -64,6 +64,10 @@ impl Live {
             self.pictures.again();
             self.tell("shaders read again", false);
         }
+        if let Some(gone) = self.preset_file.vanished() {
+            let text = format!("{} is gone; Ctrl+S writes it again", gone.display());
+            self.tell(text, true);
+        }
         if !self.preset_file.changed() {
             return;
         }
@@ -77,6 +81,7 @@ impl Live {
         match loaded {
             Ok(preset) if preset.plan == *self.document.saved() => {}
             Ok(preset) => {
+                self.first = preset.plan.clone();
                 self.document.reload(preset.plan);
                 self.show_moment();
                 self.tell(format!("read {} again", path.display()), false);
@@ -108,6 +113,7 @@ impl Live {
                 self.offered = keep::find(self.options.kept.as_deref(), &self.document);
                 self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
                 (self.unkept, self.kept) = (None, None);
+                self.show_moment();
             }
             Err(e) => self.tell(e.to_string(), true),
         }

@@ -68,7 +68,8 @@ fn a_moment_is_a_still_with_the_values_of_its_time() {
 
 #[test]
 fn a_film_that_loops_goes_on_around_its_end() {
-    let closed = "[[0, [3, 0, 1]], [1, [0, 3, 1]], [2, [-3, 0, 2]], [4, [3, 0, 1]]]";
+    let closed =
+        "[[0, [3, 0, 1]], [1, [0, 3, 1]], [2, [-3, 0, 2]], [2.5, [0, -3, 1]], [4, [3, 0, 1]]]";
     let open = "[[0, [3, 0, 1]], [2, [0, 3, 1]], [4, [-3, 0, 1]]]";
     let text = FILM
         .replace("bpm = 120", "loop = true")
@@ -83,6 +84,52 @@ fn a_film_that_loops_goes_on_around_its_end() {
     let eye = |beat: f64| still.at(beat).unwrap().camera.eye;
     let (before, after) = (eye(4.0) - eye(4.0 - step), eye(step) - eye(0.0));
     assert!(before.distance(after) > 0.1 * before.length());
+}
+
+#[test]
+fn tracks_of_one_camera_do_not_spoil_each_other() {
+    let plan = |eye: &str, target: &str| {
+        let tracks = format!(
+            "[scene]\nkind = \"slab\"\n[[track]]\nkey = \"camera.eye\"\n{eye}\n[[track]]\nkey = \"camera.target\"\n{target}\n"
+        );
+        read(&tracks, "film").unwrap()
+    };
+    let camera = |plan: &Plan, beat: f64| plan.at(beat).unwrap().camera;
+    // A zoom is even, with a key of the target in the middle too.
+    let eye = "between = \"linear\"\nkeys = [[0, [100, 0, 0]], [10, [0.01, 0, 0]]]";
+    let target = "between = \"linear\"\nkeys = [[0, [0, 0, 0]], [5, [0, 0, 0]], [7, [0, 0, 0]]]";
+    let zoom = plan(eye, target);
+    for (beat, x) in [
+        (0.0, 100.0),
+        (2.5, 10.0),
+        (5.0, 1.0),
+        (7.5, 0.1),
+        (10.0, 0.01),
+    ] {
+        let there = camera(&zoom, beat).eye.x;
+        assert!((there / x - 1.0).abs() < 1e-9, "{beat} {there}");
+    }
+    // An eye that is held is cut, while the target moves on.
+    let eye = "between = \"step\"\nkeys = [[0, [9, 0, 0]], [4, [0, 9, 0]]]";
+    let target = "keys = [[0, [0, 0, 0]], [8, [0, 0, 3]]]";
+    let cut = plan(eye, target);
+    for (beat, eye) in [
+        (0.0, DVec3::X),
+        (3.99, DVec3::X),
+        (4.0, DVec3::Y),
+        (7.0, DVec3::Y),
+    ] {
+        assert_eq!(camera(&cut, beat).eye, 9.0 * eye, "{beat}");
+    }
+    assert!(camera(&cut, 3.0).target.z < camera(&cut, 6.0).target.z);
+}
+
+#[test]
+fn a_scene_may_turn_more_than_once() {
+    let text = "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n[[track]]\nkey = \"scene.rotation\"\nbetween = \"linear\"\nkeys = [[0, [0, 0, 0]], [8, [0, 0, 2880]]]\n";
+    let plan = read(text, "turns").unwrap();
+    let turned = |beat: f64| plan.at(beat).unwrap().value("scene.rotation").unwrap();
+    assert_eq!(turned(7.0), toml::Value::from(vec![0.0, 0.0, 2520.0]));
 }
 
 #[test]

@@ -19,6 +19,7 @@ mod common {
 }
 mod device;
 mod live;
+mod samples;
 mod work;
 
 use adapter::{COUNTED, LEVELS, on_cpu, render};

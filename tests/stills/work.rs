@@ -42,6 +42,16 @@ pub fn bits(frame: &Frame) -> Vec<u32> {
     all
 }
 
+/// A plan of several samples with cones, and one without.
+fn sampled() -> [Plan; 2] {
+    [("mandelbox", 16), ("bench-thin", 1)].map(|(name, coarsest)| {
+        let mut plan = sized(name, [70, 45]);
+        plan.samples = 3;
+        plan.march.coarsest = Some(coarsest);
+        plan
+    })
+}
+
 /// A plan with limits, one without, and a heightfield.
 pub fn plans() -> Vec<Plan> {
     let mut limited = sized("bench-outside", [70, 45]);
@@ -56,7 +66,8 @@ pub fn plans() -> Vec<Plan> {
 #[test]
 fn slices_and_what_was_begun_before_change_no_bit() {
     let mut renderer = adapter::open();
-    let (plans, assets) = (plans(), Assets::default());
+    let plans = [&plans()[..], &sampled()].concat();
+    let assets = Assets::default();
     let go = &mut |_: &_| true;
     let whole: Vec<_> = plans
         .iter()
@@ -101,7 +112,7 @@ fn slices_and_what_was_begun_before_change_no_bit() {
 fn a_second_frame_writes_parameters_and_creates_nothing() {
     let mut renderer = adapter::open();
     let assets = Assets::default();
-    for mut plan in plans() {
+    for mut plan in plans().into_iter().chain(sampled()) {
         let mut frame = |plan: &Plan| {
             let frame = renderer.render(plan, &assets, Extras::default(), &mut |_| true);
             frame.unwrap().traffic.unwrap()
@@ -196,7 +207,8 @@ fn the_picture_on_the_device_grows_into_that_of_the_file() {
             ..Extras::default()
         },
     );
-    for mut plan in plans() {
+    let with_cones = sampled().into_iter().take(1);
+    for mut plan in plans().into_iter().chain(with_cones) {
         for (exposure, block) in [(0.0, 1024), (-3.0, 32), (2.5, 64)] {
             let mut renderer = adapter::open();
             renderer.cutting.block = block;

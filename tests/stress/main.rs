@@ -31,6 +31,7 @@ mod common {
     pub mod strain;
 }
 mod floors;
+mod paths;
 
 use std::cell::Cell;
 

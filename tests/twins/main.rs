@@ -263,16 +263,17 @@ fn rays_and_cones_of_the_view_agree() {
         let divisor = random.between(1.0, 6.0).floor().exp2();
         [four(DVec3::new(x, y, divisor), 0.0), [0.0; 4], [0.0; 4]]
     });
-    let of = |fov: f64| {
+    let of = |fov: f64, samples: u32| {
         let mut plan = seen_from([4.0, -9.0, 6.0], scene("kind = 'slab'"));
         plan.camera.fov = fov;
         plan.size = [1366, 768];
+        plan.samples = samples;
         plan
     };
     let allowed = Allowed(3e-7, 1e-6);
     let quantities = [("axes", 1.0, allowed), ("chords grains", 0.0, allowed)];
-    for fov in [1.0, 48.5, 170.0] {
-        let view = of(fov).view();
+    for (fov, samples) in [(1.0, 1), (48.5, 1), (170.0, 1), (48.5, 2)] {
+        let view = of(fov, samples).view();
         let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
             let [x, y, d, _] = q[0].map(|n| n as u32);
             let (ray, cone) = (view.view_ray([x, y]), view.view_cone([x / d, y / d], d));
@@ -283,10 +284,10 @@ fn rays_and_cones_of_the_view_agree() {
             pairs.add("grains", a[1][3], cone.grain);
             assert_eq!((a[2][1], a[2][2]), (0.0, 0.0));
         });
-        let probe = |fov| probe_of(&of(fov), probe!("view"));
+        let probe = |fov| probe_of(&of(fov, samples), probe!("view"));
         // In so narrow a view as one of 1 degree all axes are nearly one.
         let seen = ["chords grains", "axes chords grains"][usize::from(fov > 1.0)];
         let moved = [(seen, probe(fov * MOVED))];
-        twins.assert_agree(&format!("{fov} degrees"), &probe(fov), &moved);
+        twins.assert_agree(&format!("{fov} degrees, {samples}"), &probe(fov), &moved);
     }
 }

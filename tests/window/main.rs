@@ -33,13 +33,13 @@ fn picture(folder: &Folder, name: &str) -> Shot {
 
 const SIZE: &str = "--size 320x180";
 
-/// A film whose first moment is its still.
+/// A film whose first moment is not its still.
 const FILM: &str = r#"
 [scene]
 kind = "distance"
 formula = "mandelbox"
 [camera]
-eye = [10, -17, 12]
+eye = [12, -14, 3]
 [image]
 size = [320, 180]
 [time]
@@ -96,8 +96,34 @@ fn at_rest_the_window_shows_the_picture_of_the_file() {
     view.wait_for("what is wrong", |shot| *shot != foggy);
     folder.write("mandelbox-1.toml", preset::write(&foggy_plan));
     view.wait_for("the mended preset", |shot| *shot == foggy);
+    std::fs::remove_file(folder.0.join("mandelbox-1.toml")).unwrap();
+    view.wait_for("that the preset is gone", |shot| *shot != foggy);
+    folder.write("mandelbox-1.toml", preset::write(&foggy_plan));
+    view.wait_for("the preset that is back", |shot| *shot == foggy);
     view.key("Home");
     view.wait_for("the camera of the preset", |shot| *shot == foggy);
+    view.close();
+}
+
+#[test]
+fn a_picture_of_many_samples_follows_at_rest() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let line = format!("mandelbox {SIZE} --set image.samples=6");
+    let view = Preview::open(&desktop, &folder.0, &line);
+    view.key("Tab");
+    for samples in [1, 6] {
+        let file = format!("{samples}.png");
+        folder.done(&format!(
+            "render mandelbox {SIZE} --samples {samples} -o {file}"
+        ));
+    }
+    let [one, six] = ["1.png", "6.png"].map(|file| picture(&folder, file));
+    assert!(one != six);
+    view.wait_for("six samples", |shot| *shot == six);
+    // Another look is shown at once, and refined again.
+    view.hold("w", 300);
+    view.key("Home");
+    view.wait_for("six samples again", |shot| *shot == six);
     view.close();
 }
 
@@ -169,6 +195,8 @@ fn the_timeline_shows_the_frames_of_the_film() {
     let saved = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
     assert_eq!(saved.tracks.len(), 3);
     assert!(saved.tracks[0].keys[1].value != [17.0, 10.0, 12.0]);
+    // The still of the file stays.
+    assert_eq!(saved.camera.eye.to_array(), [12.0, -14.0, 3.0]);
     view.close();
 }
 
@@ -185,7 +213,7 @@ fn a_still_and_unsaved_work_outlive_the_window() {
         }
         sleep(Duration::from_millis(100));
     }
-    folder.done("render film.toml -o a.png");
+    folder.done("render film.toml --at 0 -o a.png");
     assert_eq!(
         folder.files(),
         ["a.png", "cache", "film-1.png", "film.toml"]

@@ -11,7 +11,8 @@ struct ViewUniform {
     /// Added to every cone's chord: the rounding of two unit vectors.
     slack: f32,
     forward: vec3<f32>,
-    pad: f32,
+    /// How far rays of a pixel go from its centre, in pixels.
+    reach: f32,
     /// Width and height of the full image in pixels.
     size: vec2<u32>,
     pad2: vec2<u32>,
@@ -50,12 +51,17 @@ fn view_direction(x: f32, y: f32) -> vec3<f32> {
 
 /// The ray through the centre of a pixel: k = 0.
 fn view_ray(pixel: vec2<u32>) -> Beam {
-    let u = view_direction(f32(pixel.x) + 0.5, f32(pixel.y) + 0.5);
+    return view_ray_at(pixel, vec2<f32>(0.5));
+}
+
+/// The ray through a place in pixels from the upper left corner of a pixel.
+fn view_ray_at(pixel: vec2<u32>, place: vec2<f32>) -> Beam {
+    let u = view_direction(f32(pixel.x) + place.x, f32(pixel.y) + place.y);
     let n = length(u);
     return Beam(vec3<f32>(0.0), u / n, 0.0, 0.0, 0.0, 0.5 * view.pixel / n);
 }
 
-/// The cone over the pixel centres of a cell. The image's border cuts the cell.
+/// The cone over all rays of the pixels of a cell. The image's border cuts the cell.
 ///
 /// The chord k is at most `2|h| / (2|u| - |h|)`, where h is half the diagonal. This bound is
 /// free of cancellation. The grain is that of the coarsest pixel in the cell.
@@ -64,7 +70,7 @@ fn view_cone(cell: vec2<u32>, divisor: u32) -> Beam {
     let high = min(low + vec2<u32>(divisor), view.size);
     let u = view_direction(0.5 * f32(low.x + high.x), 0.5 * f32(low.y + high.y));
     let n = length(u);
-    let h = 0.5 * view.pixel * length(vec2<f32>(high - low - vec2<u32>(1u)));
+    let h = 0.5 * view.pixel * length(vec2<f32>(high - low - vec2<u32>(1u)) + 2.0 * view.reach);
     var k = 2.0;
     if h < n {
         k = min(2.0, 2.0 * h / (2.0 * n - h) + view.slack);

@@ -62,7 +62,14 @@ fn begin_stage() {
     turn.visits = VISIT_ALL;
     if turn.stage.parent_width > 0u {
         turn.visits = VISIT_PARENTS;
-        let count = atomicExchange(&cells.parents, 0u);
+        var count = atomicExchange(&cells.parents, 0u);
+        // The rays of every sample have the same parents.
+        if turn.stage.divisor == 1u {
+            if turn.stage.before > 0u {
+                count = cells.traced;
+            }
+            cells.traced = count;
+        }
         // A stage without tiles is left out.
         turn.count = select(0u, count, turn.stage.tiles > 0u);
         turn.read = turn.stage.listed;

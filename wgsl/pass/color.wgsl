@@ -53,7 +53,7 @@ fn color(
     }
     let cell = queue_cell(packed);
     let index = queue_index(cell);
-    let ray = view_ray(turn.stage.origin + cell);
+    let ray = view_ray_at(turn.stage.origin + cell, turn.stage.place);
     let s = cell_state(turn.stage.state + index);
     var c = sky(ray.axis);
     var decided = 1.0;
@@ -77,7 +77,12 @@ fn color(
             c = vec3<f32>(1.0, 0.0, 1.0);
         }
     }
-    cell_store_pixel(index, vec4<f32>(c, decided));
+    if turn.stage.before > 0u {
+        let sum = cell_pixel(index);
+        c += sum.rgb;
+        decided = min(decided, sum.a);
+    }
+    cell_store_pixel(index, vec4<f32>(c * turn.stage.scale, decided));
     if COLOR_KEEPS_NORMALS {
         let area = turn.stage.cells.x * turn.stage.cells.y;
         cell_store_pixel(area + index, vec4<f32>(n, 0.0));

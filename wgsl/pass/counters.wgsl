@@ -12,10 +12,10 @@ fn count_iterations(n: u32) {
     iterations += n;
 }
 
-/// Stores the work of the cell: that of this dispatch and of those before.
+/// Stores the work of the cell: that of this dispatch, and of those before for all samples.
 fn counters_store(cell: u32) {
     let at = turn.stage.tally + 2u * cell;
-    if turn.done > 0u {
+    if turn.done > 0u || turn.stage.before > 0u {
         evaluations += cells.words[at];
         iterations += cells.words[at + 1u];
     }

@@ -12,5 +12,5 @@ fn develop(
     }
     let cell = queue_cell(packed);
     let index = queue_index(cell);
-    tone_store(turn.stage.origin + cell, cell_pixel(index).rgb);
+    tone_store(turn.stage.origin + cell, cell_pixel(index).rgb * turn.stage.scale);
 }

@@ -46,6 +46,12 @@ struct Stage {
     light: u32,
     /// The number of the block, which is part of every state.
     generation: u32,
+    /// Samples of the pixels whose light is summed already.
+    before: u32,
+    /// Where the rays of this sample go, in pixels from the upper left corner of their pixels.
+    place: vec2<f32>,
+    /// A factor on the sum of the light.
+    scale: f32,
     pad: u32,
 }
 
@@ -83,7 +89,8 @@ struct Cells {
     parents: atomic<u32>,
     /// Cells that were left out.
     wrong: atomic<u32>,
-    pad: u32,
+    /// Cells of the finest cone level whose pixels have rays.
+    traced: u32,
     /// Dispatches of each stage of the block.
     dispatches: array<u32, 20>,
     words: array<u32>,

@@ -38,7 +38,7 @@ pub struct FlightBench {
     size: [u32; 2],
 
     /// Pictures of the flight
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(20..=100_000))]
     frames: u32,
 
     /// Who renders: auto, gpu, software, or an index or part of a name from `devices`
@@ -63,6 +63,9 @@ struct Row {
     frames_per_second: f64,
     /// The longest turn: so long does an event wait for work that was submitted.
     turn_p99_ms: f64,
+    /// In calls of the renderer, for each picture of the flight. Software Vulkan computes in these
+    /// calls.
+    host_ms: f64,
     /// Sets of buffers that the second half of the flight made.
     allocations: u32,
     /// Memory of the process after a tenth of the flight and after all of it, in MiB, if the system
@@ -146,7 +149,7 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         size: args.size,
         ..preset.plan
     };
-    let plans = flight(&plan, args.frames.max(20))?;
+    let plans = flight(&plan, args.frames)?;
     let (executor, _) = Executor::open(&args.device)?;
     let device = executor.name();
     let Executor::Gpu(renderer) = executor else {
@@ -189,6 +192,7 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         answers.push(flown.time(plan, true)?);
     }
     let frames_per_second = plans.len() as f64 / began.elapsed().as_secs_f64();
+    let host_ms = flown.turns.iter().sum::<f64>() / plans.len() as f64;
     let allocations = flown.pictures.traffic().allocations - made;
     let memory_mib = [memory, memory::used()].map(|bytes| bytes.map(|n| n >> 20));
     let changed = |change: &dyn Fn(&mut Plan, f64)| {
@@ -222,6 +226,7 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         answer_p95_ms: at(&answers, 0.95),
         frames_per_second,
         turn_p99_ms,
+        host_ms,
         allocations,
         memory_mib,
         // The first one allocates.
@@ -266,6 +271,7 @@ pub fn run(args: &FlightBench) -> Result<()> {
                 ("p95", &|r| whole(r.answer_p95_ms)),
                 ("pictures per second", &|r| whole(r.frames_per_second)),
                 ("turn p99, ms", &|r| whole(r.turn_p99_ms)),
+                ("host, ms", &|r| whole(r.host_ms)),
                 ("new buffers", &|r| r.allocations.to_string()),
                 ("memory, MiB", &|r| match r.memory_mib {
                     [Some(early), Some(late)] => format!("{early} to {late}"),

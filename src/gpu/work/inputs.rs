@@ -237,6 +237,10 @@ impl FrameRequest {
             0 => &[],
             _ => &draft.blocks[..],
         };
+        let visits = draft.blocks.iter().flat_map(|block| {
+            let block = block.clone();
+            (0..plan.samples).map(move |_| block.clone())
+        });
         let most = most_steps(&scene);
         let mut frame = Frame::blank(plan, *extras);
         frame.traffic = Some(traffic);
@@ -244,11 +248,12 @@ impl FrameRequest {
             job: Job {
                 firsts: firsts.len(),
                 first_stages,
+                samples: plan.samples,
                 kinds: draft.kinds,
                 colors_at: colors,
                 made: Made {
                     passes: plan.passes(*extras),
-                    blocks: [firsts, &draft.blocks].concat(),
+                    blocks: firsts.iter().cloned().chain(visits).collect(),
                     ray_steps: plan.ray_steps(&scene),
                     marched,
                     look,

@@ -1,12 +1,13 @@
 //! What a run is made of, and what one run leaves to the next.
 
+use crate::base::filter::offset;
 use crate::base::shader::Program;
 use crate::gpu::cost::Cost;
 use crate::gpu::staging::Stagings;
 use crate::gpu::stamps::Stamps;
 use crate::gpu::target::{Needs, Parameters, Target};
 use crate::heightfield::assets::Preparation;
-use crate::pass::turn::{Layout, StageKind};
+use crate::pass::turn::{Layout, Stage, StageKind};
 use crate::plan::{Extras, Pass};
 
 /// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
@@ -59,7 +60,8 @@ pub(in crate::gpu) struct Reusable {
 /// What a render knows from the start.
 ///
 /// If an image of several blocks is shown while it is made, the coarse levels run over all blocks
-/// before any ray, and once more with each block.
+/// before any ray, and once more with each block. Each sample of the pixels is a further visit of
+/// a block, whose cones stay. The last one is that of the pixels' centres, whose depths stay.
 pub(in crate::gpu) struct Job {
     pub kinds: Vec<StageKind>,
     /// The first stage that only colours need.
@@ -69,6 +71,8 @@ pub(in crate::gpu) struct Job {
     /// and how many stages of them run.
     pub firsts: usize,
     pub first_stages: usize,
+    /// Samples of each pixel.
+    pub samples: u32,
     /// The step limits of the first dispatch of a stage and of the largest.
     pub steps: [u32; 2],
     pub extras: Extras,
@@ -76,14 +80,58 @@ pub(in crate::gpu) struct Job {
 }
 
 impl Job {
-    /// Whether a stage of a block is left out.
-    pub(super) fn leaves_out(&self, block: usize, index: usize) -> bool {
-        let is_sketch = || matches!(self.kinds[index], StageKind::Sketch(_));
-        match block < self.firsts {
-            true => index >= self.first_stages,
+    /// The blocks of the image. They are visited one after the other, each as often as a pixel has
+    /// samples.
+    pub(super) fn blocks(&self) -> usize {
+        (self.made.blocks.len() - self.firsts) / self.samples as usize
+    }
+
+    /// The number of the block of a visit, and how many samples it has before; `None` for a first
+    /// picture.
+    pub(super) fn sampled(&self, visit: usize) -> Option<(usize, u32)> {
+        let visit = visit.checked_sub(self.firsts)?;
+        let samples = self.samples as usize;
+        Some((visit / samples, (visit % samples) as u32))
+    }
+
+    /// The number of a block, if a visit makes its last sample.
+    pub(super) fn completes(&self, visit: usize) -> Option<usize> {
+        let last = self.samples - 1;
+        self.sampled(visit)
+            .filter(|(_, before)| *before == last)
+            .map(|(block, _)| block)
+    }
+
+    /// Whether a stage of a visit is left out.
+    pub(super) fn leaves_out(&self, visit: usize, index: usize) -> bool {
+        let Some((_, before)) = self.sampled(visit) else {
+            return index >= self.first_stages;
+        };
+        match self.kinds[index] {
             // The first picture is finer.
-            false => self.firsts > 0 && index < self.first_stages && is_sketch(),
+            StageKind::Sketch(_) => before > 0 || (self.firsts > 0 && index < self.first_stages),
+            StageKind::Pass(Pass::March(_)) => before > 0,
+            StageKind::Census => self.completes(visit).is_none(),
+            _ => false,
         }
+    }
+
+    /// Sets what the stages of a visit do for its sample.
+    pub(super) fn sample(&self, visit: usize, index: usize, stage: &mut Stage) {
+        let Some((_, before)) = self.sampled(visit) else {
+            return;
+        };
+        let of_all = 1.0 / self.samples as f32;
+        let is_last = before + 1 == self.samples;
+        stage.before = before;
+        stage.place = (0.5 + offset(self.samples - 1 - before))
+            .as_vec2()
+            .to_array();
+        stage.scale = match (&self.kinds[index], is_last) {
+            (StageKind::Pass(_), true) => of_all,
+            (StageKind::Develop, false) => 1.0 / (before + 1) as f32,
+            _ => 1.0,
+        };
     }
 }
 

@@ -69,7 +69,7 @@ impl Run {
             self.told = [0; MOST_STAGES];
         }
         if let Some((block, staging)) = flight.reading {
-            let is_next = self.collected + self.job.firsts == block;
+            let is_next = self.job.completes(block) == Some(self.collected);
             if next >= (block as u32 + 1) * self.per_block() && is_next {
                 self.collect(block, &staging, &head)?;
             }

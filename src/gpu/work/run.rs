@@ -164,9 +164,13 @@ impl Run {
         passes.count().max(1) - 1
     }
 
-    /// The number of a block, which tells its states from older ones.
-    pub(super) fn generation(&self, block: usize) -> u32 {
-        let later = self.job.made.blocks.len() - 1 - block;
+    /// The number of the block of a visit, which tells its states from older ones.
+    pub(super) fn generation(&self, visit: usize) -> u32 {
+        let number = match self.job.sampled(visit) {
+            Some((block, _)) => self.job.firsts + block,
+            None => visit,
+        };
+        let later = self.job.firsts + self.job.blocks() - 1 - number;
         let target = self.reusable.target.as_ref();
         target.map_or(0, |target| target.generation(later))
     }
@@ -180,6 +184,7 @@ impl Run {
             [stage.chunk, stage.most] = self.job.steps;
             stage.slice = cost.slice;
             stage.generation = self.generation(block);
+            self.job.sample(block, index, stage);
             // A frame that goes on from the one before keeps its cells, which were counted then.
             let counted = self.from > 0 && self.job.kinds[index] == StageKind::Census;
             if counted || self.job.leaves_out(block, index) {
@@ -290,7 +295,7 @@ impl Run {
     /// The device failed, or left cells unvisited.
     pub fn poll(&mut self) -> Result<Option<Frame>, RenderError> {
         self.receive()?;
-        if self.collected < self.job.made.blocks.len() - self.job.firsts {
+        if self.collected < self.job.blocks() {
             return Ok(None);
         }
         if std::mem::replace(&mut self.delivered, true) {

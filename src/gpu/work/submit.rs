@@ -104,7 +104,7 @@ impl Run {
             ranges.push((&stamps.resolved, 0, STAMPS));
         }
         report.copy(&mut encoder, &ranges);
-        let reads = ends_block && block >= self.job.firsts;
+        let reads = ends_block && self.job.completes(block).is_some();
         let reading = reads.then(|| {
             let parts = Parts::new(&self.job.made.blocks[block], self.job.extras);
             let staging = stagings.take(device, parts.bytes());

@@ -1,0 +1,44 @@
+//! What the open window does with the film of its document.
+
+use crate::preview::document::Document;
+use crate::preview::live::{Live, PANEL};
+use crate::preview::play::{overwrite, pose_at, remove};
+
+impl Live {
+    /// Shows the moment of the film under the playhead.
+    pub fn show_moment(&mut self) {
+        let beat = self.play.beat;
+        if let Some(wrong) = pose_at(&mut self.document.plan, beat) {
+            self.warn(wrong);
+        }
+        self.paint_soon(PANEL);
+    }
+
+    /// Undoes or redoes a step. If it changed tracks, the moment under the playhead is another one.
+    pub fn go_back(&mut self, step: fn(&mut Document) -> bool) {
+        let tracks = self.document.plan.tracks.clone();
+        if step(&mut self.document) && tracks != self.document.plan.tracks {
+            self.show_moment();
+        }
+    }
+
+    /// Overwrites the chosen key with what is shown.
+    pub fn overwrite_key(&mut self) {
+        let chosen = self.play.chosen.clone();
+        let mut done = false;
+        self.document
+            .change(|plan| done = chosen.is_some_and(|place| overwrite(plan, &place)));
+        self.show_moment();
+        if !done {
+            self.tell("no key of the timeline is chosen; click one", true);
+        }
+    }
+
+    /// Takes the chosen key away.
+    pub fn remove_key(&mut self) {
+        if let Some(place) = self.play.chosen.take() {
+            self.document.change(|plan| remove(plan, &place));
+            self.show_moment();
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! A picture that is made again and again.
+
+use crate::base::clock::clock;
+use crate::gpu::RenderError;
+use crate::gpu::render::Renderer;
+use crate::gpu::work::Work;
+use crate::picture::frame::Frame;
+use crate::plan::{Extras, Plan};
+use crate::scene::Assets;
+
+/// The small, the full or the fine picture.
+#[derive(Default)]
+pub struct Picture {
+    pub work: Option<Work>,
+    /// What is rendered, and the number of the wish.
+    pub under_way: Option<(u64, Plan)>,
+    /// The wish that was finished last, and its plan.
+    pub made: Option<(u64, Plan)>,
+    pub began: f64,
+    pub took_ms: Option<f64>,
+    pub frame: Option<Frame>,
+    /// Sums over all frames.
+    pub uploads: usize,
+    pub allocations: u32,
+    pub compilations: usize,
+}
+
+impl Picture {
+    /// Begins to render a plan.
+    pub fn begin(
+        &mut self,
+        renderer: &mut Renderer,
+        assets: &Assets,
+        extras: Extras,
+        wish: (u64, Plan),
+    ) -> Result<(), RenderError> {
+        self.began = clock();
+        let plan = &wish.1;
+        match &mut self.work {
+            Some(work) => renderer.set(work, plan, assets)?,
+            None => self.work = Some(renderer.begin(plan, assets, extras)?),
+        }
+        self.under_way = Some(wish);
+        Ok(())
+    }
+
+    /// Goes on. Returns whether the picture is finished.
+    pub fn advance(&mut self, budget_ms: f64) -> Result<bool, RenderError> {
+        let Some(work) = self.work.as_mut().filter(|_| self.under_way.is_some()) else {
+            return Ok(false);
+        };
+        work.advance(budget_ms)?;
+        let Some(frame) = work.poll()? else {
+            return Ok(false);
+        };
+        let traffic = frame.traffic.unwrap_or_default();
+        self.uploads += traffic.uploads;
+        self.allocations += traffic.allocations;
+        self.compilations += traffic.compilations;
+        self.took_ms = Some(clock() - self.began);
+        self.made = self.under_way.take();
+        self.frame = Some(frame);
+        Ok(true)
+    }
+
+    pub fn is_made(&self, wish: u64) -> bool {
+        self.made.as_ref().is_some_and(|(made, _)| *made == wish)
+    }
+}

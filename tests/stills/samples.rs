@@ -1,0 +1,156 @@
+//! Pictures of many samples.
+
+use conemarch::base::filter::RADIUS;
+use conemarch::picture::frame::Frame;
+use conemarch::plan::{Extras, Plan};
+
+use super::common::plans::{preset, sized};
+use super::work::bits;
+use crate::adapter::{EVERYTHING, on_cpu, render};
+
+/// Supersampling of the oracle, along each axis.
+const FINE: u32 = 16;
+
+/// The light of a frame in one pixel.
+fn light(frame: &Frame, x: u32, y: u32) -> [f64; 3] {
+    let at = (y * frame.size[0] + x) as usize;
+    frame.radiance[at].map(f64::from)
+}
+
+/// Blackman-Harris, as in its paper.
+fn window(x: f64) -> f64 {
+    let wave = |n: f64| (std::f64::consts::PI * n * (1.0 + x / RADIUS)).cos();
+    match x.abs() < RADIUS {
+        true => 0.35875 - 0.48829 * wave(1.0) + 0.14128 * wave(2.0) - 0.01168 * wave(3.0),
+        false => 0.0,
+    }
+}
+
+/// The mean of a fine picture about the middle of a pixel of a coarse one, as the filter weights it.
+fn filtered(fine: &Frame, x: u32, y: u32) -> [f64; 3] {
+    let reach = (RADIUS * f64::from(FINE)).ceil() as i64;
+    let middle = |i: u32| i64::from(i * FINE + FINE / 2);
+    let (mut sum, mut weights) = ([0.0; 3], 0.0);
+    for v in middle(y) - reach..middle(y) + reach {
+        for u in middle(x) - reach..middle(x) + reach {
+            let off = |i: i64, of: u32| ((i - middle(of)) as f64 + 0.5) / f64::from(FINE);
+            let weight = window(off(u, x)) * window(off(v, y));
+            let light = light(fine, u as u32, v as u32);
+            sum = [0, 1, 2].map(|c| sum[c] + weight * light[c]);
+            weights += weight;
+        }
+    }
+    sum.map(|s| s / weights)
+}
+
+/// Mean difference of the lights of a coarse picture from a filtered fine one, without the border,
+/// and its mean size.
+fn apart(coarse: &Frame, fine: &Frame) -> [f64; 2] {
+    let (mut bias, mut size, mut count) = (0.0, 0.0, 0.0);
+    for y in 2..coarse.size[1] - 2 {
+        for x in 2..coarse.size[0] - 2 {
+            let (a, b) = (light(coarse, x, y), filtered(fine, x, y));
+            for c in 0..3 {
+                bias += a[c] - b[c];
+                size += (a[c] - b[c]).abs();
+                count += 1.0;
+            }
+        }
+    }
+    [bias / count, size / count]
+}
+
+#[test]
+fn samples_come_near_to_the_filtered_picture() {
+    // Edges, shadows and a sky, whose places do not depend on the size of a pixel.
+    let mut plan = preset("bricks", &["image.size=[48, 27]", "look.exposure=0"]);
+    let mut fine = plan.clone();
+    fine.size = plan.size.map(|n| n * FINE);
+    let fine = render(&fine, Extras::default());
+    let mut errors = Vec::new();
+    for samples in [1, 4, 16, 64, 256] {
+        plan.samples = samples;
+        let [bias, size] = apart(&render(&plan, Extras::default()), &fine);
+        println!("{samples}: bias {bias:.5}, size {size:.5}");
+        errors.push(size);
+        assert!(bias.abs() < 0.5 * size + 1e-3, "{samples}: {bias} {size}");
+    }
+    // Four times the samples leave at most 0.7 of the error; at random it would be 0.5.
+    for two in errors.windows(2) {
+        assert!(two[1] < 0.7 * two[0], "{errors:?}");
+    }
+}
+
+/// The plan with other samples, with and without cones.
+fn sampled(plan: &Plan, samples: u32, coarsest: u32) -> Plan {
+    let mut plan = plan.clone();
+    plan.samples = samples;
+    plan.march.coarsest = Some(coarsest);
+    plan
+}
+
+#[test]
+fn cones_serve_all_samples() {
+    // On a fractal, shades follow the last digits of a hit; their share is that of one sample.
+    for (name, most) in [("mandelbox", 0.11), ("terrain", 1e-3), ("stones", 1e-3)] {
+        let plan = sized(name, [160, 90]);
+        for samples in [1, 7] {
+            let [cones, rays] =
+                [32, 1].map(|c| render(&sampled(&plan, samples, c), Extras::default()));
+            let pairs = cones.radiance.iter().zip(&rays.radiance);
+            let differ = |(a, b): &(&[f32; 3], &[f32; 3])| {
+                let off = |c: usize| (a[c] - b[c]).abs() > 0.02;
+                (0..3).any(off)
+            };
+            let off = pairs.filter(differ).count() as f64 / cones.radiance.len() as f64;
+            println!("{name}, {samples}: {off:.5} of the pixels differ");
+            assert!(off < most, "{name}, {samples}: {off}");
+        }
+    }
+}
+
+#[test]
+fn depth_normal_and_state_are_those_of_the_centre() {
+    for name in ["mandelbox", "stones"] {
+        let plan = sampled(&sized(name, [64, 36]), 1, 1);
+        let one = render(&plan, EVERYTHING);
+        for samples in [2, 5] {
+            let many = render(&sampled(&plan, samples, 1), EVERYTHING);
+            assert!(one.depth == many.depth && one.state == many.state);
+            assert!(one.normal == many.normal && one.radiance != many.radiance);
+            let sum = |frame: &Frame| frame.work_per_pixel().unwrap().0;
+            let factor = sum(&many) / sum(&one) / f64::from(samples);
+            assert!((0.8..1.2).contains(&factor), "{factor}");
+        }
+    }
+}
+
+#[test]
+fn both_executors_take_the_same_samples() {
+    for (name, coarsest) in [("mandelbox", 1), ("mandelbox", 16), ("terrain", 8)] {
+        let plan = sampled(&sized(name, [64, 36]), 6, coarsest);
+        let (gpu, cpu) = (render(&plan, EVERYTHING), on_cpu(&plan, EVERYTHING));
+        let pairs = gpu
+            .radiance
+            .iter()
+            .flatten()
+            .zip(cpu.radiance.iter().flatten());
+        let mut off: Vec<f32> = pairs.map(|(a, b)| (a - b).abs()).collect();
+        off.sort_by(f32::total_cmp);
+        let [middle, most] = [off.len() / 2, off.len() * 95 / 100].map(|i| off[i]);
+        println!("{name}, {coarsest}: {middle:.2e} {most:.2e}");
+        assert!(middle < 2e-5 && most < 2e-2, "{name}: {middle} {most}");
+        assert_eq!(gpu.undecided, cpu.undecided, "{name}");
+    }
+}
+
+#[test]
+fn depths_alone_take_one_sample() {
+    let plan = sampled(&sized("mandelbox", [64, 36]), 9, 8);
+    let depths = Extras {
+        depth_only: true,
+        ..EVERYTHING
+    };
+    let one = sampled(&plan, 1, 8);
+    assert!(bits(&render(&plan, depths)) == bits(&render(&one, depths)));
+}
