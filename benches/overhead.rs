@@ -16,10 +16,13 @@ use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset;
 use conemarch::scene::Assets;
+use one_sample::one_sample;
 use serde_json::Value;
 
 #[path = "common/markdown.rs"]
 mod markdown;
+#[path = "common/one_sample.rs"]
+mod one_sample;
 
 /// The marks around the tables in the page.
 const MARKS: [&str; 2] = [
@@ -88,6 +91,7 @@ fn run(program: &str, preset: &str, size: &str, settings: &[&str]) -> Result<Tim
     let picture = file.with_extension("png");
     let mut command = Command::new(program);
     command.args(["render", preset, "--size", size]);
+    command.args(one_sample(program)?);
     command
         .args(settings)
         .arg("--stats")
@@ -180,9 +184,11 @@ fn processes(args: &[String]) -> Result<String> {
         let mut all = [vec![], vec![]];
         for _ in 0..2 * RUNS {
             for (runs, program) in all.iter_mut().zip(args) {
+                let plain = one_sample(program)?;
                 let start = Instant::now();
                 let mut command = Command::new(program);
                 command.args(["render", preset, "--size", "64x36", "-o", "-"]);
+                command.args(&plain);
                 let output = command.stdin(Stdio::null()).output()?;
                 ensure!(output.status.success(), "{program} cannot render {preset}");
                 runs.push(start.elapsed().as_secs_f64() * 1e3);
@@ -210,7 +216,7 @@ fn frames() -> Result<String> {
     for name in LIVE {
         let mut renderer = Renderer::new(Device::open(adapter)?);
         let assets = Assets::default();
-        let mut plan = preset::load(name, &[])?.plan;
+        let mut plan = preset::load(name, &[])?.plan.one_sample();
         plan.size = [64, 36];
         let mut render = |plan: &Plan| -> Result<(Frame, f64)> {
             let extras = Extras {
@@ -259,7 +265,7 @@ fn cancels() -> Result<String> {
     let mut rows = Vec::new();
     for (name, _) in preset::BUILTIN {
         let assets = Assets::default();
-        let mut plan = preset::load(name, &[])?.plan;
+        let mut plan = preset::load(name, &[])?.plan.one_sample();
         plan.size = [1280, 720];
         let mut passes: Vec<String> = Vec::new();
         let extras = Extras::default();

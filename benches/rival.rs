@@ -98,7 +98,7 @@ impl Bench {
         let mut plans = Vec::new();
         for (_, changes) in PLANS {
             let changes: Result<Vec<_>, _> = changes.iter().map(|c| Override::read(c)).collect();
-            let mut plan = preset::load(name, &changes?)?.plan;
+            let mut plan = preset::load(name, &changes?)?.plan.one_sample();
             plan.size = size;
             plans.push(plan);
         }

@@ -11,6 +11,10 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail, ensure};
 use exr::prelude::*;
+use one_sample::one_sample;
+
+#[path = "common/one_sample.rs"]
+mod one_sample;
 
 const DEVICES: [&str; 2] = ["auto", "cpu"];
 
@@ -62,6 +66,7 @@ fn render(program: &str, preset: &str, device: &str, more: &[String], file: &Pat
     let mut command = Command::new(program);
     command
         .args(["render", preset, "--device", device])
+        .args(one_sample(program)?)
         .args(more);
     command.arg("-o").arg(file).stderr(Stdio::piped());
     if file.extension().is_some_and(|e| e == "exr") {

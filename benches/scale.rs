@@ -52,7 +52,7 @@ impl Bench {
         for more in [&[][..], &rival] {
             let all = settings.iter().chain(more).map(|s| Override::read(s));
             let all: Result<Vec<_>, _> = all.collect();
-            plans.push(preset::load(name, &all?)?.plan);
+            plans.push(preset::load(name, &all?)?.plan.one_sample());
         }
         let pixels = plans[0].size.iter().product::<u32>();
         let runs = if pixels > LARGE { 1 } else { RUNS };

@@ -49,7 +49,7 @@ fn rotate(plan: &mut Plan, degrees: f64) {
 }
 
 fn main() -> Result<()> {
-    let mut plan = preset::load("mandelbox", &[])?.plan;
+    let mut plan = preset::load("mandelbox", &[])?.plan.one_sample();
     plan.size = [640, 360];
     let (mut executor, who) = Executor::open(&Choice::Auto)?;
     println!("Switches of `mandelbox` at 640 x 360 on {who}\n");

@@ -58,7 +58,7 @@ pub fn terrain(settings: &[String]) -> Result<Plan> {
     let always = [format!("scene.width={WIDTH}"), "march.mode=ray".into()];
     let all = always.iter().chain(settings).map(|s| Override::read(s));
     let all: Vec<Override> = all.collect::<Result<_, _>>()?;
-    Ok(preset::load("terrain", &all)?.plan)
+    Ok(preset::load("terrain", &all)?.plan.one_sample())
 }
 
 /// The plan of a kind, without shadows, as the papers' shaders are.

@@ -3,7 +3,8 @@
 //! World coordinates are right-handed. A distance t is measured along each ray's own unit
 //! direction, so a distance proven for a cell holds for every ray in it. A cell's *chord* k is
 //! the largest distance between the cone's unit axis and the unit direction of a ray in it.
-//! The *footprint* at a distance is half a pixel's width there.
+//! The *footprint* at a distance is half a pixel's width there, or less if the image shows the
+//! details of a larger one.
 //! Points of a beam are relative to the eye; only scenes add the eye.
 //! Twin: `wgsl/base/view.wgsl`.
 
@@ -28,8 +29,10 @@ pub struct ViewUniform {
     pub reach: f32,
     /// Width and height of the full image in pixels.
     pub size: [u32; 2],
+    /// The footprint at distance 1 along the view axis.
+    pub grain: f32,
     /// Unused.
-    pub pad2: [u32; 2],
+    pub pad: f32,
 }
 
 /// More than the rounding error of a chord in f32: two unit vectors are each off by up to
@@ -74,7 +77,7 @@ impl Beam {
     }
 }
 
-/// Half a pixel's width at distance t along the beam.
+/// The footprint at distance t along the beam.
 pub fn footprint(beam: &Beam, t: f64) -> f64 {
     beam.grain0 + beam.grain * t
 }
@@ -96,6 +99,9 @@ pub struct View {
     pub size: [u32; 2],
     /// How far rays of a pixel go from its centre along each axis, in pixels.
     pub reach: f64,
+    /// The footprint at distance 1 along the view axis: half a pixel's width, or less if the image
+    /// shows the details of a larger one.
+    pub grain: f64,
 }
 
 impl View {
@@ -103,14 +109,16 @@ impl View {
     pub fn new(eye: DVec3, target: DVec3, up: DVec3, fov: f64, size: [u32; 2]) -> Self {
         let forward = (target - eye).normalize();
         let right = forward.cross(up.normalize()).normalize();
+        let pixel = 2.0 * (fov.to_radians() * 0.5).tan() / f64::from(size[1]);
         Self {
             eye,
             right,
             up: right.cross(forward),
             forward,
-            pixel: 2.0 * (fov.to_radians() * 0.5).tan() / f64::from(size[1]),
+            pixel,
             size,
             reach: 0.0,
+            grain: 0.5 * pixel,
         }
     }
 
@@ -124,6 +132,7 @@ impl View {
             forward: self.forward.as_vec3(),
             reach: self.reach as f32,
             size: self.size,
+            grain: self.grain as f32,
             ..Zeroable::zeroed()
         }
     }
@@ -146,7 +155,7 @@ impl View {
         let [x, y] = pixel.map(|p| f64::from(p) + 0.5);
         let u = self.view_direction(x + offset.x, y + offset.y);
         let n = u.length();
-        Beam::pinhole(u / n, 0.0, 0.5 * self.pixel / n)
+        Beam::pinhole(u / n, 0.0, self.grain / n)
     }
 
     /// The cone over all rays of the pixels of a cell. The image's border cuts the cell.
@@ -166,7 +175,7 @@ impl View {
         } else {
             2.0
         };
-        Beam::pinhole(u / n, k, 0.5 * self.pixel / (n - h).max(1.0))
+        Beam::pinhole(u / n, k, self.grain / (n - h).max(1.0))
     }
 }
 

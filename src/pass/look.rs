@@ -169,6 +169,12 @@ pub fn tone(exposure: f64, c: DVec3) -> DVec3 {
     one.clamp(DVec3::ZERO, DVec3::ONE)
 }
 
+/// The inverse of [`tone`] in one channel, under an exposure of 1, for values from 0 to 1.
+pub fn untone(shown: f64) -> f64 {
+    let (a, b) = (2.51 - 2.43 * shown, 0.03 - 0.59 * shown);
+    ((b * b + 0.56 * a * shown).sqrt() - b) / (2.0 * a)
+}
+
 /// Hermite interpolation between two edges, as in WGSL.
 pub fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);

@@ -1,37 +1,89 @@
 //! From light to the bytes of a picture.
 //!
-//! The curve is monotonic, so a table of 255 radiances decides every byte. It is found in f64,
+//! A byte has 16 levels. Which of two bytes a level becomes alternates from pixel to pixel, so
+//! that smooth skies have no bands (*dithering*).
+//!
+//! The curve is monotonic, so a table of radiances decides every level. It is found in f64,
 //! and f32 compares against it without an error. The curve in f32 says where to look.
 //! Twin: `wgsl/pass/tone.wgsl`.
 
 use glam::DVec3;
 
-use crate::base::srgb::srgb;
-use crate::pass::look::tone;
+use crate::base::srgb::{linear, srgb};
+use crate::pass::look::{tone, untone};
 
-/// The byte of a radiance in one channel, under a factor of exposure, as files hold it.
-pub fn byte(exposure: f64, x: f64) -> u8 {
-    let shown = srgb(tone(exposure, DVec3::new(x, 0.0, 0.0))).x;
-    (255.0 * shown + 0.5).min(255.0) as u8
+/// The highest level, that of the byte 255.
+pub const MOST_LEVEL: u16 = 16 * 255;
+
+/// The level of a display value from 0 to 1.
+pub fn level(shown: f64) -> u16 {
+    // The cast saturates, and turns NaN into black.
+    (f64::from(MOST_LEVEL) * shown.min(1.0) + 0.5) as u16
 }
 
-/// The factor of exposure, and then the least radiance that is shown as each byte from 1 to 255,
+/// The byte of a level in a pixel. The order of the pixels is that of the R2 sequence
+/// (`crate::base::filter`), in units of 2^-32.
+pub fn byte(level: u16, [x, y]: [u32; 2]) -> u8 {
+    let at = x
+        .wrapping_mul(0xC13F_A9A9)
+        .wrapping_add(y.wrapping_mul(0x91E1_0DA6));
+    ((u32::from(level) + (at >> 28)) >> 4).min(255) as u8
+}
+
+/// The factor of exposure, and then the least radiance that is shown as each level from 1 on,
 /// infinite for one that no radiance reaches.
-pub fn tone_steps(exposure: f64) -> [f32; 256] {
-    std::array::from_fn(|b| {
-        // The bits of floats that are not negative are in the order of the floats.
-        let (mut below, mut above) = (0_u32, f32::INFINITY.to_bits());
-        let reaches = |bits: u32| usize::from(byte(exposure, f64::from(f32::from_bits(bits)))) >= b;
-        if b == 0 {
-            return exposure as f32;
+pub fn tone_steps(exposure: f64) -> Vec<f32> {
+    let reaches = |x: f32, least: u16| {
+        let shown = srgb(tone(exposure, DVec3::new(f64::from(x), 0.0, 0.0))).x;
+        level(shown) >= least
+    };
+    let step = |least: u16| {
+        let shown = (f64::from(least) - 0.5) / f64::from(MOST_LEVEL);
+        // The inverse is a few units in the last place off.
+        let mut x = (untone(linear(DVec3::splat(shown)).x) / exposure) as f32;
+        while x > 0.0 && reaches(x, least) {
+            x = x.next_down();
         }
-        while above - below > 1 {
-            let middle = below + (above - below) / 2;
-            match reaches(middle) {
-                true => above = middle,
-                false => below = middle,
+        while x < f32::INFINITY && !reaches(x, least) {
+            x = x.next_up();
+        }
+        x
+    };
+    let factor = std::iter::once(exposure as f32);
+    factor.chain((1..=MOST_LEVEL).map(step)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_where_the_level_changes() {
+        for stops in [-20.0_f64, -3.0, 0.0, 0.37, 20.0] {
+            let exposure = stops.exp2();
+            let steps = tone_steps(exposure);
+            let of = |x: f32| {
+                let shown = srgb(tone(exposure, DVec3::splat(f64::from(x))));
+                level(shown.x)
+            };
+            for (least, x) in (1..).zip(&steps[1..]) {
+                assert_eq!((of(*x), of(x.next_down())), (least, least - 1), "{stops}");
             }
         }
-        f32::from_bits(above)
-    })
+    }
+
+    #[test]
+    fn the_mean_of_neighbours_is_their_level() {
+        for level in [0, 1, 777, 2040, MOST_LEVEL - 1, MOST_LEVEL] {
+            let side = 64;
+            let all = (0..side * side).map(|i| byte(level, [i % side, i / side]));
+            let bytes: Vec<f64> = all.map(f64::from).collect();
+            let mean = 16.0 * bytes.iter().sum::<f64>() / bytes.len() as f64;
+            assert!((mean - f64::from(level)).abs() < 0.25, "{level} {mean}");
+            let off = |b: &f64| (16.0 * b - f64::from(level)).abs();
+            assert!(bytes.iter().all(|b| off(b) < 16.0));
+        }
+        // Black and white stay clean.
+        assert!((0..99).all(|i| byte(0, [i, 7]) == 0 && byte(MOST_LEVEL, [i, 7]) == 255));
+    }
 }

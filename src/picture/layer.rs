@@ -10,6 +10,7 @@ use crate::base::outcome::State;
 use crate::base::parallel::for_each_part;
 use crate::base::srgb::srgb;
 use crate::pass::look::tone;
+use crate::pass::tone::{byte, level};
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
 use crate::raster::png::BitDepth;
@@ -163,17 +164,21 @@ impl<'a> Shades<'a> {
     }
 
     /// All pixels as whole numbers up to `most`, rows over threads: three per pixel,
-    /// one where the layer is grey.
+    /// one where the layer is grey. Colours of 8 bits are dithered.
     pub(crate) fn samples(&self, most: u16) -> Vec<u16> {
         let channels = if self.is_grey() { 1 } else { 3 };
+        let is_dithered = self.is_color() && most == BitDepth::Eight.most();
         let [width, height] = self.size.map(|n| n as usize);
         let mut out = vec![0; width * height * channels];
         for_each_part(&mut out, (width * channels).max(1), |y, row| {
             for (x, pixel) in row.chunks_mut(channels).enumerate() {
                 let shade = self.at(y * width + x).to_array();
                 for (to, value) in pixel.iter_mut().zip(shade) {
-                    // The cast saturates, and turns NaN into black.
-                    *to = (value * f64::from(most) + 0.5).min(f64::from(most)) as u16;
+                    *to = match is_dithered {
+                        true => byte(level(value), [x as u32, y as u32]).into(),
+                        // The cast saturates, and turns NaN into black.
+                        false => (value * f64::from(most) + 0.5).min(f64::from(most)) as u16,
+                    };
                 }
             }
         });

@@ -20,7 +20,7 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use crate::base::filter::RADIUS;
-use crate::base::key::{Fault, Key, Redo, count, size, text};
+use crate::base::key::{Fault, Key, Redo, auto_count, count, size, text};
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::keys;
@@ -56,6 +56,8 @@ pub struct Plan {
     pub size: [u32; 2],
     /// Samples of each pixel, from 1 to [`MOST_PIXEL_SAMPLES`].
     pub samples: u32,
+    /// The height in pixels of the picture whose details are shown, if it is higher than this one.
+    pub reference: Option<u32>,
     /// When the frames of a film are.
     pub time: Timing,
     /// What changes in the film.
@@ -78,6 +80,7 @@ impl Plan {
             look,
             size: [1280, 720],
             samples: 1,
+            reference: None,
             time: Timing::default(),
             tracks: Vec::new(),
         }
@@ -101,6 +104,7 @@ impl Plan {
             "image" => keys![
                 "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
                 "samples" = count(&mut self.samples, 1, MOST_PIXEL_SAMPLES), "rays through each pixel, whose colours are averaged: 1 is quick and has jagged edges, 16 is smooth, 256 is for print";
+                "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower one has the same details, made small by its samples; auto is the picture's own height";
             ],
             "time" => self.time.keys(),
             _ => return None,
@@ -129,12 +133,24 @@ impl Plan {
         self.check_tracks()
     }
 
+    /// The plan with one sample for each pixel, and with the details that this can show.
+    #[must_use]
+    pub fn one_sample(&self) -> Self {
+        Self {
+            samples: 1,
+            reference: None,
+            ..self.clone()
+        }
+    }
+
     /// The camera over the image.
     pub fn view(&self) -> View {
-        let reach = if self.samples > 1 { RADIUS } else { 0.0 };
+        let view = self.camera.view(self.size);
+        let [own, shown] = [self.size[1], self.reference.unwrap_or(0)].map(f64::from);
         View {
-            reach,
-            ..self.camera.view(self.size)
+            reach: if self.samples > 1 { RADIUS } else { 0.0 },
+            grain: view.grain * own / own.max(shown),
+            ..view
         }
     }
 

@@ -158,7 +158,7 @@ impl Pictures {
         if !self.moving && std::mem::take(&mut self.larger) {
             self.divisor -= 1;
         }
-        let mut small = one_sample(plan);
+        let mut small = plan.one_sample();
         let divisor = DIVISORS[self.divisor];
         small.size = plan.size.map(|n| n.div_ceil(divisor).max(1));
         let optional = matches!(plan.scene, Scene::Distance(_)) && plan.march.may_drop_cones();
@@ -169,6 +169,18 @@ impl Pictures {
         small
     }
 
+    /// The full picture's plan. If a fine one follows, it need not have its details. Layers but the
+    /// colour are those of one sample.
+    fn full_plan(&self, plan: &Plan) -> Plan {
+        match plan.samples > 1 && self.extras.unread {
+            true => plan.one_sample(),
+            false => Plan {
+                samples: 1,
+                ..plan.clone()
+            },
+        }
+    }
+
     /// Whether the full picture of a plan comes at once.
     fn is_quick(&self, plan: &Plan) -> bool {
         let Some((_, made)) = self.full.made.as_ref() else {
@@ -176,7 +188,7 @@ impl Pictures {
         };
         let within = |most| self.full.took_ms.is_some_and(|ms| ms <= most);
         // Only what a change makes again takes time.
-        let is_quick = match redo(made, &one_sample(plan)) {
+        let is_quick = match redo(made, &self.full_plan(plan)) {
             Redo::Nothing | Redo::Tone => true,
             Redo::Color if !self.moving => within(LOOK_AT_ONCE_MS),
             _ => within(AT_ONCE_MS),
@@ -230,7 +242,7 @@ impl Pictures {
             if self.moving && !self.is_quick(&plan) {
                 return Ok(false);
             }
-            let full = (self.wish, one_sample(&plan));
+            let full = (self.wish, self.full_plan(&plan));
             let assets = &self.assets;
             self.full
                 .begin(&mut self.renderer, assets, self.extras, full)?;
@@ -350,14 +362,6 @@ impl Pictures {
 
     fn sum(&self, of: fn(&Picture) -> usize) -> usize {
         [&self.small, &self.full, &self.fine].map(of).iter().sum()
-    }
-}
-
-/// The plan with one sample for each pixel.
-fn one_sample(plan: &Plan) -> Plan {
-    Plan {
-        samples: 1,
-        ..plan.clone()
     }
 }
 

@@ -24,7 +24,8 @@ pub fn preset(name: &str, settings: &[&str]) -> Plan {
     let settings = ["march.coarsest=16"].iter().chain(settings).map(read);
     let settings: Vec<Override> = settings.collect();
     let preset = load(name, &settings);
-    preset.unwrap_or_else(|e| panic!("{name}: {e}")).plan
+    let plan = preset.unwrap_or_else(|e| panic!("{name}: {e}")).plan;
+    plan.one_sample()
 }
 
 /// The plan of a built-in preset at another size.

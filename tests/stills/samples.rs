@@ -1,15 +1,15 @@
 //! Pictures of many samples.
 
 use conemarch::base::filter::RADIUS;
+use conemarch::base::srgb::srgb;
+use conemarch::pass::look::tone;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
+use glam::DVec3;
 
 use super::common::plans::{preset, sized};
 use super::work::bits;
 use crate::adapter::{EVERYTHING, on_cpu, render};
-
-/// Supersampling of the oracle, along each axis.
-const FINE: u32 = 16;
 
 /// The light of a frame in one pixel.
 fn light(frame: &Frame, x: u32, y: u32) -> [f64; 3] {
@@ -26,14 +26,15 @@ fn window(x: f64) -> f64 {
     }
 }
 
-/// The mean of a fine picture about the middle of a pixel of a coarse one, as the filter weights it.
-fn filtered(fine: &Frame, x: u32, y: u32) -> [f64; 3] {
-    let reach = (RADIUS * f64::from(FINE)).ceil() as i64;
-    let middle = |i: u32| i64::from(i * FINE + FINE / 2);
+/// The mean of a picture that is so many times finer about the middle of a pixel of a coarse one, as
+/// the filter weights it.
+fn filtered(fine: &Frame, times: u32, x: u32, y: u32) -> [f64; 3] {
+    let reach = (RADIUS * f64::from(times)).ceil() as i64;
+    let middle = |i: u32| i64::from(i * times + times / 2);
     let (mut sum, mut weights) = ([0.0; 3], 0.0);
     for v in middle(y) - reach..middle(y) + reach {
         for u in middle(x) - reach..middle(x) + reach {
-            let off = |i: i64, of: u32| ((i - middle(of)) as f64 + 0.5) / f64::from(FINE);
+            let off = |i: i64, of: u32| ((i - middle(of)) as f64 + 0.5) / f64::from(times);
             let weight = window(off(u, x)) * window(off(v, y));
             let light = light(fine, u as u32, v as u32);
             sum = [0, 1, 2].map(|c| sum[c] + weight * light[c]);
@@ -43,13 +44,17 @@ fn filtered(fine: &Frame, x: u32, y: u32) -> [f64; 3] {
     sum.map(|s| s / weights)
 }
 
-/// Mean difference of the lights of a coarse picture from a filtered fine one, without the border,
-/// and its mean size.
-fn apart(coarse: &Frame, fine: &Frame) -> [f64; 2] {
+/// Mean difference of a coarse picture from a filtered fine one, without the border, and its mean
+/// size, in light or in what `shown` makes of it.
+fn apart(coarse: &Frame, fine: &Frame, shown: impl Fn([f64; 3]) -> [f64; 3]) -> [f64; 2] {
+    let times = fine.size[0] / coarse.size[0];
     let (mut bias, mut size, mut count) = (0.0, 0.0, 0.0);
     for y in 2..coarse.size[1] - 2 {
         for x in 2..coarse.size[0] - 2 {
-            let (a, b) = (light(coarse, x, y), filtered(fine, x, y));
+            let (a, b) = (
+                shown(light(coarse, x, y)),
+                shown(filtered(fine, times, x, y)),
+            );
             for c in 0..3 {
                 bias += a[c] - b[c];
                 size += (a[c] - b[c]).abs();
@@ -65,12 +70,12 @@ fn samples_come_near_to_the_filtered_picture() {
     // Edges, shadows and a sky, whose places do not depend on the size of a pixel.
     let mut plan = preset("bricks", &["image.size=[48, 27]", "look.exposure=0"]);
     let mut fine = plan.clone();
-    fine.size = plan.size.map(|n| n * FINE);
+    fine.size = plan.size.map(|n| n * 16);
     let fine = render(&fine, Extras::default());
     let mut errors = Vec::new();
     for samples in [1, 4, 16, 64, 256] {
         plan.samples = samples;
-        let [bias, size] = apart(&render(&plan, Extras::default()), &fine);
+        let [bias, size] = apart(&render(&plan, Extras::default()), &fine, |light| light);
         println!("{samples}: bias {bias:.5}, size {size:.5}");
         errors.push(size);
         assert!(bias.abs() < 0.5 * size + 1e-3, "{samples}: {bias} {size}");
@@ -78,6 +83,28 @@ fn samples_come_near_to_the_filtered_picture() {
     // Four times the samples leave at most 0.7 of the error; at random it would be 0.5.
     for two in errors.windows(2) {
         assert!(two[1] < 0.7 * two[0], "{errors:?}");
+    }
+}
+
+#[test]
+fn a_small_picture_is_the_large_one_made_small() {
+    for name in ["mandelbox", "mandelbox-reef", "terrain"] {
+        let mut large = sized(name, [320, 180]);
+        large.samples = 8;
+        let shown = |light: [f64; 3]| {
+            let exposure = large.look.exposure.exp2();
+            srgb(tone(exposure, DVec3::from(light))).to_array()
+        };
+        let fine = render(&large, Extras::default());
+        let off = |reference: Option<u32>| {
+            let mut small = sized(name, [80, 45]);
+            (small.samples, small.reference) = (128, reference);
+            255.0 * apart(&render(&small, Extras::default()), &fine, shown)[1]
+        };
+        let [with, without] = [Some(180), None].map(off);
+        println!("{name}: {with:.2} of 255, {without:.2} without");
+        assert!(with < 2.0, "{name}: {with}");
+        assert!(name == "terrain" || without > 4.0, "{name}: {without}");
     }
 }
 

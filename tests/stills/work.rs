@@ -7,8 +7,8 @@ use conemarch::gpu::device::Device;
 use conemarch::gpu::render::{Cutting, Renderer};
 use conemarch::heightfield::conemap::generate::Generator;
 use conemarch::heightfield::{ConeMap, Heights};
-use conemarch::pass::tone::byte;
 use conemarch::picture::frame::{Frame, Traffic};
+use conemarch::picture::{Layer, Shades};
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
 use conemarch::scene::Assets;
@@ -193,9 +193,9 @@ fn a_change_of_the_look_keeps_the_rays_and_one_of_the_exposure_the_colours() {
 
 /// Radiance in a byte of each channel, as a PNG of 8 bits holds it.
 fn bytes(plan: &Plan, frame: &Frame) -> Vec<u8> {
-    let shown = |x: &f32| byte(plan.look.exposure.exp2(), f64::from(*x));
-    let pixel = |[r, g, b]: &[f32; 3]| [shown(r), shown(g), shown(b), 255];
-    frame.radiance.iter().flat_map(pixel).collect()
+    let shades = Shades::new(Layer::Color, frame, plan).bytes();
+    let pixel = |rgb: &[u8]| [rgb[0], rgb[1], rgb[2], 255];
+    shades.chunks(3).flat_map(pixel).collect()
 }
 
 #[test]

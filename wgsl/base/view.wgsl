@@ -15,7 +15,9 @@ struct ViewUniform {
     reach: f32,
     /// Width and height of the full image in pixels.
     size: vec2<u32>,
-    pad2: vec2<u32>,
+    /// The footprint at distance 1 along the view axis.
+    grain: f32,
+    pad: f32,
 }
 
 /// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint,
@@ -36,7 +38,7 @@ fn view_load() {
     view = view_parameters;
 }
 
-/// Half a pixel's width at distance t along the beam.
+/// The footprint at distance t along the beam.
 fn footprint(beam: Beam, t: f32) -> f32 {
     return beam.grain0 + beam.grain * t;
 }
@@ -58,7 +60,7 @@ fn view_ray(pixel: vec2<u32>) -> Beam {
 fn view_ray_at(pixel: vec2<u32>, place: vec2<f32>) -> Beam {
     let u = view_direction(f32(pixel.x) + place.x, f32(pixel.y) + place.y);
     let n = length(u);
-    return Beam(vec3<f32>(0.0), u / n, 0.0, 0.0, 0.0, 0.5 * view.pixel / n);
+    return Beam(vec3<f32>(0.0), u / n, 0.0, 0.0, 0.0, view.grain / n);
 }
 
 /// The cone over all rays of the pixels of a cell. The image's border cuts the cell.
@@ -77,5 +79,5 @@ fn view_cone(cell: vec2<u32>, divisor: u32) -> Beam {
     }
     // |u| >= 1 for every ray, as the image plane is at distance 1.
     let nearest = max(1.0, n - h);
-    return Beam(vec3<f32>(0.0), u / n, 0.0, k, 0.0, 0.5 * view.pixel / nearest);
+    return Beam(vec3<f32>(0.0), u / n, 0.0, k, 0.0, view.grain / nearest);
 }

@@ -91,6 +91,8 @@ impl Common {
             let preset = preset::load(named, &[])?;
             preset.load_assets(assets)?;
             let Preset { name, mut plan, .. } = preset;
+            // What is compared is a single ray of each pixel.
+            plan = plan.one_sample();
             plan.size = self.size.unwrap_or(plan.size);
             if subjects.iter().any(|other| other.name == name) {
                 return Err(usage(format!(

@@ -147,7 +147,7 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
     let (preset, assets) = loaded(preset, &[])?;
     let plan = Plan {
         size: args.size,
-        ..preset.plan
+        ..preset.plan.one_sample()
     };
     let plans = flight(&plan, args.frames)?;
     let (executor, _) = Executor::open(&args.device)?;

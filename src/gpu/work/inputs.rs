@@ -5,7 +5,7 @@
 
 use std::sync::{Arc, PoisonError};
 
-use bytemuck::bytes_of;
+use bytemuck::{bytes_of, cast_slice};
 
 use super::Shared;
 use super::job::{Job, Made};
@@ -206,7 +206,7 @@ impl FrameRequest {
         parameters.push(("look_parameters", look.clone()));
         if needs.picture.is_some() {
             let steps = tone_steps(plan.look.exposure.exp2());
-            parameters.push(("tone_steps", bytes_of(&steps).to_vec()));
+            parameters.push(("tone_steps", cast_slice(&steps).to_vec()));
         }
         let mut traffic = Traffic::default();
         let device = &self.shared.device;
