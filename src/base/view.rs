@@ -31,8 +31,16 @@ pub struct ViewUniform {
     pub size: [u32; 2],
     /// The footprint at distance 1 along the view axis.
     pub grain: f32,
+    /// Radius of the lens; 0 for none.
+    pub lens: f32,
+    /// Distance to the plane that is sharp.
+    pub focus: f32,
+    /// Added to the chords of cones, as rays start all over the lens.
+    pub spread: f32,
+    /// Blades of the lens; 0 if it is round.
+    pub blades: u32,
     /// Unused.
-    pub pad: f32,
+    pub pad: u32,
 }
 
 /// More than the rounding error of a chord in f32: two unit vectors are each off by up to
@@ -82,6 +90,53 @@ pub fn footprint(beam: &Beam, t: f64) -> f64 {
     beam.grain0 + beam.grain * t
 }
 
+/// A thin lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Its radius, at most a quarter of `focus`.
+    pub radius: f64,
+    /// Distance to the plane that is sharp, along the view axis.
+    pub focus: f64,
+    /// Its blades; 0 if it is round.
+    pub blades: u32,
+}
+
+impl Lens {
+    /// The largest chord between the rays of a place: the lens under the angle at which the plane
+    /// of the focus sees it, by the same bound as the chord of a cone.
+    pub fn spread(&self) -> f64 {
+        2.0 * self.radius / (2.0 * self.focus - self.radius)
+    }
+
+    /// The point of the unit lens at a share of it along the circumference and along the radius.
+    pub fn point(&self, share: DVec2) -> DVec2 {
+        let radius = share.y.sqrt();
+        let corner = |turn: f64| DVec2::from_angle(std::f64::consts::TAU * turn);
+        if self.blades == 0 {
+            return radius * corner(share.x);
+        }
+        let blades = f64::from(self.blades);
+        let at = share.x * blades;
+        let [one, two] = [at.floor(), at.floor() + 1.0].map(|i| corner(i / blades));
+        radius * one.lerp(two, at.fract())
+    }
+}
+
+/// Two numbers from 0 to 1 that look random, for each pixel (`pcg2d` of Jarzynski and Olano, Hash
+/// functions for GPU rendering, 2020).
+fn hash(pixel: [u32; 2]) -> DVec2 {
+    const BY: u32 = 1_664_525;
+    let [mut x, mut y] = pixel.map(|p| p.wrapping_mul(BY).wrapping_add(1_013_904_223));
+    for _ in 0..2 {
+        x = x.wrapping_add(y.wrapping_mul(BY));
+        y = y.wrapping_add(x.wrapping_mul(BY));
+        x ^= x >> 16;
+        y ^= y >> 16;
+    }
+    let part = |x: u32| f64::from(x >> 8) / 16_777_216.0;
+    DVec2::new(part(x), part(y))
+}
+
 /// A camera over an image of a size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
@@ -99,6 +154,8 @@ pub struct View {
     pub size: [u32; 2],
     /// How far rays of a pixel go from its centre along each axis, in pixels.
     pub reach: f64,
+    /// What rays start from; `None` for the eye.
+    pub lens: Option<Lens>,
     /// The footprint at distance 1 along the view axis: half a pixel's width, or less if the image
     /// shows the details of a larger one.
     pub grain: f64,
@@ -118,6 +175,7 @@ impl View {
             pixel,
             size,
             reach: 0.0,
+            lens: None,
             grain: 0.5 * pixel,
         }
     }
@@ -133,6 +191,10 @@ impl View {
             reach: self.reach as f32,
             size: self.size,
             grain: self.grain as f32,
+            lens: self.lens.map_or(0.0, |lens| lens.radius) as f32,
+            focus: self.lens.map_or(0.0, |lens| lens.focus) as f32,
+            spread: self.lens.map_or(0.0, |lens| lens.spread()) as f32,
+            blades: self.lens.map_or(0, |lens| lens.blades),
             ..Zeroable::zeroed()
         }
     }
@@ -158,6 +220,23 @@ impl View {
         Beam::pinhole(u / n, 0.0, self.grain / n)
     }
 
+    /// The ray through a place in pixels from the centre of a pixel, from a point of the lens. `share`
+    /// is the place of the point, uniform from 0 to 1 along both axes; each pixel shifts it.
+    pub fn view_ray_from(&self, pixel: [u32; 2], offset: DVec2, share: DVec2) -> Beam {
+        let ray = self.view_ray_at(pixel, offset);
+        let Some(lens) = self.lens else { return ray };
+        let share = (share + hash(pixel)).fract();
+        let point = lens.radius * lens.point(share);
+        let origin = point.x * self.right + point.y * self.up;
+        // All rays of a place meet in the plane of the focus.
+        let ahead = lens.focus / ray.axis.dot(self.forward) * ray.axis - origin;
+        Beam {
+            origin,
+            axis: ahead.normalize(),
+            ..ray
+        }
+    }
+
     /// The cone over all rays of the pixels of a cell. The image's border cuts the cell.
     ///
     /// `k = min(2, 2|h| / (2|u| - |h|))`, where h is half the diagonal and u the axis in the
@@ -170,12 +249,15 @@ impl View {
         let n = u.length();
         let span = [0, 1].map(|i| f64::from(high[i] - low[i] - 1) + 2.0 * self.reach);
         let h = 0.5 * self.pixel * span[0].hypot(span[1]);
+        let spread = self.lens.map_or(0.0, |lens| lens.spread());
         let k = if h < n {
-            (2.0 * h / (2.0 * n - h) + CHORD_SLACK).min(2.0)
+            (2.0 * h / (2.0 * n - h) + CHORD_SLACK + spread).min(2.0)
         } else {
             2.0
         };
-        Beam::pinhole(u / n, k, self.grain / (n - h).max(1.0))
+        let cone = Beam::pinhole(u / n, k, self.grain / (n - h).max(1.0));
+        let r0 = self.lens.map_or(0.0, |lens| lens.radius);
+        Beam { r0, ..cone }
     }
 }
 
@@ -187,9 +269,15 @@ mod tests {
     fn a_cone_holds_all_rays_of_its_pixels() {
         let (eye, target) = (DVec3::new(4.0, -9.0, 6.0), DVec3::ZERO);
         for fov in [1.0, 48.5, 120.0, 170.0] {
-            for reach in [0.0, 0.25, 1.5] {
+            for (reach, radius) in [(0.0, 0.0), (0.25, 0.0), (1.5, 0.0), (1.5, 0.5), (1.5, 3.0)] {
+                let lens = Lens {
+                    radius,
+                    focus: 12.0,
+                    blades: 0,
+                };
                 let view = View {
                     reach,
+                    lens: (radius > 0.0).then_some(lens),
                     ..View::new(eye, target, DVec3::Z, fov, [37, 21])
                 };
                 let mut widest: f64 = 0.0;
@@ -198,17 +286,65 @@ mod tests {
                         let cone = view.view_cone([x / divisor, y / divisor], divisor);
                         for corner in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
                             let offset = reach * DVec2::from(corner);
-                            let ray = view.view_ray_at([x, y], offset);
-                            let chord = ray.axis.distance(cone.axis);
-                            assert!(chord <= cone.k, "{fov} {reach} {divisor} {chord} {cone:?}");
-                            assert!(ray.grain <= cone.grain, "{fov} {reach} {divisor}");
-                            widest = widest.max(chord / cone.k);
+                            for share in [0.0, 0.3, 0.7].map(|x| DVec2::new(x, 1.0 - 1e-9)) {
+                                let ray = view.view_ray_from([x, y], offset, share);
+                                for t in [0.01, 1.0, 12.0, 24.0, 1e3] {
+                                    let off = ray.at(t).distance(cone.at(t));
+                                    let room = cone.r0 + cone.k * t;
+                                    assert!(
+                                        off <= room * (1.0 + 1e-12),
+                                        "{fov} {reach} {t} {off} {cone:?}"
+                                    );
+                                    widest = widest.max(off / room);
+                                }
+                                assert!(ray.grain <= cone.grain, "{fov} {reach} {divisor}");
+                            }
                         }
                     }
                 }
                 // Nor is it much wider than they need.
                 assert!(widest > 0.9, "{fov} {reach} {widest}");
             }
+        }
+    }
+
+    #[test]
+    fn rays_through_a_lens_meet_in_the_plane_of_the_focus() {
+        let (eye, target) = (DVec3::new(4.0, -9.0, 6.0), DVec3::ZERO);
+        for blades in [0, 3, 7] {
+            let lens = Lens {
+                radius: 0.7,
+                focus: 3.0,
+                blades,
+            };
+            let view = View {
+                lens: Some(lens),
+                ..View::new(eye, target, DVec3::Z, 50.0, [40, 30])
+            };
+            let (pixel, place) = ([7, 21], DVec2::new(0.3, -0.2));
+            let middle = view.view_ray_at(pixel, place);
+            let point = middle.at(lens.focus / middle.axis.dot(view.forward));
+            let (mut sum, mut squares, mut most) = (DVec3::ZERO, 0.0, 0.0_f64);
+            for i in 0..4096 {
+                let ray = view.view_ray_from(pixel, place, crate::base::filter::lens_share(i));
+                let there = ray.at(lens.focus / ray.axis.dot(view.forward));
+                assert!(there.distance(point) < 1e-9, "{ray:?}");
+                assert!(ray.origin.dot(view.forward).abs() < 1e-12);
+                sum += ray.origin / 4096.0;
+                squares += (ray.origin / lens.radius).length_squared() / 4096.0;
+                most = most.max(ray.origin.length() / lens.radius);
+            }
+            // The mean square of the distances to the middle of a regular polygon.
+            let sides = f64::from(blades);
+            let expected = match blades {
+                0 => 0.5,
+                _ => (2.0 + (std::f64::consts::TAU / sides).cos()) / 6.0,
+            };
+            assert!(sum.length() < 2e-3 && most <= 1.0 + 1e-12, "{blades} {sum}");
+            assert!(
+                (squares - expected).abs() < 2e-3,
+                "{blades} {squares} {expected}"
+            );
         }
     }
 }

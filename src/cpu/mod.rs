@@ -3,13 +3,12 @@
 //! It renders where a machine has no adapter, it makes the truths, and the GPU is compared
 //! with it.
 
-use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::base::clock::clock;
-use crate::base::filter::offset;
+use crate::base::filter::{lens_share, offset};
 use crate::base::outcome::{Counts, State};
-use crate::base::view::View;
+use crate::base::view::{Beam, View};
 use crate::heightfield::conemap::generate::cpu::generate;
 use crate::pass::look::Light;
 use crate::pass::march::{Ended, march};
@@ -100,19 +99,22 @@ impl Task for Render<'_> {
             frame: Frame::blank(plan, extras),
             parents: None,
             hits: Vec::new(),
-            place: DVec2::ZERO,
+            sample: 0,
+            counts: true,
             undecided: Vec::new(),
         };
         // The cones serve all samples. The last one is that of the pixels' centres, whose depths stay.
         let rays = passes.iter().position(|pass| *pass == Pass::Trace);
         let (cones, rays) = passes.split_at(rays.unwrap_or(passes.len()));
-        let samples = (0..plan.samples).rev();
+        let samples = (0..plan.visits()).rev();
         let all = cones.iter().map(|pass| (0, pass));
         let all = all.chain(samples.flat_map(|i| rays.iter().map(move |pass| (i, pass))));
-        let share = 1.0 / (cones.len() + rays.len() * plan.samples as usize) as f64;
+        let share = 1.0 / (cones.len() + rays.len() * plan.visits() as usize) as f64;
         for (nth, (sample, &pass)) in all.enumerate() {
             let at = nth.min(cones.len()) + usize::from(pass == Pass::Color);
-            run.place = offset(sample);
+            run.sample = sample;
+            // Behind a lens, the centre counts for the depth alone.
+            run.counts = sample > 0 || plan.visits() == plan.samples;
             let start = clock();
             let mut bands = Bands {
                 pass: pass.name(),
@@ -151,8 +153,9 @@ struct Run<'a, S> {
     parents: Option<Proofs>,
     /// What the rays hit, for the colour pass.
     hits: Vec<Hit>,
-    /// Where the rays of the sample go, in pixels from the centres of their pixels.
-    place: DVec2,
+    /// The sample, and whether its light counts.
+    sample: u32,
+    counts: bool,
     /// Pixels with a shadow ray that reached its step limit.
     undecided: Vec<bool>,
 }
@@ -161,6 +164,16 @@ struct Run<'a, S> {
 type Sum = (u64, u64);
 
 impl<S: Solid> Run<'_, S> {
+    /// The rays of the sample.
+    fn rays(&self) -> impl Fn([u32; 2]) -> Beam + Sync + use<S> {
+        let (view, place) = (self.view, offset(self.sample));
+        let share = (self.sample > 0).then(|| lens_share(self.sample));
+        move |pixel| match share {
+            Some(share) => view.view_ray_from(pixel, place, share),
+            None => view.view_ray_at(pixel, place),
+        }
+    }
+
     fn march(&mut self, at: usize, level: Level, bands: &mut Bands) -> Result<Sum, FrameError> {
         let cells = level.cells(self.frame.size);
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
@@ -191,16 +204,15 @@ impl<S: Solid> Run<'_, S> {
     }
 
     fn trace(&mut self, limit: u32, bands: &mut Bands) -> Result<Sum, FrameError> {
-        let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
-        let place = self.place;
+        let (solid, parents) = (self.solid, self.parents.as_ref());
+        let ray = self.rays();
         let one = |pixel| {
             let parent = parent_of(parents, pixel);
             let mut work = Counts::default();
             if parent.ended == Ended::Sky {
                 return (Hit::default(), State::Sky, work);
             }
-            let ray = view.view_ray_at(pixel, place);
-            let (hit, state) = trace::trace(solid, &ray, parent.front, limit, &mut work);
+            let (hit, state) = trace::trace(solid, &ray(pixel), parent.front, limit, &mut work);
             (hit, state, work)
         };
         let mut sum = (0, 0);
@@ -224,26 +236,21 @@ impl<S: Solid> Run<'_, S> {
     }
 
     fn color(&mut self, light: &Light, bands: &mut Bands) -> Result<Sum, FrameError> {
-        let (solid, view, hits) = (self.solid, &self.view, &self.hits);
+        let ray = self.rays();
+        let (solid, hits) = (self.solid, &self.hits);
         let size = self.frame.size;
         let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
         let (states, undecided) = (&self.frame.state, &mut self.undecided);
         undecided.resize(states.len(), false);
-        let place = self.place;
+        let counts = self.counts;
         let one = |pixel: [u32; 2]| {
             let at = pixel[1] as usize * size[0] as usize + pixel[0] as usize;
             let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
-            color::color(
-                solid,
-                light,
-                &view.view_ray_at(pixel, place),
-                &hits[at],
-                state,
-            )
+            color::color(solid, light, &ray(pixel), &hits[at], state)
         };
         bands.over(size, one, |i, pixel| {
             for (sum, light) in radiance[i].iter_mut().zip(pixel.radiance.to_array()) {
-                *sum += light as f32;
+                *sum += if counts { light as f32 } else { 0.0 };
             }
             set(normals, i, pixel.normal.as_vec3().to_array());
             undecided[i] |= !pixel.decided;

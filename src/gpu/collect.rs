@@ -4,7 +4,7 @@ use crate::base::outcome::{Counts, State};
 use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::staging::Staging;
 use crate::gpu::target::Target;
-use crate::pass::turn::{CellsHead, Layout};
+use crate::pass::layout::{CellsHead, Layout};
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Pass};
 

@@ -14,7 +14,8 @@ use crate::gpu::buffer::{create, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::error::{RenderError, check_room};
 use crate::gpu::kernel::{Kernel, PICTURE};
-use crate::pass::turn::{CellsHead, Layout, Stage, Turn};
+use crate::pass::layout::{CellsHead, Layout};
+use crate::pass::turn::{Stage, Turn};
 
 /// What decides a target.
 #[derive(Clone, Debug, PartialEq)]

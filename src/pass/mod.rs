@@ -2,19 +2,21 @@
 //!
 //! - [`prepare`]: makes cone maps before a heightfield's first frame
 //! - [`march`]: the cones of one level; [`trace`]: one ray per pixel
-//! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits
+//! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits; [`layout`]: where
+//!   their results are
 //! - [`color`]: light and colour, with [`look`], [`shadow`], [`occlusion`] and [`fog`]
 //! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone`]: from light to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
 //! - [`progress`]: how far a render has come; `explain`: its programs, without a GPU
 //!
-//! Each pass declares its program ([`program`]), and [`turn::Layout`] where its results are.
+//! Each pass declares its program ([`program`]), and [`layout`] where its results are.
 
 pub mod color;
 mod explain;
 pub mod features;
 pub mod fog;
+pub mod layout;
 pub mod look;
 pub mod march;
 pub mod occlusion;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::base::key::{Fault, number, triple};
-use crate::base::view::View;
+use crate::base::key::{Fault, auto_count, auto_number, number, triple};
+use crate::base::view::{Lens, View};
 use crate::settings;
 
 settings! {
@@ -13,6 +13,9 @@ settings! {
         target: DVec3 = DVec3::ZERO, triple(-1e9, 1e9), "point that the camera looks at, in the middle of the image";
         up: DVec3 = DVec3::Z, triple(-1e9, 1e9), "direction that points up in the image";
         fov: f64 = 40.0, number(1.0, 170.0), "vertical field of view in degrees";
+        aperture: f64 = 0.0, number(0.0, 0.25), "radius of the lens as a share of the distance to the focus: 0 for none, 0.01 for a blurred background; a picture of one sample has no blur";
+        focus: Option<f64> = None, auto_number(1e-9, 1e9), "distance to the plane that is sharp, along the view axis; auto is that of the target";
+        blades: Option<u32> = None, auto_count(3, 16), "blades of the lens, which are the corners of blurred lights; auto is a round lens";
     }
 }
 
@@ -33,7 +36,17 @@ impl Camera {
         )
     }
 
-    /// The camera over an image of a size. The camera must pass [`Camera::check`].
+    /// The lens of a picture with several samples, if there is one.
+    pub fn lens(&self) -> Option<Lens> {
+        let focus = self.focus.unwrap_or(self.eye.distance(self.target));
+        (self.aperture > 0.0).then_some(Lens {
+            radius: self.aperture * focus,
+            focus,
+            blades: self.blades.unwrap_or(0),
+        })
+    }
+
+    /// The camera over an image of a size, without a lens. The camera must pass [`Camera::check`].
     pub fn view(&self, size: [u32; 2]) -> View {
         View::new(self.eye, self.target, self.up, self.fov, size)
     }

@@ -149,9 +149,15 @@ impl Plan {
         let [own, shown] = [self.size[1], self.reference.unwrap_or(0)].map(f64::from);
         View {
             reach: if self.samples > 1 { RADIUS } else { 0.0 },
+            lens: self.camera.lens().filter(|_| self.samples > 1),
             grain: view.grain * own / own.max(shown),
             ..view
         }
+    }
+
+    /// How often each pixel has a ray. Through a lens, its centre has one more, for the depth.
+    pub fn visits(&self) -> u32 {
+        self.samples + u32::from(self.view().lens.is_some())
     }
 
     /// The cone levels, coarsest first; none in modes without cones.

@@ -88,7 +88,15 @@ fn presets_files_and_keys_are_completed() {
     }
     assert!(!found.iter().any(|f| f == "terrain"));
     let found = asked("render mandelbox --set camera.");
-    let keys = ["camera.eye=", "camera.target=", "camera.up=", "camera.fov="];
+    let keys = [
+        "camera.eye=",
+        "camera.target=",
+        "camera.up=",
+        "camera.fov=",
+        "camera.aperture=",
+        "camera.focus=",
+        "camera.blades=",
+    ];
     assert_eq!(found, keys);
     let found = asked("render mandelbox --set scene.");
     for key in ["scene.kind=", "scene.scale=", "scene.tracer="] {

@@ -70,6 +70,7 @@ pub fn camera(eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Camera {
         target: target.into(),
         up: DVec3::Z,
         fov: 48.5,
+        ..Camera::default()
     }
 }
 

@@ -44,7 +44,7 @@ pub fn faults(plan: &Plan, frame: &Frame) -> Vec<String> {
     });
     let position = frame.positions(&plan.view());
     bad("position", &|i| position[i].iter().any(|x| !x.is_finite()));
-    let limit = plan.ray_steps(&solid(plan));
+    let limit = plan.visits() * plan.ray_steps(&solid(plan));
     bad("evaluations", &|i| frame.work[i].evaluations > limit);
     for level in &frame.levels {
         let layer = format!("fronts of 1/{}", level.divisor);

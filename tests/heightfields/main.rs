@@ -51,6 +51,7 @@ fn camera(eye: [f64; 3], target: [f64; 3], fov: f64) -> Camera {
         target: target.into(),
         up: glam::DVec3::Z,
         fov,
+        ..Camera::default()
     }
 }
 

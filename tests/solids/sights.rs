@@ -16,6 +16,7 @@ fn view(size: [u32; 2], fov: f64) -> View {
         target: DVec3::new(-2.0, 0.5, 4.0),
         up: DVec3::Y,
         fov,
+        ..Camera::default()
     };
     camera.view(size)
 }

@@ -42,12 +42,13 @@ pub fn bits(frame: &Frame) -> Vec<u32> {
     all
 }
 
-/// A plan of several samples with cones, and one without.
+/// A plan of several samples with cones, and one without them through a lens.
 fn sampled() -> [Plan; 2] {
     [("mandelbox", 16), ("bench-thin", 1)].map(|(name, coarsest)| {
         let mut plan = sized(name, [70, 45]);
         plan.samples = 3;
         plan.march.coarsest = Some(coarsest);
+        plan.camera.aperture = if coarsest == 1 { 0.02 } else { 0.0 };
         plan
     })
 }

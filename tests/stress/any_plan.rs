@@ -109,6 +109,7 @@ fn camera(extent: f64) -> impl Strategy<Value = Camera> {
             target: extent * target,
             up,
             fov,
+            ..Camera::default()
         }
     })
 }

@@ -194,7 +194,15 @@ fn any_plan_renders_alike_on_both_executors() {
     let mut runner = TestRunner::new_with_rng(config, rng);
     let [warned_plans, solid_plans, hit_plans] = [0; 3].map(Cell::new);
     let count = |counter: &Cell<u32>, counts: bool| counter.set(counter.get() + u32::from(counts));
-    let ran = runner.run(&any_plan(), |plan| {
+    let nth = Cell::new(0_u32);
+    let ran = runner.run(&any_plan(), |mut plan| {
+        // Every fourth plan has samples, and most of these a lens.
+        if nth.replace(nth.get() + 1) % 4 == 0 {
+            plan.samples = 2 + nth.get() % 2;
+            plan.reference = Some(90);
+            plan.camera.aperture = 0.05 * f64::from(nth.get() % 5);
+            plan.camera.blades = (nth.get() % 3 == 0).then_some(5);
+        }
         let text = write(&plan);
         assert_eq!(read(&text, "a random plan").unwrap(), plan);
         let frames = both(&plan);

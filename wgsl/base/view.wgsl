@@ -17,7 +17,14 @@ struct ViewUniform {
     size: vec2<u32>,
     /// The footprint at distance 1 along the view axis.
     grain: f32,
-    pad: f32,
+    /// Radius of the lens, 0 for none, and distance to the plane that is sharp.
+    lens: f32,
+    focus: f32,
+    /// Added to the chords of cones, as rays start all over the lens.
+    spread: f32,
+    /// Blades of the lens; 0 if it is round.
+    blades: u32,
+    pad: u32,
 }
 
 /// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint,
@@ -63,6 +70,47 @@ fn view_ray_at(pixel: vec2<u32>, place: vec2<f32>) -> Beam {
     return Beam(vec3<f32>(0.0), u / n, 0.0, 0.0, 0.0, view.grain / n);
 }
 
+/// Two numbers from 0 to 1 that look random, for each pixel.
+fn view_hash(pixel: vec2<u32>) -> vec2<f32> {
+    const BY = 1664525u;
+    var v = pixel * BY + 1013904223u;
+    for (var i = 0u; i < 2u; i++) {
+        v.x += v.y * BY;
+        v.y += v.x * BY;
+        v ^= v >> vec2<u32>(16u);
+    }
+    return vec2<f32>(v >> vec2<u32>(8u)) / 16777216.0;
+}
+
+fn view_corner(turn: f32) -> vec2<f32> {
+    return vec2<f32>(cos(6.2831853 * turn), sin(6.2831853 * turn));
+}
+
+/// The point of the unit lens at a share of it along the circumference and along the radius.
+fn view_lens_point(share: vec2<f32>) -> vec2<f32> {
+    if view.blades == 0u {
+        return sqrt(share.y) * view_corner(share.x);
+    }
+    let blades = f32(view.blades);
+    let at = share.x * blades;
+    let one = view_corner(floor(at) / blades);
+    let two = view_corner((floor(at) + 1.0) / blades);
+    return sqrt(share.y) * mix(one, two, fract(at));
+}
+
+/// The same ray from a point of the lens. `share` is the place of the point, uniform from 0 to 1
+/// along both axes; each pixel shifts it. Below 0 it is the centre.
+fn view_ray_from(pixel: vec2<u32>, place: vec2<f32>, share: vec2<f32>) -> Beam {
+    var ray = view_ray_at(pixel, place);
+    if view.lens > 0.0 && share.x >= 0.0 {
+        let point = view.lens * view_lens_point(fract(share + view_hash(pixel)));
+        ray.origin = point.x * view.right + point.y * view.up;
+        // All rays of a place meet in the plane of the focus.
+        ray.axis = normalize(view.focus / dot(ray.axis, view.forward) * ray.axis - ray.origin);
+    }
+    return ray;
+}
+
 /// The cone over all rays of the pixels of a cell. The image's border cuts the cell.
 ///
 /// The chord k is at most `2|h| / (2|u| - |h|)`, where h is half the diagonal. This bound is
@@ -75,9 +123,9 @@ fn view_cone(cell: vec2<u32>, divisor: u32) -> Beam {
     let h = 0.5 * view.pixel * length(vec2<f32>(high - low - vec2<u32>(1u)) + 2.0 * view.reach);
     var k = 2.0;
     if h < n {
-        k = min(2.0, 2.0 * h / (2.0 * n - h) + view.slack);
+        k = min(2.0, 2.0 * h / (2.0 * n - h) + view.slack + view.spread);
     }
     // |u| >= 1 for every ray, as the image plane is at distance 1.
     let nearest = max(1.0, n - h);
-    return Beam(vec3<f32>(0.0), u / n, 0.0, k, 0.0, view.grain / nearest);
+    return Beam(vec3<f32>(0.0), u / n, view.lens, k, 0.0, view.grain / nearest);
 }

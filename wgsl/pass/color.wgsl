@@ -53,7 +53,7 @@ fn color(
     }
     let cell = queue_cell(packed);
     let index = queue_index(cell);
-    let ray = view_ray_at(turn.stage.origin + cell, turn.stage.place);
+    let ray = view_ray_from(turn.stage.origin + cell, turn.stage.place, turn.stage.lens);
     let s = cell_state(turn.stage.state + index);
     var c = sky(ray.axis);
     var decided = 1.0;
@@ -79,7 +79,7 @@ fn color(
     }
     if turn.stage.before > 0u {
         let sum = cell_pixel(index);
-        c += sum.rgb;
+        c = sum.rgb + turn.stage.weight * c;
         decided = min(decided, sum.a);
     }
     cell_store_pixel(index, vec4<f32>(c * turn.stage.scale, decided));

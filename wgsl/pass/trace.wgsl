@@ -21,7 +21,7 @@ fn trace(
     // Buffers belong to a block, rays to the whole image: so blocks do not change a picture.
     let local = queue_cell(packed);
     let index = queue_index(local);
-    let ray = view_ray_at(turn.stage.origin + local, turn.stage.place);
+    let ray = view_ray_from(turn.stage.origin + local, turn.stage.place, turn.stage.lens);
     var walk: Walk;
     if turn.done > 0u {
         walk = walks[index];

@@ -50,9 +50,11 @@ struct Stage {
     before: u32,
     /// Where the rays of this sample go, in pixels from the upper left corner of their pixels.
     place: vec2<f32>,
-    /// A factor on the sum of the light.
+    /// Where on the lens they start, from 0 to 1 along both axes; below 0 for its centre.
+    lens: vec2<f32>,
+    /// Factors on the light of the sample, and on the sum of all.
+    weight: f32,
     scale: f32,
-    pad: u32,
 }
 
 /// What the next dispatch does. Only `arrange` writes it.

@@ -22,6 +22,7 @@ use crate::heightfield::assets::Preparation;
 #[cfg(not(feature = "cli"))]
 use crate::heightfield::conemap::generate::cpu::generate;
 use crate::heightfield::tracer::settings::PrepareError;
+use crate::pass::layout::Layout;
 use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
 use crate::pass::progress::{Progress, Watch};
@@ -89,7 +90,7 @@ pub struct FrameInputs {
 struct Draft {
     scene: AnySolid,
     kinds: Vec<StageKind>,
-    blocks: Vec<turn::Layout>,
+    blocks: Vec<Layout>,
     needs: Needs,
     arrange: Program,
 }
@@ -165,7 +166,7 @@ impl FrameRequest {
             (true, _) => 0,
             (false, normals) => 1 + u32::from(normals),
         };
-        let blocks = turn::Layout::of_blocks(&blocks, coarsest, extras.count, marked, layers);
+        let blocks = Layout::of_blocks(&blocks, coarsest, extras.count, marked, layers);
         let limits = self.shared.device.device.limits();
         let largest = limits.max_texture_dimension_2d;
         let shown = extras.shown && plan.size.iter().all(|n| *n <= largest);
@@ -239,7 +240,7 @@ impl FrameRequest {
         };
         let visits = draft.blocks.iter().flat_map(|block| {
             let block = block.clone();
-            (0..plan.samples).map(move |_| block.clone())
+            (0..plan.visits()).map(move |_| block.clone())
         });
         let most = most_steps(&scene);
         let mut frame = Frame::blank(plan, *extras);
@@ -249,6 +250,7 @@ impl FrameRequest {
                 firsts: firsts.len(),
                 first_stages,
                 samples: plan.samples,
+                visits: plan.visits(),
                 kinds: draft.kinds,
                 colors_at: colors,
                 made: Made {

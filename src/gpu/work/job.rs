@@ -1,13 +1,14 @@
 //! What a run is made of, and what one run leaves to the next.
 
-use crate::base::filter::offset;
+use crate::base::filter::{lens_share, offset};
 use crate::base::shader::Program;
 use crate::gpu::cost::Cost;
 use crate::gpu::staging::Stagings;
 use crate::gpu::stamps::Stamps;
 use crate::gpu::target::{Needs, Parameters, Target};
 use crate::heightfield::assets::Preparation;
-use crate::pass::turn::{Layout, Stage, StageKind};
+use crate::pass::layout::Layout;
+use crate::pass::turn::{Stage, StageKind};
 use crate::plan::{Extras, Pass};
 
 /// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
@@ -71,8 +72,9 @@ pub(in crate::gpu) struct Job {
     /// and how many stages of them run.
     pub firsts: usize,
     pub first_stages: usize,
-    /// Samples of each pixel.
+    /// Samples of each pixel, and how often a block is visited for them.
     pub samples: u32,
+    pub visits: u32,
     /// The step limits of the first dispatch of a stage and of the largest.
     pub steps: [u32; 2],
     pub extras: Extras,
@@ -83,20 +85,20 @@ impl Job {
     /// The blocks of the image. They are visited one after the other, each as often as a pixel has
     /// samples.
     pub(super) fn blocks(&self) -> usize {
-        (self.made.blocks.len() - self.firsts) / self.samples as usize
+        (self.made.blocks.len() - self.firsts) / self.visits as usize
     }
 
     /// The number of the block of a visit, and how many samples it has before; `None` for a first
     /// picture.
     pub(super) fn sampled(&self, visit: usize) -> Option<(usize, u32)> {
         let visit = visit.checked_sub(self.firsts)?;
-        let samples = self.samples as usize;
-        Some((visit / samples, (visit % samples) as u32))
+        let visits = self.visits as usize;
+        Some((visit / visits, (visit % visits) as u32))
     }
 
     /// The number of a block, if a visit makes its last sample.
     pub(super) fn completes(&self, visit: usize) -> Option<usize> {
-        let last = self.samples - 1;
+        let last = self.visits - 1;
         self.sampled(visit)
             .filter(|(_, before)| *before == last)
             .map(|(block, _)| block)
@@ -122,11 +124,15 @@ impl Job {
             return;
         };
         let of_all = 1.0 / self.samples as f32;
-        let is_last = before + 1 == self.samples;
+        let sample = self.visits - 1 - before;
+        let is_last = sample == 0;
         stage.before = before;
-        stage.place = (0.5 + offset(self.samples - 1 - before))
-            .as_vec2()
-            .to_array();
+        stage.place = (0.5 + offset(sample)).as_vec2().to_array();
+        if !is_last {
+            stage.lens = lens_share(sample).as_vec2().to_array();
+        }
+        // Behind a lens, the centre counts for the depth alone.
+        stage.weight = f32::from(u8::from(before < self.samples));
         stage.scale = match (&self.kinds[index], is_last) {
             (StageKind::Pass(_), true) => of_all,
             (StageKind::Develop, false) => 1.0 / (before + 1) as f32,

@@ -6,7 +6,8 @@ use crate::gpu::collect::Parts;
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::STAMPS;
-use crate::pass::turn::{CellsHead, MOST_STAGES, StageKind, Turn};
+use crate::pass::layout::CellsHead;
+use crate::pass::turn::{MOST_STAGES, StageKind, Turn};
 use crate::picture::frame::Traffic;
 
 use super::run::{Flight, REPORT, Run};

@@ -11,8 +11,9 @@ use crate::gpu::stamps::{STAMPS, Stamps};
 use crate::gpu::target::Target;
 use crate::gpu::work::job::{Job, Reusable};
 use crate::gpu::work::{FrameInputs, Shared};
+use crate::pass::layout::CellsHead;
 use crate::pass::progress::Progress;
-use crate::pass::turn::{CellsHead, MOST_STAGES, Stage, StageKind, Turn};
+use crate::pass::turn::{MOST_STAGES, Stage, StageKind, Turn};
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::Pass;
 

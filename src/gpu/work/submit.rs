@@ -2,7 +2,8 @@
 
 use crate::gpu::collect::Parts;
 use crate::gpu::stamps::STAMPS;
-use crate::pass::turn::{CellsHead, StageKind, Turn};
+use crate::pass::layout::CellsHead;
+use crate::pass::turn::{StageKind, Turn};
 use crate::plan::Pass;
 
 use super::run::{Flight, REPORT, Run};
