@@ -24,6 +24,7 @@ presets![
     "mandelbox-hall",
     "mandelbox-julia",
     "mandelbox-lattice",
+    "mandelbox-miniature",
     "mandelbox-reef",
     "mandelbox-shell",
     "mandelbox-towers",

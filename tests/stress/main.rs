@@ -197,11 +197,11 @@ fn any_plan_renders_alike_on_both_executors() {
     let nth = Cell::new(0_u32);
     let ran = runner.run(&any_plan(), |mut plan| {
         // Every fourth plan has samples, and most of these a lens.
-        if nth.replace(nth.get() + 1) % 4 == 0 {
+        if nth.replace(nth.get() + 1).is_multiple_of(4) {
             plan.samples = 2 + nth.get() % 2;
             plan.reference = Some(90);
             plan.camera.aperture = 0.05 * f64::from(nth.get() % 5);
-            plan.camera.blades = (nth.get() % 3 == 0).then_some(5);
+            plan.camera.blades = nth.get().is_multiple_of(3).then_some(5);
         }
         let text = write(&plan);
         assert_eq!(read(&text, "a random plan").unwrap(), plan);
