@@ -53,9 +53,10 @@ pub fn offset(sample: u32) -> DVec2 {
 }
 
 /// Where on the lens the ray of a sample starts, uniform from 0 to 1 along both axes. The steps are
-/// the third and the fourth of the R4 sequence, as those of R2 choose the place in the pixel.
+/// the fractions of the roots of 2 and 5. No small multiples of them and of those of the place in
+/// the pixel add up to nearly a whole number.
 pub fn lens_share(sample: u32) -> DVec2 {
-    (f64::from(sample) * DVec2::new(0.628_706_721_037_808_7, 0.538_597_257_223_610_1)).fract()
+    (f64::from(sample) * DVec2::new(0.414_213_562_373_095_1, 0.236_067_977_499_789_7)).fract()
 }
 
 #[cfg(test)]

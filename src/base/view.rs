@@ -47,6 +47,9 @@ pub struct ViewUniform {
 /// about 1.5 * 2^-24 along a component.
 pub const CHORD_SLACK: f64 = 4e-7;
 
+/// A factor on the lens of cones. It is more than the rounding of a point of the lens in f32.
+const LENS_SLACK: f64 = 1.0 + 1e-6;
+
 /// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint
 /// is `grain0 + grain t`.
 ///
@@ -105,7 +108,7 @@ impl Lens {
     /// The largest chord between the rays of a place: the lens under the angle at which the plane
     /// of the focus sees it, by the same bound as the chord of a cone.
     pub fn spread(&self) -> f64 {
-        2.0 * self.radius / (2.0 * self.focus - self.radius)
+        2.0 * self.radius / (2.0 * self.focus - self.radius) * LENS_SLACK + CHORD_SLACK
     }
 
     /// The point of the unit lens at a share of it along the circumference and along the radius.
@@ -256,7 +259,7 @@ impl View {
             2.0
         };
         let cone = Beam::pinhole(u / n, k, self.grain / (n - h).max(1.0));
-        let r0 = self.lens.map_or(0.0, |lens| lens.radius);
+        let r0 = self.lens.map_or(0.0, |lens| LENS_SLACK * lens.radius);
         Beam { r0, ..cone }
     }
 }

@@ -227,8 +227,8 @@ impl<S: Solid> Run<'_, S> {
                 _ => hit.t as f32,
             };
             if let Some(all) = frame.work.get_mut(i) {
-                all.evaluations += work.evaluations;
-                all.iterations += work.iterations;
+                all.evaluations = all.evaluations.saturating_add(work.evaluations);
+                all.iterations = all.iterations.saturating_add(work.iterations);
             }
             set(hits, i, hit);
         })?;

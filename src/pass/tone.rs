@@ -18,7 +18,7 @@ pub const MOST_LEVEL: u16 = 16 * 255;
 /// The level of a display value from 0 to 1.
 pub fn level(shown: f64) -> u16 {
     // The cast saturates, and turns NaN into black.
-    (f64::from(MOST_LEVEL) * shown.min(1.0) + 0.5) as u16
+    (f64::from(MOST_LEVEL) * shown.clamp(0.0, 1.0) + 0.5) as u16
 }
 
 /// The byte of a level in a pixel. The order of the pixels is that of the R2 sequence

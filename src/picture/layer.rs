@@ -177,7 +177,7 @@ impl<'a> Shades<'a> {
                     *to = match is_dithered {
                         true => byte(level(value), [x as u32, y as u32]).into(),
                         // The cast saturates, and turns NaN into black.
-                        false => (value * f64::from(most) + 0.5).min(f64::from(most)) as u16,
+                        false => (f64::from(most) * value.clamp(0.0, 1.0) + 0.5) as u16,
                     };
                 }
             }

@@ -102,11 +102,12 @@ impl Plan {
             set.map_err(|why| Fault::new(&track.of, format!("{value:?} at beat {beat}: {why}")))?;
         }
         if let Some(pose) = self.pose_at(beat) {
-            still.camera.eye = pose.eye;
-            still.camera.target = pose.target();
-            // A level camera stays level.
-            if self.track("camera.up").is_some() {
-                still.camera.up = pose.up();
+            // What has no track stays: all poses share it.
+            let parts = [pose.eye, pose.target(), pose.up()];
+            for (of, part) in POSE.into_iter().zip(parts) {
+                if self.track(of).is_some() {
+                    *field(&mut still.camera, of) = part;
+                }
             }
             self.hold(&mut still.camera, beat);
         }
@@ -137,7 +138,8 @@ impl Plan {
                 Between::Smooth => 2,
                 _ => 1,
             })?;
-        let pose = |index: usize| self.key_pose(times[index]);
+        // What is held does not move on before its next key.
+        let pose = |index: usize| self.key_pose(times[index], from);
         let [here, there] = [pose(index), pose(index + 1)];
         Some(match between {
             Between::Smooth => {
@@ -160,7 +162,7 @@ impl Plan {
         let closed = looping
             && last > 1
             && times[last] - times[0] == length
-            && self.key_pose(times[0]) == self.key_pose(times[last]);
+            && self.key_pose(times[0], times[0]) == self.key_pose(times[last], times[last]);
         let step = times[index + 1] - times[index];
         let before = match index.checked_sub(1) {
             Some(i) => (times[i], i),
@@ -176,8 +178,9 @@ impl Plan {
     }
 
     /// The pose at a key of one of the camera's tracks. A track without a key there goes the way
-    /// between its own keys as a camera does, so that a key of another track does not bend it.
-    fn key_pose(&self, time: f64) -> Pose {
+    /// between its own keys as a camera does, so that a key of another track does not bend it. One
+    /// that holds its value from a time on keeps it.
+    fn key_pose(&self, time: f64, held: f64) -> Pose {
         let mut camera = self.key_camera(time);
         for track in POSE.iter().filter_map(|of| self.track(of)) {
             let index = track.index_at(time);
@@ -201,6 +204,7 @@ impl Plan {
                 _ => there.up(),
             };
         }
+        self.hold(&mut camera, held);
         Pose::new(camera.eye, camera.target, camera.up)
     }
 

@@ -103,8 +103,8 @@ impl Plan {
             "look" => self.look.keys(),
             "image" => keys![
                 "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
-                "samples" = count(&mut self.samples, 1, MOST_PIXEL_SAMPLES), "rays through each pixel, whose colours are averaged: 1 is quick and has jagged edges, 16 is smooth, 256 is for print";
-                "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower one has the same details, made small by its samples; auto is the picture's own height";
+                "samples" = count(&mut self.samples, 1, MOST_PIXEL_SAMPLES), "rays through each pixel, whose colours are averaged: 1 is quick and has jagged edges, 16 is smooth, 256 is for print" => March;
+                "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower one has the same details, made small by its samples; auto is the picture's own height" => March;
             ],
             "time" => self.time.keys(),
             _ => return None,
@@ -176,6 +176,7 @@ impl Plan {
         Viewpoint {
             eye: self.camera.eye,
             grain: view.view_ray_at([0, 0], DVec2::splat(-view.reach)).grain,
+            lens: view.lens.map_or(0.0, |lens| lens.radius),
             stepping: self.march.stepping(),
         }
     }

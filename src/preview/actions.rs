@@ -263,13 +263,14 @@ impl Live {
         let mut known = loaded.map_or_else(|_| self.document.saved().clone(), |p| p.plan);
         let mut now = self.shown();
         let mut line = format!("conemarch render {}", quoted(&name));
-        let others = |section: &&str| !["image", "time"].contains(section);
+        let others = |section: &&str| *section != "time";
         for section in SECTIONS.into_iter().filter(others) {
             let old = known.keys(section).unwrap_or_default();
             let new = now.keys(section).unwrap_or_default();
             for (old, new) in old.into_iter().zip(new) {
                 let value = new.slot.get();
-                if value != old.slot.get() {
+                // The size is that of the window.
+                if value != old.slot.get() && new.name != "size" {
                     let set = format!("{section}.{}={}", new.name, value);
                     line += &format!(" --set {}", quoted(&set));
                 }
@@ -342,10 +343,14 @@ impl Live {
             .pictures
             .finished()
             .filter(|f| f.plan.size == plan.size);
-        let shown = finished.and_then(|f| f.frame.depth.get(index).copied());
+        let shown = finished
+            .as_ref()
+            .and_then(|f| f.frame.depth.get(index).copied());
         let error = match (shown, exact.state) {
             (Some(t), State::Hit) if t.is_finite() => {
-                let ray = plan.view().view_ray(pixel);
+                let ray = finished
+                    .map_or(plan.view(), |f| f.plan.view())
+                    .view_ray(pixel);
                 let off = (f64::from(t) - exact.distance) / footprint(&ray, exact.distance);
                 format!("{off:+.3} footprints from the truth")
             }

@@ -72,7 +72,7 @@ impl Document {
             self.future.clear();
             if self.past.len() > MOST_STEPS {
                 self.past.remove(0);
-                self.saved_at = self.saved_at.saturating_sub(1);
+                self.saved_at = self.saved_at.checked_sub(1).unwrap_or(usize::MAX);
             }
         }
     }

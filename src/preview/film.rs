@@ -2,7 +2,7 @@
 
 use crate::preview::document::Document;
 use crate::preview::live::{Live, PANEL};
-use crate::preview::play::{overwrite, pose_at, remove};
+use crate::preview::play::{overwrite, pose_at, remove, shows_film};
 
 impl Live {
     /// Shows the moment of the film under the playhead.
@@ -16,8 +16,10 @@ impl Live {
 
     /// Undoes or redoes a step. If it changed tracks, the moment under the playhead is another one.
     pub fn go_back(&mut self, step: fn(&mut Document) -> bool) {
-        let tracks = self.document.plan.tracks.clone();
-        if step(&mut self.document) && tracks != self.document.plan.tracks {
+        let before = self.document.plan.clone();
+        // A step has the values of the moment at which it was made.
+        let film = shows_film(&before, self.play.beat);
+        if step(&mut self.document) && (film || before.tracks != self.document.plan.tracks) {
             self.show_moment();
         }
     }

@@ -272,9 +272,12 @@ impl Pictures {
         }
         let finished = self.fine.advance(FULL_SLICE_MS)?;
         let done = self.fine.work.as_ref().map_or(0.0, |w| w.progress().done);
-        // A first sample off the centre is no better than the full picture.
-        let more =
-            finished || (done >= self.refined + FINER && done * f64::from(plan.samples) > 2.0);
+        // A first sample off the centre is no better than the full picture. Of several blocks, the
+        // others would have no sample yet.
+        let pixels = u64::from(plan.size[0]) * u64::from(plan.size[1]);
+        let is_one_block = pixels <= u64::from(self.renderer.cutting.block).pow(2);
+        let is_finer = done >= self.refined + FINER && done * f64::from(plan.samples) > 2.0;
+        let more = finished || (is_one_block && is_finer);
         if more {
             self.refined = done;
         }

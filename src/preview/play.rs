@@ -44,11 +44,13 @@ impl Play {
     pub fn advance(&mut self, plan: &Plan, seconds: f64) {
         let [from, to] = self.range.unwrap_or([0.0, plan.time.length]);
         let beat = self.beat + plan.time.beats(seconds);
-        self.beat = match self.range.is_some() || plan.time.looping {
+        let to = to.min(plan.time.length);
+        let loops = self.range.is_some() || plan.time.looping;
+        self.beat = match loops {
             true => from + (beat - from).rem_euclid((to - from).max(SAME)),
             false => beat.min(to),
         };
-        self.playing &= self.beat < to;
+        self.playing &= loops || self.beat < to;
     }
 
     /// Goes to another frame, so many later.
@@ -173,6 +175,18 @@ pub fn remove(plan: &mut Plan, place: &Place) {
         track.keys.remove(index);
         plan.tracks.retain(|track| !track.keys.is_empty());
     }
+}
+
+/// Whether all settings with a track have the values of a moment of the film.
+pub fn shows_film(plan: &Plan, beat: f64) -> bool {
+    let moment = plan.at(beat);
+    !plan.tracks.is_empty()
+        && moment.is_ok_and(|moment| {
+            Plan {
+                tracks: plan.tracks.clone(),
+                ..moment
+            } == *plan
+        })
 }
 
 /// The plan to save while a moment of its film is shown. Settings with the values of that moment
@@ -313,6 +327,7 @@ mod tests {
         assert_eq!(pose_at(&mut plan, 3.0), None);
         let kept = with_still(&plan, &saved, 3.0);
         assert_eq!((&kept.camera, &kept.tracks), (&saved.camera, &plan.tracks));
+        assert!(shows_film(&plan, 3.0) && !shows_film(&plan, 2.0));
         // Another view is a new still.
         plan.camera.eye.x = 6.0;
         assert_eq!(with_still(&plan, &saved, 3.0), plan);

@@ -107,6 +107,13 @@ impl Distance {
         }
     }
 
+    /// The same for rays that start at most so far from the eye.
+    #[must_use]
+    pub fn through_lens(mut self, radius: f64) -> Self {
+        self.far += radius;
+        self
+    }
+
     /// The hit threshold of a beam at a distance.
     fn threshold(&self, beam: &Beam, t: f64) -> f64 {
         self.stepping.detail * footprint(beam, t)
@@ -276,7 +283,7 @@ impl Solid for Distance {
             } else {
                 self.evaluator.value(p, most).0.max(0.0)
             };
-            let trial = trial + 2.0 * eps;
+            let trial = trial + 2.0 * eps + cone.r0;
             let ball = match self.stepping.proven {
                 true => self.evaluator.ball(p, most, trial),
                 false => self.evaluator.cone(p, most, trial),

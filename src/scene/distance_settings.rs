@@ -26,7 +26,7 @@ impl DistanceSettings {
     /// The scene from a viewpoint.
     pub fn seen(&self, from: &Viewpoint) -> Distance {
         let formula = self.formula.clone();
-        Distance::new(formula, self.limit(from), from.eye, from.stepping)
+        Distance::new(formula, self.limit(from), from.eye, from.stepping).through_lens(from.lens)
     }
 
     /// The iteration limit: the given one, or as many as the finest footprint needs.

@@ -85,13 +85,13 @@ impl SceneSettings for HeightfieldSettings {
 
     fn solid(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
         let ready = assets.ready(self, from.grain)?;
-        let solid = Heightfield::new(ready, from.eye);
+        let solid = Heightfield::new(ready, from.eye).through_lens(from.lens);
         Ok(AnySolid::Heightfield(solid))
     }
 
     fn outline(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
         let ready = assets.outline(self, from.grain)?;
-        let solid = Heightfield::new(ready, from.eye);
+        let solid = Heightfield::new(ready, from.eye).through_lens(from.lens);
         Ok(AnySolid::Heightfield(solid))
     }
 
@@ -116,6 +116,14 @@ pub struct Heightfield {
 }
 
 impl Heightfield {
+    /// The same for rays that start at most so far from the eye.
+    #[must_use]
+    pub fn through_lens(mut self, radius: f64) -> Self {
+        self.far += radius;
+        self.slack += 5e-7 * radius / self.made.placement.units();
+        self
+    }
+
     /// A heightfield seen from an eye.
     pub fn new(made: Ready, eye: DVec3) -> Self {
         let place = &made.placement;

@@ -19,6 +19,8 @@ pub struct Viewpoint {
     pub eye: DVec3,
     /// Half a pixel's width at distance 1 in a corner of the image, where pixels are finest.
     pub grain: f64,
+    /// Radius of the lens about the eye; 0 for none.
+    pub lens: f64,
     /// How steps are taken.
     pub stepping: Stepping,
 }

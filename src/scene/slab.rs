@@ -66,7 +66,7 @@ impl SceneSettings for SlabSettings {
     }
 
     fn solid(&self, from: &Viewpoint, _: &Assets) -> Result<AnySolid, PrepareError> {
-        let slab = Slab::new(self, from.eye, from.stepping.rule);
+        let slab = Slab::new(self, from.eye, from.stepping.rule).through_lens(from.lens);
         Ok(AnySolid::Slab(slab))
     }
 }
@@ -85,6 +85,13 @@ pub struct Slab {
 }
 
 impl Slab {
+    /// The same for rays that start at most so far from the eye.
+    #[must_use]
+    pub fn through_lens(mut self, radius: f64) -> Self {
+        self.far += radius;
+        self
+    }
+
     /// A slab seen from an eye. The settings must pass [`SceneSettings::check`].
     pub fn new(settings: &SlabSettings, eye: DVec3, rule: ConeRule) -> Self {
         let (half, radius) = (settings.half, settings.radius);

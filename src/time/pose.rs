@@ -13,8 +13,8 @@
 //! (A general construction scheme for unit quaternion curves with simple high order derivatives,
 //! 1995), here of similarities. Its velocity at a pose is the harmonic mean of the mean velocities
 //! before and after (Fritsch and Butland, A method for constructing local monotone piecewise cubic
-//! interpolants, 1984). This is at most twice the slower one, so a camera swings no further than
-//! its keys, however unevenly they follow each other.
+//! interpolants, 1984). This is at most twice the slower one, so a camera does not swing out,
+//! however unevenly its keys follow each other.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 

@@ -122,6 +122,21 @@ fn tracks_of_one_camera_do_not_spoil_each_other() {
         assert_eq!(camera(&cut, beat).eye, 9.0 * eye, "{beat}");
     }
     assert!(camera(&cut, 3.0).target.z < camera(&cut, 6.0).target.z);
+    // Nor does the cut bend the way of the target before it.
+    let eye = "between = \"step\"\nkeys = [[0, [9, 0, 0]], [4, [-9, 0, 0]]]";
+    let target = "between = \"linear\"\nkeys = [[0, [0, 0, 0]], [4, [0, 0, 3]]]";
+    let cut = plan(eye, target);
+    for beat in [0.5, 2.0, 3.9] {
+        let target = camera(&cut, beat).target;
+        assert!(
+            target.y.abs() < 1e-9 && target.x.abs() < 1.0,
+            "{beat} {target}"
+        );
+    }
+    // What has no track keeps every bit.
+    let alone = "[scene]\nkind = \"slab\"\n[[track]]\nkey = \"camera.eye\"\nkeys = [[0, [9, 0, 1]], [4, [0, 8, 1]]]\n";
+    let alone = read(alone, "film").unwrap();
+    assert_eq!(camera(&alone, 1.7).target, DVec3::ZERO);
 }
 
 #[test]

@@ -121,7 +121,7 @@ fn cones_serve_all_samples() {
     // On a fractal, shades follow the last digits of a hit; their share is that of one sample.
     for (name, most) in [("mandelbox", 0.11), ("terrain", 1e-3), ("stones", 1e-3)] {
         let plan = sized(name, [160, 90]);
-        for (samples, aperture) in [(1, 0.0), (7, 0.0), (7, 0.02)] {
+        for (samples, aperture) in [(1, 0.0), (7, 0.0), (7, 0.02), (7, 0.25)] {
             let [cones, rays] = [32, 1].map(|coarsest| {
                 let mut plan = sampled(&plan, samples, coarsest);
                 plan.camera.aperture = aperture;
@@ -149,7 +149,21 @@ fn depth_normal_and_state_are_those_of_the_centre() {
             many.camera.aperture = aperture;
             let many = render(&many, EVERYTHING);
             assert!(one.depth == many.depth && one.state == many.state);
-            assert!(one.normal == many.normal && one.radiance != many.radiance);
+            assert!(one.radiance != many.radiance);
+            // The step of a difference follows the farthest point, which a lens moves away by its
+            // radius.
+            let pairs = one
+                .normal
+                .iter()
+                .flatten()
+                .zip(many.normal.iter().flatten());
+            let off = pairs.filter(|(a, b)| (*a - *b).abs() > 0.01).count();
+            let most = if aperture > 0.0 {
+                one.normal.len() / 100
+            } else {
+                0
+            };
+            assert!(off <= most, "{name}, {samples}, {aperture}: {off}");
             let sum = |frame: &Frame| frame.work_per_pixel().unwrap().0;
             let factor = sum(&many) / sum(&one) / f64::from(samples);
             // Behind a lens, the centre has a ray more.
@@ -168,7 +182,7 @@ fn both_executors_take_the_same_samples() {
     ] {
         let mut plan = sampled(&sized(name, [64, 36]), 6, coarsest);
         plan.camera.blades = blades;
-        plan.camera.aperture = if coarsest == 1 { 0.05 } else { 0.0 };
+        plan.camera.aperture = 0.05;
         let (gpu, cpu) = (render(&plan, EVERYTHING), on_cpu(&plan, EVERYTHING));
         let pairs = gpu
             .radiance

@@ -127,5 +127,5 @@ fn view_cone(cell: vec2<u32>, divisor: u32) -> Beam {
     }
     // |u| >= 1 for every ray, as the image plane is at distance 1.
     let nearest = max(1.0, n - h);
-    return Beam(vec3<f32>(0.0), u / n, view.lens, k, 0.0, view.grain / nearest);
+    return Beam(vec3<f32>(0.0), u / n, 1.000001 * view.lens, k, 0.0, view.grain / nearest);
 }

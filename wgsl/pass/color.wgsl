@@ -79,7 +79,7 @@ fn color(
     }
     if turn.stage.before > 0u {
         let sum = cell_pixel(index);
-        c = sum.rgb + turn.stage.weight * c;
+        c = sum.rgb + select(vec3<f32>(0.0), c, turn.stage.weight > 0.0);
         decided = min(decided, sum.a);
     }
     cell_store_pixel(index, vec4<f32>(c * turn.stage.scale, decided));

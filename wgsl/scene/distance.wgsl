@@ -161,7 +161,7 @@ fn advance(cone: Beam, at: Advance) -> Advance {
         if t == 0.0 {
             trial = max(f32(estimate(p, most)), 0.0);
         }
-        trial += 2.0 * eps;
+        trial += 2.0 * eps + cone.r0;
         var ball = 0.0;
         if DISTANCE_PROVEN {
             ball = f32(estimate_ball(p, most, real(trial)).y);

@@ -127,9 +127,15 @@ impl Job {
         let sample = self.visits - 1 - before;
         let is_last = sample == 0;
         stage.before = before;
-        stage.place = (0.5 + offset(sample)).as_vec2().to_array();
-        if !is_last {
-            stage.lens = lens_share(sample).as_vec2().to_array();
+        // The place takes some time to find.
+        if matches!(
+            self.kinds[index],
+            StageKind::Pass(Pass::Trace | Pass::Color)
+        ) {
+            stage.place = (0.5 + offset(sample)).as_vec2().to_array();
+            if !is_last {
+                stage.lens = lens_share(sample).as_vec2().to_array();
+            }
         }
         // Behind a lens, the centre counts for the depth alone.
         stage.weight = f32::from(u8::from(before < self.samples));
