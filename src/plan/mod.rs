@@ -200,8 +200,8 @@ impl Plan {
     }
 
     /// The plan as it is rendered. It has no maps and textures that only colours need, and a single
-    /// sample, if these extras ask for no colours. It has no cones where they do not pay, unless the plan says how
-    /// coarse they are; over heightfields they always pay.
+    /// sample, if these extras ask for no colours. It has no cones where they do not pay, unless the
+    /// plan says how coarse they are; over heightfields they always pay.
     pub fn resolved(&self, extras: Extras) -> Cow<'_, Self> {
         let mut plan = Cow::Borrowed(self);
         if let Some(scene) = self.scene.colorless()

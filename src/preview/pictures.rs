@@ -200,7 +200,8 @@ impl Pictures {
     /// [`Pictures::finished`] has then.
     ///
     /// # Errors
-    /// As [`Work::advance`](crate::gpu::work::Work::advance). Nothing more is tried until another plan comes.
+    /// As [`Work::advance`](crate::gpu::work::Work::advance). Nothing more is tried until another
+    /// plan comes.
     pub fn advance(&mut self) -> Result<bool, RenderError> {
         let advanced = self.try_advance();
         if advanced.is_err() {
