@@ -121,13 +121,15 @@ fn a_preset_that_is_no_file_is_refused_at_once() {
 /// A command that runs far longer than a test may, once it has begun.
 fn begun(folder: &Folder, args: &str, stderr: Stdio, is_begun: impl Fn() -> bool) -> Child {
     let mut command = folder.command(args);
-    // So that it takes as long on every machine.
-    command.env("RAYON_NUM_THREADS", "2");
+    // One thread, so that work is long enough on a machine of many cores too.
+    command.env("RAYON_NUM_THREADS", "1");
     let command = command.stdout(Stdio::null()).stderr(stderr);
-    let child = command.spawn().expect("the program starts");
+    let mut child = command.spawn().expect("the program starts");
     let start = Instant::now();
     while !is_begun() {
-        assert!(start.elapsed() < Duration::from_secs(60), "it never began");
+        let end = child.try_wait().expect("a state");
+        assert!(end.is_none(), "{args}: ended too soon, {end:?}");
+        assert!(start.elapsed() < Duration::from_secs(60), "{args}: stuck");
         sleep(Duration::from_millis(5));
     }
     child
@@ -196,13 +198,13 @@ fn long_work_tells_its_progress_in_lines() {
     let error = "render mandelbox --device cpu --size 800x600 --layer error";
     let steps = "bench steps bench-far terrain --mode truth --device cpu --size 3000x3000";
     let convert = "conemap convert map.png --from dummer -o m.exr";
-    let (rgba, zeros) = (ColorType::Rgba, vec![0; 1 << 26]);
-    let map = png([4096; 2], rgba, BitDepth::Eight, &zeros);
+    let (rgba, zeros) = (ColorType::Rgba, vec![0; 1 << 27]);
+    let map = png([8192, 4096], rgba, BitDepth::Eight, &zeros);
     for (args, says, part) in [
         (format!("{LONG} -o a.png").as_str(), "rendering: ", ""),
         (of_map, "rendering: ", "cone map by walk), about "),
         (error, "rendering the truth: ", "round 1 of at most 5, "),
-        ("conemap inspect fbm:4096x4096", "inspecting: ", ""),
+        ("conemap inspect fbm:8192x4096", "inspecting: ", ""),
         (convert, "converting: ", ""),
         (steps, "measuring bench-far (1 of 2), truth (1 of 1): ", ""),
     ] {
