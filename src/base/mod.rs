@@ -6,6 +6,7 @@
 //! - [`view`]: the camera's rays and cones
 //! - [`cone`]: how far an empty ball carries a cone
 //! - [`outcome`]: what a pixel is, and what it cost
+//! - [`filter`]: where the samples of a pixel are; [`random`]: numbers for their light
 //! - [`srgb`]: linear colours to and from sRGB
 //! - [`named`]: enums whose variants are chosen by a word
 //! - [`mod@clock`]: time; [`parallel`]: work over all cores
@@ -19,6 +20,7 @@ pub mod key;
 pub mod named;
 pub mod outcome;
 pub mod parallel;
+pub mod random;
 pub mod shader;
 pub mod srgb;
 pub mod units;

@@ -101,6 +101,7 @@ impl Task for Render<'_> {
             hits: Vec::new(),
             sample: 0,
             counts: true,
+            before: 0,
             undecided: Vec::new(),
         };
         // The cones serve all samples. The last one is that of the pixels' centres, whose depths stay.
@@ -113,6 +114,7 @@ impl Task for Render<'_> {
         for (nth, (sample, &pass)) in all.enumerate() {
             let at = nth.min(cones.len()) + usize::from(pass == Pass::Color);
             run.sample = sample;
+            run.before = plan.visits() - 1 - sample;
             // Behind a lens, the centre counts for the depth alone.
             run.counts = sample > 0 || plan.visits() == plan.samples;
             let start = clock();
@@ -156,6 +158,8 @@ struct Run<'a, S> {
     /// The sample, and whether its light counts.
     sample: u32,
     counts: bool,
+    /// Samples before it.
+    before: u32,
     /// Pixels with a shadow ray that reached its step limit.
     undecided: Vec<bool>,
 }
@@ -242,11 +246,17 @@ impl<S: Solid> Run<'_, S> {
         let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
         let (states, undecided) = (&self.frame.state, &mut self.undecided);
         undecided.resize(states.len(), false);
-        let counts = self.counts;
+        let (counts, before) = (self.counts, self.before);
         let one = |pixel: [u32; 2]| {
             let at = pixel[1] as usize * size[0] as usize + pixel[0] as usize;
             let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
-            color::color(solid, light, &ray(pixel), &hits[at], state)
+            color::color(
+                (solid, light),
+                (pixel, before),
+                &ray(pixel),
+                &hits[at],
+                state,
+            )
         };
         bands.over(size, one, |i, pixel| {
             for (sum, light) in radiance[i].iter_mut().zip(pixel.radiance.to_array()) {

@@ -6,7 +6,7 @@
 //! once.
 
 use crate::base::shader::Module;
-use crate::plan::look::Look;
+use crate::plan::look::{LightMode, Look};
 use crate::wgsl;
 
 /// Makes the enum of all features from one list: name, module, stand-in, predicate. A module that
@@ -49,3 +49,22 @@ features![
     Fog: wgsl!("pass/fog.wgsl").neutral(), wgsl!("pass/fog_off.wgsl"),
         |look| look.fog > 0.0;
 ];
+
+/// The modules of a look: how light is found, and its features.
+pub fn modules(look: &Look) -> Vec<Module> {
+    let followed = look.mode == LightMode::Path;
+    // Rays find shadows and hollows by themselves.
+    let serves =
+        |f: &&LookFeature| !followed || !matches!(f, LookFeature::Shadow | LookFeature::Occlusion);
+    let features = LookFeature::ALL.iter().filter(serves);
+    let mut all: Vec<Module> = features.map(|f| f.module(f.is_on(look))).collect();
+    match look.mode {
+        LightMode::Quick => all.push(wgsl!("pass/quick.wgsl")),
+        LightMode::Path => all.extend([
+            wgsl!("base/random.wgsl"),
+            wgsl!("pass/material.wgsl"),
+            wgsl!("pass/path.wgsl"),
+        ]),
+    }
+    all
+}

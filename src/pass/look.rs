@@ -4,13 +4,14 @@
 //! Twin: `wgsl/pass/look.wgsl`. Tone and sRGB have no twin: they are applied only where a
 //! picture is written.
 
-use bytemuck::{Pod, Zeroable};
+use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3, Vec4};
 
 use crate::base::srgb::linear;
 use crate::pass::LookFeature;
+use crate::pass::material::Substance;
 use crate::plan::Plan;
-use crate::plan::look::{Look, MOST_STOPS, SHADOW_STEPS};
+use crate::plan::look::{LightMode, Look, MOST_STOPS, PATH_STEPS, SHADOW_STEPS};
 use crate::scene::{AnySolid, MOST_SHADOW_STEPS};
 
 /// The look as WGSL reads it.
@@ -49,8 +50,10 @@ pub struct LookUniform {
     pub palette_cycles: f32,
     /// 1 to paint unconverged pixels in magenta.
     pub flag: u32,
-    /// Unused.
-    pub pad: [u32; 2],
+    /// The share of the lower sky's light that the ground sends back to surfaces.
+    pub ground: f32,
+    /// How often light goes from surface to surface before the last one, if it is followed.
+    pub bounces: u32,
     /// The palette's colours, linear.
     pub palette: [Vec4; MOST_STOPS],
 }
@@ -67,6 +70,8 @@ pub struct Light {
     pub shadow_steps: u32,
     /// Unit vector up.
     pub world_up: DVec3,
+    /// What surfaces are made of, if light is followed from one to another.
+    pub substance: Option<Substance>,
 }
 
 impl Light {
@@ -83,12 +88,17 @@ impl Light {
         look.light = look.light.normalize();
         look.occlusion_reach *= distance;
         look.fog /= distance;
-        let crossing = solid.twin().most_steps().unwrap_or(SHADOW_STEPS);
-        let auto = crossing.clamp(SHADOW_STEPS, MOST_SHADOW_STEPS);
+        let least = match look.mode {
+            LightMode::Quick => SHADOW_STEPS,
+            LightMode::Path => PATH_STEPS,
+        };
+        let crossing = solid.twin().most_steps().unwrap_or(least);
+        let auto = crossing.clamp(least, MOST_SHADOW_STEPS);
         Self {
             softness: look.light_size.to_radians().tan(),
             shadow_steps: look.shadow_steps.unwrap_or(auto),
             world_up: plan.camera.up.normalize(),
+            substance: (look.mode == LightMode::Path).then(|| Substance::of(&look)),
             look,
         }
     }
@@ -122,9 +132,17 @@ impl Light {
             stops: look.palette.len() as u32,
             palette_cycles: look.palette_cycles as f32,
             flag: u32::from(look.flag_unconverged),
-            pad: [0; 2],
+            ground: look.ground as f32,
+            bounces: look.bounces,
             palette,
         }
+    }
+
+    /// The bytes of the WGSL parameters: the look, and what surfaces are made of.
+    pub fn parameters(&self) -> Vec<u8> {
+        let material = self.substance.as_ref().map(Substance::uniform);
+        let material = material.unwrap_or(Zeroable::zeroed());
+        [bytes_of(&self.uniform()), bytes_of(&material)].concat()
     }
 
     /// Radiance of the sky in a direction.
@@ -133,6 +151,15 @@ impl Light {
         let blend = smoothstep(-0.6, 0.8, axis.dot(self.world_up));
         let near = axis.dot(look.light).max(0.0);
         look.sky_low.lerp(look.sky_high, blend) + look.light_color * (0.12 * near.powi(6))
+    }
+
+    /// Radiance that comes from the sky or the ground to a surface.
+    pub fn sky_light(&self, axis: DVec3) -> DVec3 {
+        let look = &self.look;
+        let blend = smoothstep(-0.6, 0.8, axis.dot(self.world_up));
+        let glow = 0.12 * axis.dot(look.light).max(0.0).powi(6);
+        let below = look.ground * look.sky_low;
+        look.fill * (below.lerp(look.sky_high, blend) + look.light_color * glow)
     }
 
     /// The palette at x: a triangle wave over evenly spaced colours.

@@ -4,7 +4,8 @@
 //! - [`march`]: the cones of one level; [`trace`]: one ray per pixel
 //! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits; [`layout`]: where
 //!   their results are
-//! - [`color`]: light and colour, with [`look`], [`shadow`], [`occlusion`] and [`fog`]
+//! - [`color`]: light and colour, with [`look`] and [`fog`]: by formulas, [`quick`] with [`shadow`]
+//!   and [`occlusion`], or by paths, [`path`] with [`material`]
 //! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone`]: from light to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
@@ -19,10 +20,13 @@ pub mod fog;
 pub mod layout;
 pub mod look;
 pub mod march;
+pub mod material;
 pub mod occlusion;
+pub mod path;
 pub mod pick;
 pub mod prepare;
 pub mod progress;
+pub mod quick;
 pub mod shadow;
 pub mod tone;
 pub mod trace;
@@ -47,8 +51,7 @@ pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Pro
     let entry = match pass {
         Pass::Color => {
             modules.push(wgsl!("pass/look.wgsl"));
-            let features = LookFeature::ALL.iter();
-            modules.extend(features.map(|f| f.module(f.is_on(&plan.look))));
+            modules.extend(features::modules(&plan.look));
             modules.push(wgsl!(
                 "pass/color.wgsl",
                 "COLOR_KEEPS_NORMALS" = f64::from(u8::from(extras.normals)),

@@ -2,33 +2,53 @@
 
 use glam::DVec3;
 
-use crate::base::key::{Fault, auto_count, number, switch, triple, triples};
+use crate::base::key::{Fault, auto_count, count, number, switch, triple, triples, word};
+use crate::base::named::named_enum;
 use crate::scene::MOST_SHADOW_STEPS;
 use crate::settings;
 
 /// Steps of a shadow ray where the scene does not say how many a ray can need. Only rays that
 /// pass close over long slopes of a fractal need more.
 pub const SHADOW_STEPS: u32 = 96;
+/// The same in mode path, whose rays go on where others end dark. They rarely need more than 200.
+pub const PATH_STEPS: u32 = 512;
 /// The largest number of colours in a palette.
 pub const MOST_STOPS: usize = 8;
+
+named_enum! {
+    /// How light is found.
+    #[derive(Default)]
+    pub enum LightMode {
+        /// By formulas.
+        #[default]
+        Quick = "quick",
+        /// By rays from surface to surface.
+        Path = "path",
+    }
+}
 
 settings! {
     /// How a picture looks. Colours are sRGB triples from 0 to 1.
     pub struct Look {
         light: DVec3 = DVec3::new(-0.3, -0.7, 0.75), triple(-1e6, 1e6), "direction to the light";
         light_color: DVec3 = DVec3::new(1.0, 0.90, 0.76), triple(0.0, 1.0), "colour of the light, sRGB";
+        mode: LightMode = LightMode::Quick, word(&LightMode::WORDS), "how light is found: quick by formulas, path by rays from surface to surface, whose noise goes away with many samples" => Program;
+        bounces: u32 = 2, count(0, 16), "in mode path, how often light goes from surface to surface before the last one; 0 for light of the sun and the sky alone, which near surfaces stop within occlusion_reach";
+        roughness: f64 = 0.45, number(0.05, 1.0), "in mode path, roughness of the surface: 0.05 is a polished one, 1 a dull one";
+        metal: f64 = 0.0, number(0.0, 1.0), "in mode path, 1 for metal, whose mirror has the colour of the surface, 0 for what is painted";
         key: f64 = 1.7, number(0.0, 100.0), "strength of the light";
         fill: f64 = 1.6, number(0.0, 100.0), "strength of the light from the sky";
+        ground: f64 = 0.45, number(0.0, 1.0), "share of the light of the lower sky that reaches surfaces: the ground absorbs the rest";
         shadow: bool = true, switch(), "whether the light casts shadows" => Program;
         light_size: f64 = 2.0, number(0.05, 45.0), "angular radius of the light in degrees; a larger one makes softer shadows";
         shadow_steps: Option<u32> = None, auto_count(1, MOST_SHADOW_STEPS),
-            "step limit of a shadow ray, which goes from a hit to the light; auto is 96 for a formula, and over a heightfield as many as a ray can need, from 96 to 2048; a formula allows at most 512";
+            "step limit of a ray from a hit to the light, in mode path also of one to another surface; auto is 96 for a formula, or 512 in mode path, and over a heightfield as many as a ray can need, up to 2048; a formula allows at most 512";
         occlusion: f64 = 1.0, number(0.0, 2.0), "strength of ambient occlusion, which darkens hollows; 0 for none" => Program;
         occlusion_reach: f64 = 0.05, number(1e-4, 1.0),
             "how far ambient occlusion looks for neighbours, as a share of the distance from eye to target";
         fog: f64 = 0.0, number(0.0, 20.0),
             "density of the fog: at the distance from eye to target, the share exp(-fog) of a colour is left; 0 for none" => Program;
-        gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights, 0 for none";
+        gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights, 0 for none; in mode path 0.08 is that of most materials but metal, 2 that of a mirror";
         sky_high: DVec3 = DVec3::new(0.30, 0.42, 0.58), triple(0.0, 1.0), "colour of the sky overhead, sRGB";
         sky_low: DVec3 = DVec3::new(0.80, 0.77, 0.73), triple(0.0, 1.0), "colour of the sky below, sRGB";
         palette: Vec<DVec3> = vec![

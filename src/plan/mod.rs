@@ -29,7 +29,7 @@ use crate::time::clock::Timing;
 use crate::time::track::Track;
 use camera::Camera;
 use cones::Probe;
-use look::Look;
+use look::{LightMode, Look};
 use march::Marching;
 use pyramid::Level;
 
@@ -133,14 +133,12 @@ impl Plan {
         self.check_tracks()
     }
 
-    /// The plan with one sample for each pixel, and with the details that this can show.
+    /// The plan with one sample for each pixel, with the details and the light that this can show.
     #[must_use]
     pub fn one_sample(&self) -> Self {
-        Self {
-            samples: 1,
-            reference: None,
-            ..self.clone()
-        }
+        let mut plan = self.clone();
+        (plan.samples, plan.reference, plan.look.mode) = (1, None, LightMode::Quick);
+        plan
     }
 
     /// The camera over the image.

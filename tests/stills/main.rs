@@ -19,6 +19,7 @@ mod common {
 }
 mod device;
 mod live;
+mod paths;
 mod samples;
 mod work;
 

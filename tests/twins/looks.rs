@@ -1,9 +1,11 @@
 //! Palette, sky, surfaces and their light agree.
 
-use bytemuck::bytes_of;
+use conemarch::base::random::{random_pair, random_seed};
 use conemarch::base::view::{Beam, footprint};
+use conemarch::pass::material::{Substance, material_frame};
 use conemarch::pass::{LookFeature, fog, occlusion, shadow};
 use conemarch::plan::Plan;
+use conemarch::plan::look::{LightMode, Look};
 use conemarch::scene::{Hit, Solid};
 use glam::DVec3;
 
@@ -16,11 +18,9 @@ use super::{balls, three};
 
 /// Adds the look of a plan to what a probe binds.
 fn with_look(mut probe: Probe, plan: &Plan) -> Probe {
-    let look = light(plan).uniform();
+    let look = light(plan).parameters();
     probe.modules.push(conemarch::wgsl!("pass/look.wgsl"));
-    probe
-        .parameters
-        .push(("look_parameters", bytes_of(&look).to_vec()));
+    probe.parameters.push(("look_parameters", look));
     probe
 }
 
@@ -57,6 +57,73 @@ fn palette_pigment_and_sky_agree() {
     });
     let moved = [("palette_at pigment_color", cycles), ("sky", sky)];
     twins.assert_agree("look", &probe(|_| ()), &moved);
+}
+
+#[test]
+fn materials_agree() {
+    let look = Look {
+        roughness: 0.3,
+        metal: 0.3,
+        mode: LightMode::Path,
+        ..Look::default()
+    };
+    let asked = questions(9, |random| {
+        let v = random.direction();
+        let v = DVec3::new(v.x, v.y, v.z.abs() + 0.05).normalize();
+        let albedo = DVec3::new(random.unit(), random.unit(), random.unit());
+        // Numbers that are floats of their own bits.
+        let mut bits = || f32::from_bits((random.unit() * 4000.0) as u32);
+        let whole = [bits(), bits(), bits(), bits()];
+        [four(v, random.unit()), four(albedo, 0.0), whole]
+    });
+    let substance = Substance::of(&look);
+    let quantities = [
+        ("random", 1e-9, Allowed(0.0, 0.0)),
+        ("scatter", 0.1, Allowed(1e-5, 1e-3)),
+        ("reflects density", 0.01, Allowed(1e-4, 1e-2)),
+        ("frame", 0.1, Allowed(1e-6, 1e-5)),
+    ];
+    let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+        let [x, y, sample, purpose] = q[2].map(f32::to_bits);
+        let numbers = random_pair(random_seed([x, y]), sample, purpose);
+        let (v, albedo) = (three(q[0]), three(q[1]));
+        let material = substance.material_at(albedo, v);
+        let l = substance.material_scatter(&material, v, numbers, f64::from(q[0][3]));
+        let up = DVec3::new(l.x, l.y, l.z.abs() + 0.01).normalize();
+        let (light, density) = substance.material_reflects(&material, v, up);
+        pairs.add("random", a[0][0], numbers.x);
+        pairs.add("random", a[0][1], numbers.y);
+        pairs.add("scatter", a[0][2], l.x);
+        pairs.add("scatter", a[0][3], l.y);
+        pairs.add("scatter", a[2][3], l.z);
+        pairs.add_vector("reflects", a[1], light);
+        pairs.add("density", a[1][3], density);
+        pairs.add_vector("frame", a[2], material_frame(v) * albedo);
+    });
+    let probe = |look: &Look| {
+        let mut plan = seen_from([4.0, -9.0, 6.0], scene("kind = 'slab'"));
+        plan.look = look.clone();
+        let modules = [
+            conemarch::wgsl!("base/random.wgsl"),
+            conemarch::wgsl!("pass/material.wgsl"),
+            probe!("material"),
+        ];
+        let bare = Probe {
+            modules: modules.to_vec(),
+            ..Probe::default()
+        };
+        with_look(bare, &plan)
+    };
+    let moved = |change: fn(&mut Look)| {
+        let mut look = look.clone();
+        change(&mut look);
+        probe(&look)
+    };
+    let moved = [
+        ("reflects", moved(|look| look.roughness *= 1.01)),
+        ("density", moved(|look| look.metal *= 1.05)),
+    ];
+    twins.assert_agree("material", &probe(&look), &moved);
 }
 
 #[test]

@@ -23,7 +23,10 @@ struct LookUniform {
     palette_cycles: f32,
     /// 1 to paint unconverged pixels in magenta.
     flag: u32,
-    pad: vec2<u32>,
+    /// The share of the lower sky's light that the ground sends back to surfaces.
+    ground: f32,
+    /// How often light goes from surface to surface before the last one, if it is followed.
+    bounces: u32,
     palette: array<vec4<f32>, 8>,
 }
 
@@ -35,11 +38,30 @@ struct Shadow {
     decided: bool,
 }
 
-@group(1) @binding(1) var<storage, read> look_parameters: LookUniform;
+/// What surfaces are made of (`material.wgsl`).
+struct MaterialUniform {
+    /// The square of the roughness.
+    alpha: f32,
+    /// 0 for a coat over a base, 1 for a bare metal.
+    metal: f32,
+    /// What the coat reflects of light along the normal.
+    specular: f32,
+    pad: u32,
+    /// Two directions each: the share of light that mirrors without absorption reflect, without and
+    /// with the factor (1 - v.h)^5. The square root of v.z goes from 0 to 1.
+    shares: array<vec4<f32>, 32>,
+}
+
+struct LookParameters {
+    look: LookUniform,
+    material: MaterialUniform,
+}
+
+@group(1) @binding(1) var<storage, read> look_parameters: LookParameters;
 var<private> look: LookUniform;
 
 fn look_load() {
-    look = look_parameters;
+    look = look_parameters.look;
 }
 
 fn sky(axis: vec3<f32>) -> vec3<f32> {
@@ -52,6 +74,14 @@ fn sky(axis: vec3<f32>) -> vec3<f32> {
     return c;
 }
 
+/// Radiance that comes from the sky or the ground to a surface.
+fn sky_light(axis: vec3<f32>) -> vec3<f32> {
+    let blend = smoothstep(-0.6, 0.8, dot(axis, look.world_up));
+    let glow = 0.12 * pow(max(0.0, dot(axis, look.light)), 6.0);
+    let c = mix(look.ground * look.sky_low, look.sky_high, blend) + look.light_color * glow;
+    return c * look.fill;
+}
+
 /// The palette at x. Its colours are evenly spaced from 0 to 1 and blended smoothly.
 fn palette_at(x: f32) -> vec3<f32> {
     let last = f32(look.stops - 1u);
@@ -62,8 +92,8 @@ fn palette_at(x: f32) -> vec3<f32> {
     let j = min(i + 1u, look.stops - 1u);
     let f = at - f32(i);
     // Not from the copy: an array with a variable index cannot be in registers.
-    let one = look_parameters.palette[i].rgb;
-    let two = look_parameters.palette[j].rgb;
+    let one = look_parameters.look.palette[i].rgb;
+    let two = look_parameters.look.palette[j].rgb;
     return mix(one, two, f * f * (3.0 - 2.0 * f));
 }
 

@@ -1,0 +1,115 @@
+//! Light by paths: a ray to a point of the sun's disc and a ray in a direction that the material
+//! chooses, from surface to surface. The mean over the samples is the light that a picture without
+//! such noise would have (Kajiya, The rendering equation, 1986). Twin: `wgsl/pass/path.wgsl`.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+
+use crate::base::outcome::Counts;
+use crate::base::random::{random_pair, random_seed};
+use crate::base::view::{Beam, footprint};
+use crate::pass::color::albedo_of;
+use crate::pass::look::Light;
+use crate::pass::material::{Substance, material_frame, material_turn};
+use crate::scene::{Hit, Solid, Step, Surface};
+
+/// Bounces after which a path may end by chance.
+const PATH_SURE: u32 = 2;
+
+/// A direction to a point of the sun, uniform over a disc across it.
+fn path_sun(light: &Light, pair: DVec2) -> DVec3 {
+    let across = light.softness * pair.y.sqrt() * material_turn(pair.x);
+    (material_frame(light.look.light) * across.extend(1.0)).normalize()
+}
+
+/// Follows a ray for `reach`. It is still moving if it reached its step limit.
+fn path_sight<S: Solid>(solid: &S, light: &Light, ray: &Beam, reach: f64) -> (Step, Hit) {
+    let work = &mut Counts::default();
+    let mut walk = solid.begin(ray, 0.0, reach, work);
+    let mut step = Step::Moving;
+    for _ in 0..light.shadow_steps {
+        step = solid.walk_step(ray, &mut walk, work);
+        if step != Step::Moving {
+            break;
+        }
+    }
+    (step, solid.walk_hit(&walk))
+}
+
+/// Radiance that leaves a surface towards the eye, by one path, and whether all its rays reached
+/// their ends.
+pub fn shade<S: Solid>(
+    (solid, light, substance): (&S, &Light, &Substance),
+    (pixel, before): ([u32; 2], u32),
+    ray: &Beam,
+    t: f64,
+    surface: &Surface,
+) -> (DVec3, bool) {
+    let look = &light.look;
+    let seed = random_seed(pixel);
+    // Half a pixel's width, also for later hits.
+    let grain = footprint(ray, t);
+    let lift = solid.shadow_lift(grain);
+    let far = 2.0 * solid.bounds_far();
+    // Without bounces, light of the sky is stopped by near surfaces only.
+    let reach = match look.bounces {
+        0 => look.occlusion_reach,
+        _ => far,
+    };
+    let (mut sum, mut through) = (DVec3::ZERO, DVec3::ONE);
+    let (mut at, mut point, mut axis) = (*surface, ray.at(t), ray.axis);
+    let mut decided = true;
+    for bounce in 0..=look.bounces {
+        let frame = material_frame(at.normal);
+        let local = frame.transpose() * -axis;
+        // A normal of a rough surface may face away.
+        let v = local.truncate().extend(local.z.max(1e-3)).normalize();
+        let albedo = albedo_of(solid, light, &at).min(DVec3::ONE);
+        let material = substance.material_at(albedo, v);
+        let to = |axis| Beam {
+            origin: point + lift * at.normal,
+            axis,
+            r0: 0.0,
+            k: 0.0,
+            grain0: grain,
+            grain: 0.0,
+        };
+        let sun = path_sun(light, random_pair(seed, before, 3 * bounce));
+        let to_sun = frame.transpose() * sun;
+        if to_sun.z > 0.0 && look.key > 0.0 {
+            let (step, _) = path_sight(solid, light, &to(sun), far);
+            if step == Step::Out {
+                let key = PI * look.key * look.light_color;
+                sum += through * substance.material_reflects(&material, v, to_sun).0 * key;
+            }
+            decided &= step != Step::Moving;
+        }
+        let choice = random_pair(seed, before, 3 * bounce + 1);
+        let pair = random_pair(seed, before, 3 * bounce + 2);
+        let l = substance.material_scatter(&material, v, pair, choice.x);
+        if l.z <= 0.0 {
+            break;
+        }
+        let (reflected, density) = substance.material_reflects(&material, v, l);
+        through *= reflected / density.max(1e-20);
+        if bounce >= PATH_SURE {
+            let stays = through.max_element().clamp(0.05, 1.0);
+            if choice.y >= stays {
+                break;
+            }
+            through /= stays;
+        }
+        let next = to(frame * l);
+        let (step, hit) = path_sight(solid, light, &next, reach);
+        if step == Step::Out {
+            sum += through * light.sky_light(next.axis);
+        }
+        decided &= step != Step::Moving;
+        if step != Step::Hit || bounce == look.bounces {
+            break;
+        }
+        (at, point, axis) = (solid.surface(&next, &hit), next.at(hit.t), next.axis);
+    }
+    (sum, decided)
+}

@@ -1,0 +1,149 @@
+//! Pictures whose light is followed from surface to surface.
+
+use conemarch::picture::frame::Frame;
+use conemarch::plan::look::LightMode;
+use conemarch::plan::{Extras, Plan};
+use glam::DVec3;
+
+use super::common::folder::Folder;
+use super::common::plans::{preset, sized};
+use super::work::bits;
+use crate::adapter::{EVERYTHING, HIT, both, on_cpu, render, render_cut};
+use conemarch::gpu::render::Cutting;
+
+/// The plan with paths.
+fn followed(mut plan: Plan, samples: u32) -> Plan {
+    plan.look.mode = LightMode::Path;
+    plan.samples = samples;
+    plan
+}
+
+/// Mean light of all pixels whose centres hit, and of their three channels.
+fn mean(frame: &Frame) -> f64 {
+    let hits = frame.radiance.iter().zip(&frame.state);
+    let hits = hits.filter(|(_, state)| **state == HIT);
+    let all: Vec<f64> = hits.flat_map(|(c, _)| c.map(f64::from)).collect();
+    all.iter().sum::<f64>() / all.len() as f64
+}
+
+/// A white relief in white light from all sides: nothing but its border can be seen.
+#[test]
+fn a_white_relief_in_white_light_is_white() {
+    let folder = Folder::new();
+    let white = folder.0.join("white.png");
+    image::RgbImage::from_pixel(4, 4, [255; 3].into())
+        .save(&white)
+        .expect("a file");
+    for (roughness, metal, gloss) in [
+        (0.45, 0.0, 0.0),
+        (0.05, 1.0, 0.08),
+        (0.3, 0.5, 0.5),
+        (1.0, 0.0, 0.08),
+    ] {
+        let texture = format!("scene.texture={}", white.display());
+        let mut plan = preset("terrain", &["scene.field=fbm:64x64", &texture]);
+        plan.size = [40, 24];
+        let look = &mut plan.look;
+        (look.sky_low, look.sky_high, look.light_color) = (DVec3::ONE, DVec3::ONE, DVec3::ZERO);
+        (look.fill, look.ground, look.fog, look.bounces) = (1.0, 1.0, 0.0, 16);
+        (look.roughness, look.metal, look.gloss) = (roughness, metal, gloss);
+        for frame in both(&followed(plan, 64)) {
+            let light = mean(&frame);
+            println!("{roughness} {metal} {gloss}: {light:.5}");
+            assert!(
+                (light - 1.0).abs() < 5e-3,
+                "{roughness} {metal} {gloss}: {light}"
+            );
+        }
+    }
+}
+
+/// On a body without hollows, a dull surface under a small sun is as bright as the formula says.
+#[test]
+fn the_sun_shines_once() {
+    let mut plan = sized("terrain", [48, 27]);
+    plan.look.gloss = 0.0;
+    plan.look.fill = 0.0;
+    plan.look.light_size = 0.05;
+    plan.look.bounces = 0;
+    let [quick, path] = [LightMode::Quick, LightMode::Path].map(|mode| {
+        let mut plan = followed(plan.clone(), 16);
+        plan.look.mode = mode;
+        mean(&render(&plan, Extras::default()))
+    });
+    println!("{quick} {path}");
+    assert!((path / quick - 1.0).abs() < 5e-3, "{quick} {path}");
+}
+
+/// The variance of the mean of n independent samples is 1/n of that of one, and less where they are
+/// spread evenly.
+#[test]
+fn noise_falls_with_the_samples() {
+    let mut plan = sized("mandelbox-hall", [32, 18]);
+    // Many samples of the fine details are needed too: shade no finer ones than the pixel's.
+    plan.reference = None;
+    let fine = render(&followed(plan.clone(), 2048), Extras::default());
+    let squares = |frame: &Frame| {
+        let pairs = frame
+            .radiance
+            .iter()
+            .flatten()
+            .zip(fine.radiance.iter().flatten());
+        pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / (3.0 * 32.0 * 18.0)
+    };
+    let errors =
+        [4, 16, 64].map(|n| squares(&render(&followed(plan.clone(), n), Extras::default())));
+    println!("{errors:?}");
+    let slope = (errors[2] / errors[0]).log(16.0);
+    assert!(slope < -1.0, "{slope}");
+}
+
+#[test]
+fn both_executors_find_the_same_light() {
+    for name in ["mandelbox", "mandelbox-hall", "terrain", "stones"] {
+        let plan = followed(sized(name, [48, 27]), 8);
+        let [gpu, cpu] = both(&plan);
+        let pairs = gpu.radiance.iter().zip(&cpu.radiance);
+        let off = pairs.map(|(a, b)| (0..3).map(|c| f64::from(a[c] - b[c])).sum::<f64>());
+        let off: Vec<f64> = off.collect();
+        let n = off.len() as f64;
+        let mean = off.iter().sum::<f64>() / n;
+        let spread = off.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
+        let error = (spread / n).sqrt();
+        println!("{name}: {mean:.2e} of {error:.2e}");
+        assert!(mean.abs() <= 3.0 * error, "{name}: {mean} {error}");
+        // Most paths are the same on both.
+        let same = off.iter().filter(|x| x.abs() < 0.02).count() as f64;
+        assert!(same > 0.7 * n, "{name}: {same} of {n}");
+    }
+}
+
+#[test]
+fn paths_are_the_same_in_blocks_and_slices() {
+    let plan = followed(sized("mandelbox-gate", [70, 44]), 3);
+    let whole = bits(&render(&plan, EVERYTHING));
+    let cutting = Cutting {
+        block: 32,
+        chunk: 5,
+        ..Cutting::default()
+    };
+    assert!(whole == bits(&render_cut(&plan, EVERYTHING, cutting)));
+}
+
+/// Who looks at the quick light while they work gets about the same picture.
+#[test]
+fn quick_light_is_about_as_bright() {
+    for name in ["mandelbox", "mandelbox-canyon", "terrain", "stones"] {
+        let mut plan = followed(sized(name, [48, 27]), 32);
+        // The quick light has no mirror image of the sky.
+        plan.look.gloss = 0.0;
+        let path = mean(&render(&plan, Extras::default()));
+        plan.look.mode = LightMode::Quick;
+        let quick = mean(&on_cpu(&plan, Extras::default()));
+        println!("{name}: {quick:.3} {path:.3}");
+        assert!(
+            (0.7..1.5).contains(&(path / quick)),
+            "{name}: {quick} {path}"
+        );
+    }
+}

@@ -1,0 +1,98 @@
+// Light by paths: a ray to a point of the sun's disc and a ray in a direction that the material
+// chooses, from surface to surface. The mean over the samples is the light that a picture without
+// such noise would have (Kajiya, The rendering equation, 1986).
+
+/// Bounces after which a path may end by chance.
+const PATH_SURE = 2u;
+
+/// What a ray between surfaces met, and its walk.
+struct Sight {
+    state: u32,
+    hit: Hit,
+}
+
+/// Follows a ray for `reach`.
+fn path_sight(ray: Beam, reach: f32) -> Sight {
+    var walk = begin(ray, 0.0, reach);
+    var s = STATE_UNCONVERGED;
+    for (var i = 0u; i < look.shadow_steps; i++) {
+        let now = walk_step(ray, &walk);
+        if now != STATE_MOVING {
+            s = now;
+            break;
+        }
+    }
+    return Sight(s, walk_hit(walk));
+}
+
+/// A direction to a point of the sun, uniform over a disc across it.
+fn path_sun(pair: vec2<f32>) -> vec3<f32> {
+    let across = look.softness * sqrt(pair.y) * material_turn(pair.x);
+    return normalize(material_frame(look.light) * vec3<f32>(across, 1.0));
+}
+
+/// Radiance that leaves a hit towards the eye, and 0 if a ray reached its step limit, else 1. `q` is
+/// the hit relative to the eye, `grain` half a pixel's width there, also for later hits.
+fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2<u32>) -> vec4<f32> {
+    let seed = random_seed(pixel);
+    let lift = shadow_lift(grain);
+    // Without bounces, light of the sky is stopped by near surfaces only.
+    let far = 2.0 * bounds_far();
+    let reach = select(far, look.occlusion_reach, look.bounces == 0u);
+    var light = vec3<f32>(0.0);
+    var through = vec3<f32>(1.0);
+    var at = surface_seen;
+    var point = q;
+    var axis = ray.axis;
+    var decided = 1.0;
+    for (var bounce = 0u; bounce <= look.bounces; bounce++) {
+        let frame = material_frame(at.normal);
+        var v = -axis * frame;
+        // A normal of a rough surface may face away.
+        v = normalize(vec3<f32>(v.xy, max(v.z, 1e-3)));
+        let material = material_at(min(albedo_of(at), vec3<f32>(1.0)), v);
+        let start = point + lift * at.normal;
+        let sun = path_sun(random_pair(seed, turn.stage.before, 3u * bounce));
+        let to_sun = sun * frame;
+        if to_sun.z > 0.0 && look.key > 0.0 {
+            let sight = path_sight(Beam(start, sun, 0.0, 0.0, grain, 0.0), far);
+            if sight.state == STATE_SKY {
+                let key = PI * look.key * look.light_color;
+                light += through * material_reflects(material, v, to_sun).rgb * key;
+            }
+            decided = select(decided, 0.0, sight.state == STATE_UNCONVERGED);
+        }
+        let choice = random_pair(seed, turn.stage.before, 3u * bounce + 1u);
+        let pair = random_pair(seed, turn.stage.before, 3u * bounce + 2u);
+        let l = material_scatter(material, v, pair, choice.x);
+        if l.z <= 0.0 {
+            break;
+        }
+        let reflected = material_reflects(material, v, l);
+        through *= reflected.rgb / max(reflected.w, 1e-20);
+        if bounce >= PATH_SURE {
+            let stays = clamp(max(through.r, max(through.g, through.b)), 0.05, 1.0);
+            if choice.y >= stays {
+                break;
+            }
+            through /= stays;
+        }
+        let next = Beam(start, frame * l, 0.0, 0.0, grain, 0.0);
+        let sight = path_sight(next, reach);
+        if sight.state == STATE_SKY {
+            light += through * sky_light(next.axis);
+            break;
+        }
+        if sight.state == STATE_UNCONVERGED {
+            decided = 0.0;
+            break;
+        }
+        if bounce == look.bounces {
+            break;
+        }
+        at = surface(next, sight.hit);
+        point = next.origin + sight.hit.t * next.axis;
+        axis = next.axis;
+    }
+    return vec4<f32>(light, decided);
+}

@@ -1,0 +1,31 @@
+// Light by formulas: key light with a soft shadow, and light from the sky and from the ground with
+// occlusion. `path.wgsl` takes its place where light is followed by rays.
+
+/// Radiance that leaves a hit towards the eye, and 0 if the shadow ray reached its step limit,
+/// else 1. `q` is the hit relative to the eye, `grain` half a pixel's width there.
+fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32, pixel: vec2<u32>) -> vec4<f32> {
+    let n = surface.normal;
+    let albedo = albedo_of(surface);
+    let facing = dot(n, look.light);
+    // A surface that faces away is dark: it needs no shadow ray.
+    var light = Shadow(0.0, true);
+    if facing > 0.0 {
+        light = shadow(q, n, grain);
+    }
+    let lit = facing * light.open;
+    let open = occlusion(q, n, grain);
+    // From 0 for a surface that faces down to 1 for one that faces up. The ground absorbs
+    // a part of the light of the lower sky.
+    let up = 0.5 + 0.5 * dot(n, look.world_up);
+    let ambient = mix(look.ground * look.sky_low, look.sky_high, up) * look.fill;
+    // Light from lit neighbours: warm, from below.
+    let bounce = look.light_color * (0.12 * look.fill * (1.0 - up));
+    var c = albedo * (look.light_color * (look.key * lit) + (ambient + bounce) * open);
+    // Zero where the ray goes straight to the light. There is no direction then.
+    let between = look.light - ray.axis;
+    let half_way = between / max(length(between), 1e-20);
+    // A narrow Blinn-Phong highlight.
+    let shine = pow(max(0.0, dot(n, half_way)), 40.0);
+    c += look.light_color * (look.gloss * lit * shine);
+    return vec4<f32>(c, select(0.0, 1.0, light.decided));
+}
