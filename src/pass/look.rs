@@ -4,12 +4,12 @@
 //! Twin: `wgsl/pass/look.wgsl`. Tone and sRGB have no twin: they are applied only where a
 //! picture is written.
 
-use bytemuck::{Pod, Zeroable, bytes_of};
+use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
 
 use crate::base::srgb::linear;
 use crate::pass::LookFeature;
-use crate::pass::material::Substance;
+use crate::pass::material::{MaterialUniform, Substance};
 use crate::plan::Plan;
 use crate::plan::look::{LightMode, Look, MOST_STOPS, PATH_STEPS, SHADOW_STEPS};
 use crate::scene::{AnySolid, MOST_SHADOW_STEPS};
@@ -56,6 +56,16 @@ pub struct LookUniform {
     pub bounces: u32,
     /// The palette's colours, linear.
     pub palette: [Vec4; MOST_STOPS],
+}
+
+/// The parameters of the colour pass as WGSL reads them.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct LookParameters {
+    /// The look.
+    pub look: LookUniform,
+    /// What surfaces are made of; zeros where light is found by formulas.
+    pub material: MaterialUniform,
 }
 
 /// A [`Look`] in the numbers that passes use.
@@ -108,8 +118,7 @@ impl Light {
         feature.is_on(&self.look)
     }
 
-    /// The values of the WGSL struct.
-    pub fn uniform(&self) -> LookUniform {
+    fn uniform(&self) -> LookUniform {
         let look = &self.look;
         let mut palette = [Vec4::W; MOST_STOPS];
         for (to, from) in palette.iter_mut().zip(&look.palette) {
@@ -138,11 +147,13 @@ impl Light {
         }
     }
 
-    /// The bytes of the WGSL parameters: the look, and what surfaces are made of.
-    pub fn parameters(&self) -> Vec<u8> {
+    /// The values of the WGSL parameters.
+    pub fn parameters(&self) -> LookParameters {
         let material = self.substance.as_ref().map(Substance::uniform);
-        let material = material.unwrap_or(Zeroable::zeroed());
-        [bytes_of(&self.uniform()), bytes_of(&material)].concat()
+        LookParameters {
+            look: self.uniform(),
+            material: material.unwrap_or(Zeroable::zeroed()),
+        }
     }
 
     /// Radiance of the sky in a direction.

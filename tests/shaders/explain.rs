@@ -221,6 +221,7 @@ fn the_mandelbox_is_explained() {
         wgsl/pass/look.wgsl
         wgsl/pass/shadow.wgsl
         wgsl/pass/occlusion.wgsl
+        wgsl/pass/quick.wgsl
         wgsl/pass/color.wgsl  COLOR_KEEPS_NORMALS=0  COLOR_IS_PIGMENT=0
     ");
 }

@@ -9,6 +9,7 @@ use conemarch::formula::Formula;
 use conemarch::pass::LookFeature;
 use conemarch::pass::pick;
 use conemarch::pass::turn::{self, StageKind};
+use conemarch::plan::look::LightMode;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
@@ -98,6 +99,11 @@ fn plans() -> Vec<Plan> {
                 one.march.mode = *mode;
                 for (at, feature) in LookFeature::ALL.iter().enumerate() {
                     switch(&mut one, *feature, look & (1 << at) > 0);
+                }
+                if *mode == plan.march.mode {
+                    let mut followed = one.clone();
+                    followed.look.mode = LightMode::Path;
+                    all.push(followed);
                 }
                 all.push(one);
             }

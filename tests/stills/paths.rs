@@ -42,12 +42,12 @@ fn a_white_relief_in_white_light_is_white() {
     ] {
         let texture = format!("scene.texture={}", white.display());
         let mut plan = preset("terrain", &["scene.field=fbm:64x64", &texture]);
-        plan.size = [40, 24];
+        plan.size = [32, 18];
         let look = &mut plan.look;
         (look.sky_low, look.sky_high, look.light_color) = (DVec3::ONE, DVec3::ONE, DVec3::ZERO);
         (look.fill, look.ground, look.fog, look.bounces) = (1.0, 1.0, 0.0, 16);
         (look.roughness, look.metal, look.gloss) = (roughness, metal, gloss);
-        for frame in both(&followed(plan, 64)) {
+        for frame in both(&followed(plan, 16)) {
             let light = mean(&frame);
             println!("{roughness} {metal} {gloss}: {light:.5}");
             assert!(
@@ -82,7 +82,7 @@ fn noise_falls_with_the_samples() {
     let mut plan = sized("mandelbox-hall", [32, 18]);
     // Many samples of the fine details are needed too: shade no finer ones than the pixel's.
     plan.reference = None;
-    let fine = render(&followed(plan.clone(), 2048), Extras::default());
+    let fine = render(&followed(plan.clone(), 1024), Extras::default());
     let squares = |frame: &Frame| {
         let pairs = frame
             .radiance

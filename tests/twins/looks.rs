@@ -1,5 +1,6 @@
 //! Palette, sky, surfaces and their light agree.
 
+use bytemuck::bytes_of;
 use conemarch::base::random::{random_pair, random_seed};
 use conemarch::base::view::{Beam, footprint};
 use conemarch::pass::material::{Substance, material_frame};
@@ -18,7 +19,7 @@ use super::{balls, three};
 
 /// Adds the look of a plan to what a probe binds.
 fn with_look(mut probe: Probe, plan: &Plan) -> Probe {
-    let look = light(plan).parameters();
+    let look = bytes_of(&light(plan).parameters()).to_vec();
     probe.modules.push(conemarch::wgsl!("pass/look.wgsl"));
     probe.parameters.push(("look_parameters", look));
     probe

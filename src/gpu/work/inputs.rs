@@ -202,7 +202,7 @@ impl FrameRequest {
         let Self { plan, extras, .. } = self;
         let (scene, needs) = (draft.scene, draft.needs);
         let marched = marched(plan, &scene);
-        let look = Light::of(plan, &scene).parameters();
+        let look = bytes_of(&Light::of(plan, &scene).parameters()).to_vec();
         let mut parameters = marched.clone();
         parameters.push(("look_parameters", look.clone()));
         if needs.picture.is_some() {
