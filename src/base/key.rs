@@ -324,6 +324,22 @@ pub fn triple(at: &mut DVec3, low: f64, high: f64) -> impl Slot {
     Place::new(at, expects, write, read).of(Kind::Triple([low, high]))
 }
 
+/// Three numbers, each in a closed range, or `"auto"`, which is stored as `None`.
+pub fn auto_triple(at: &mut Option<DVec3>, low: f64, high: f64) -> impl Slot {
+    let range = from_to(low, high);
+    let expects = format!("\"auto\" or three numbers like [1, 2, 3], each {range}");
+    let write = |p: &Option<DVec3>| match p {
+        Some(p) => p.to_array().to_vec().into(),
+        None => "auto".into(),
+    };
+    let read = move |v: &Value| match v.as_str() {
+        Some("auto") => Some(None),
+        _ => triple_in(v, low, high).map(Some),
+    };
+    let kind = Kind::Auto(Box::new(Kind::Triple([low, high])));
+    Place::new(at, expects, write, read).of(kind)
+}
+
 /// The values of a list of 1 to `most`.
 fn list<T>(value: &Value, most: usize, read: impl Fn(&Value) -> Option<T>) -> Option<Vec<T>> {
     let list = value.as_array().filter(|a| (1..=most).contains(&a.len()));

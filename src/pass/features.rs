@@ -45,6 +45,12 @@ features![
     /// Ambient occlusion.
     Occlusion: wgsl!("pass/occlusion.wgsl").neutral(), wgsl!("pass/occlusion_off.wgsl"),
         |look| look.occlusion > 0.0;
+    /// Light of the lamp.
+    Lamp: wgsl!("pass/lamp.wgsl").neutral(), wgsl!("pass/lamp_off.wgsl"),
+        |look| look.lamp > 0.0;
+    /// Light of the surface itself.
+    Emission: wgsl!("pass/emission.wgsl").neutral(), wgsl!("pass/emission_off.wgsl"),
+        |look| look.emission > 0.0;
     /// Exponential fog.
     Fog: wgsl!("pass/fog.wgsl").neutral(), wgsl!("pass/fog_off.wgsl"),
         |look| look.fog > 0.0;

@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3, Vec4};
 
 use crate::base::srgb::linear;
 use crate::pass::LookFeature;
+use crate::pass::lamp::Lamp;
 use crate::pass::material::{MaterialUniform, Substance};
 use crate::plan::Plan;
 use crate::plan::look::{LightMode, Look, MOST_STOPS, PATH_STEPS, SHADOW_STEPS};
@@ -54,6 +55,18 @@ pub struct LookUniform {
     pub ground: f32,
     /// How often light goes from surface to surface before the last one, if it is followed.
     pub bounces: u32,
+    /// The lamp relative to the eye.
+    pub lamp_at: Vec3,
+    /// Its radius.
+    pub lamp_size: f32,
+    /// Its colour times its strength at distance 1.
+    pub lamp: Vec3,
+    /// How near the trap the glow ends.
+    pub emission_width: f32,
+    /// Colour times strength of the glow.
+    pub emission: Vec3,
+    /// The trap that glows, from 0 to 2.
+    pub emission_trap: u32,
     /// The palette's colours, linear.
     pub palette: [Vec4; MOST_STOPS],
 }
@@ -72,7 +85,8 @@ pub struct LookParameters {
 #[derive(Clone, Debug)]
 pub struct Light {
     /// The look with linear colours, a light direction of length 1, and lengths in the world:
-    /// `occlusion_reach` is one, `fog` is per unit of length.
+    /// `occlusion_reach` and `lamp_size` are some, `fog` is per unit of length, and the lamp's
+    /// strength is that at distance 1.
     pub look: Look,
     /// Tangent of the light's angular radius.
     pub softness: f64,
@@ -80,6 +94,8 @@ pub struct Light {
     pub shadow_steps: u32,
     /// Unit vector up.
     pub world_up: DVec3,
+    /// The lamp relative to the eye.
+    pub lamp_at: DVec3,
     /// What surfaces are made of, if light is followed from one to another.
     pub substance: Option<Substance>,
 }
@@ -88,7 +104,13 @@ impl Light {
     /// The light of a plan over its scene.
     pub fn of(plan: &Plan, solid: &AnySolid) -> Self {
         let mut look = plan.look.clone();
-        let colors = [&mut look.light_color, &mut look.sky_high, &mut look.sky_low];
+        let colors = [
+            &mut look.light_color,
+            &mut look.lamp_color,
+            &mut look.emission_color,
+            &mut look.sky_high,
+            &mut look.sky_low,
+        ];
         for color in colors.into_iter().chain(&mut look.palette) {
             *color = linear(*color);
         }
@@ -96,6 +118,8 @@ impl Light {
         let stops = look.palette.len().clamp(1, MOST_STOPS);
         look.palette.resize(stops, DVec3::ZERO);
         look.light = look.light.normalize();
+        look.lamp_size *= distance;
+        look.lamp *= distance * distance;
         look.occlusion_reach *= distance;
         look.fog /= distance;
         let least = match look.mode {
@@ -108,8 +132,18 @@ impl Light {
             softness: look.light_size.to_radians().tan(),
             shadow_steps: look.shadow_steps.unwrap_or(auto),
             world_up: plan.camera.up.normalize(),
+            lamp_at: look.lamp_at.map_or(DVec3::ZERO, |at| at - plan.camera.eye),
             substance: (look.mode == LightMode::Path).then(|| Substance::of(&look)),
             look,
+        }
+    }
+
+    /// The sun over a scene in which nothing is farther than `far` from the eye.
+    pub fn sun(&self, far: f64) -> Lamp {
+        Lamp {
+            axis: self.look.light,
+            far: 2.0 * far,
+            softness: self.softness,
         }
     }
 
@@ -143,6 +177,12 @@ impl Light {
             flag: u32::from(look.flag_unconverged),
             ground: look.ground as f32,
             bounces: look.bounces,
+            lamp_at: self.lamp_at.as_vec3(),
+            lamp_size: look.lamp_size as f32,
+            lamp: (look.lamp * look.lamp_color).as_vec3(),
+            emission_width: look.emission_width as f32,
+            emission: (look.emission * look.emission_color).as_vec3(),
+            emission_trap: look.emission_trap as u32,
             palette,
         }
     }

@@ -5,7 +5,7 @@
 //! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits; [`layout`]: where
 //!   their results are
 //! - [`color`]: light and colour, with [`look`] and [`fog`]: by formulas, [`quick`] with [`shadow`]
-//!   and [`occlusion`], or by paths, [`path`] with [`material`]
+//!   and [`occlusion`], or by paths, [`path`] with [`material`]; [`lamp`] and [`emission`] for both
 //! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone`]: from light to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
@@ -14,9 +14,11 @@
 //! Each pass declares its program ([`program`]), and [`layout`] where its results are.
 
 pub mod color;
+pub mod emission;
 mod explain;
 pub mod features;
 pub mod fog;
+pub mod lamp;
 pub mod layout;
 pub mod look;
 pub mod march;

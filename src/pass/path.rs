@@ -1,4 +1,4 @@
-//! Light by paths: a ray to a point of the sun's disc and a ray in a direction that the material
+//! Light by paths: rays to a point of the sun and of the lamp, and a ray in a direction that the material
 //! chooses, from surface to surface. The mean over the samples is the light that a picture without
 //! such noise would have (Kajiya, The rendering equation, 1986). Twin: `wgsl/pass/path.wgsl`.
 
@@ -10,6 +10,8 @@ use crate::base::outcome::Counts;
 use crate::base::random::{random_pair, random_seed};
 use crate::base::view::{Beam, footprint};
 use crate::pass::color::albedo_of;
+use crate::pass::emission::emission;
+use crate::pass::lamp::{Lamp, lamp_from, lamp_light};
 use crate::pass::look::Light;
 use crate::pass::material::{Substance, material_frame, material_turn};
 use crate::scene::{Hit, Solid, Step, Surface};
@@ -17,10 +19,10 @@ use crate::scene::{Hit, Solid, Step, Surface};
 /// Bounces after which a path may end by chance.
 const PATH_SURE: u32 = 2;
 
-/// A direction to a point of the sun, uniform over a disc across it.
-fn path_sun(light: &Light, pair: DVec2) -> DVec3 {
-    let across = light.softness * pair.y.sqrt() * material_turn(pair.x);
-    (material_frame(light.look.light) * across.extend(1.0)).normalize()
+/// A direction to a point of a light, uniform over a disc across it.
+fn path_toward(lamp: &Lamp, pair: DVec2) -> DVec3 {
+    let across = lamp.softness * pair.y.sqrt() * material_turn(pair.x);
+    (material_frame(lamp.axis) * across.extend(1.0)).normalize()
 }
 
 /// Follows a ray for `reach`. It is still moving if it reached its step limit.
@@ -75,18 +77,25 @@ pub fn shade<S: Solid>(
             grain0: grain,
             grain: 0.0,
         };
-        let sun = path_sun(light, random_pair(seed, before, 3 * bounce));
-        let to_sun = frame.transpose() * sun;
-        if to_sun.z > 0.0 && look.key > 0.0 {
-            let (step, _) = path_sight(solid, light, &to(sun), far);
+        sum += through * emission(solid, light, &at);
+        let sun = (light.sun(solid.bounds_far()), look.key * look.light_color);
+        let lamp = lamp_from(light, to(DVec3::Z).origin);
+        let lamp = lamp.map(|lamp| (lamp, lamp_light(light, lamp.far)));
+        for (nth, (lamp, strength)) in (0..).zip([sun].into_iter().chain(lamp)) {
+            let toward = path_toward(&lamp, random_pair(seed, before, 4 * bounce + nth));
+            let l = frame.transpose() * toward;
+            if l.z <= 0.0 || strength == DVec3::ZERO {
+                continue;
+            }
+            let (step, _) = path_sight(solid, light, &to(toward), lamp.far);
             if step == Step::Out {
-                let key = PI * look.key * look.light_color;
-                sum += through * substance.material_reflects(&material, v, to_sun).0 * key;
+                let reflected = substance.material_reflects(&material, v, l).0;
+                sum += through * reflected * (PI * strength);
             }
             decided &= step != Step::Moving;
         }
-        let choice = random_pair(seed, before, 3 * bounce + 1);
-        let pair = random_pair(seed, before, 3 * bounce + 2);
+        let choice = random_pair(seed, before, 4 * bounce + 2);
+        let pair = random_pair(seed, before, 4 * bounce + 3);
         let l = substance.material_scatter(&material, v, pair, choice.x);
         if l.z <= 0.0 {
             break;

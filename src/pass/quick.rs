@@ -5,6 +5,8 @@ use glam::DVec3;
 
 use crate::base::view::{Beam, footprint};
 use crate::pass::color::albedo_of;
+use crate::pass::emission::emission;
+use crate::pass::lamp::{lamp_from, lamp_light};
 use crate::pass::look::Light;
 use crate::pass::occlusion;
 use crate::pass::shadow::{self, Shadow};
@@ -23,8 +25,9 @@ pub fn shade<S: Solid>(
     let albedo = albedo_of(solid, light, surface);
     let facing = n.dot(look.light);
     // A surface that faces away is dark: it needs no shadow ray.
+    let sun = light.sun(solid.bounds_far());
     let key = if facing > 0.0 {
-        shadow::shadow(solid, light, q, n, grain)
+        shadow::shadow((solid, light), q, n, grain, &sun)
     } else {
         Shadow::NONE
     };
@@ -36,7 +39,15 @@ pub fn shade<S: Solid>(
     let bounce = look.light_color * (0.12 * look.fill * (1.0 - up));
     let half_way = (look.light - ray.axis).normalize_or_zero();
     let shine = n.dot(half_way).max(0.0).powi(40);
-    let c = albedo * (look.light_color * (look.key * lit) + (ambient + bounce) * open)
+    let mut decided = key.decided;
+    let mut c = albedo * (look.light_color * (look.key * lit) + (ambient + bounce) * open)
         + look.light_color * (look.gloss * lit * shine);
-    (c, key.decided)
+    if let Some(lamp) = lamp_from(light, q)
+        && n.dot(lamp.axis) > 0.0
+    {
+        let near = shadow::shadow((solid, light), q, n, grain, &lamp);
+        c += albedo * (n.dot(lamp.axis) * near.open) * lamp_light(light, lamp.far);
+        decided &= near.decided;
+    }
+    (c + emission(solid, light, surface), decided)
 }

@@ -1,4 +1,4 @@
-//! The soft shadow of the key light. A ray goes from the point to the light: a hit is full
+//! The soft shadow of a light. A ray goes from the point to the light: a hit is full
 //! shadow, and the narrowest empty ball on the way gives the penumbra.
 //! Twins: `wgsl/pass/shadow.wgsl`, `shadow_off.wgsl`.
 
@@ -7,6 +7,7 @@ use glam::DVec3;
 use crate::base::outcome::Counts;
 use crate::base::view::Beam;
 use crate::pass::LookFeature;
+use crate::pass::lamp::Lamp;
 use crate::pass::look::{Light, smoothstep};
 use crate::scene::{Solid, Step};
 
@@ -28,20 +29,26 @@ impl Shadow {
 }
 
 /// Follows a ray from a point to the light. `grain` is half a pixel's width at the point.
-pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain: f64) -> Shadow {
+pub fn shadow<S: Solid>(
+    (solid, light): (&S, &Light),
+    q: DVec3,
+    normal: DVec3,
+    grain: f64,
+    lamp: &Lamp,
+) -> Shadow {
     if !light.has(LookFeature::Shadow) {
         return Shadow::NONE;
     }
     let ray = Beam {
         origin: q + solid.shadow_lift(grain) * normal,
-        axis: light.look.light,
+        axis: lamp.axis,
         r0: 0.0,
         k: 0.0,
         grain0: grain,
         grain: 0.0,
     };
     let work = &mut Counts::default();
-    let mut walk = solid.begin(&ray, 0.0, 2.0 * solid.bounds_far(), work);
+    let mut walk = solid.begin(&ray, 0.0, lamp.far, work);
     let mut open = 1.0_f64;
     let mut decided = false;
     for _ in 0..light.shadow_steps {
@@ -55,7 +62,7 @@ pub fn shadow<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain
         }
         let t = solid.walk_hit(&walk).t;
         if t > 4.0 * grain {
-            open = open.min(solid.walk_radius(&ray, &walk) / (light.softness * t));
+            open = open.min(solid.walk_radius(&ray, &walk) / (lamp.softness * t));
         }
     }
     Shadow {

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use crate::base::key::{Fault, auto_count, count, number, switch, triple, triples, word};
+use crate::base::key::{
+    Fault, auto_count, auto_triple, count, number, switch, triple, triples, word,
+};
 use crate::base::named::named_enum;
 use crate::scene::MOST_SHADOW_STEPS;
 use crate::settings;
@@ -27,6 +29,20 @@ named_enum! {
     }
 }
 
+named_enum! {
+    /// An orbit trap: what the iterated point comes near to.
+    #[derive(Default)]
+    pub enum Trap {
+        /// The origin.
+        Origin = "origin",
+        /// The coordinate planes.
+        #[default]
+        Plane = "plane",
+        /// The sphere that ball folds keep.
+        Sphere = "sphere",
+    }
+}
+
 settings! {
     /// How a picture looks. Colours are sRGB triples from 0 to 1.
     pub struct Look {
@@ -38,6 +54,14 @@ settings! {
         metal: f64 = 0.0, number(0.0, 1.0), "in mode path, 1 for metal, whose mirror has the colour of the surface, 0 for what is painted";
         key: f64 = 1.7, number(0.0, 100.0), "strength of the light";
         fill: f64 = 1.6, number(0.0, 100.0), "strength of the light from the sky";
+        lamp: f64 = 0.0, number(0.0, 1e6), "strength of a lamp in the scene, 0 for none: a white wall that faces it at the distance from eye to target has this radiance, and at a tenth of it a hundred times more" => Program;
+        lamp_at: Option<DVec3> = None, auto_triple(-1e9, 1e9), "position of the lamp; auto is the eye";
+        lamp_color: DVec3 = DVec3::new(1.0, 0.72, 0.42), triple(0.0, 1.0), "colour of the lamp, sRGB";
+        lamp_size: f64 = 0.005, number(1e-4, 1.0), "radius of the lamp as a share of the distance from eye to target; a larger one makes softer shadows";
+        emission: f64 = 0.0, number(0.0, 1e4), "light that the surface itself sends out where its trap is near, 0 for none" => Program;
+        emission_trap: Trap = Trap::Plane, word(&Trap::WORDS), "the orbit trap of a formula that glows; over a heightfield, origin is the lowest ground";
+        emission_width: f64 = 0.1, number(0.001, 1.0), "how near the trap the glow ends";
+        emission_color: DVec3 = DVec3::new(1.0, 0.35, 0.08), triple(0.0, 1.0), "colour of the glow, sRGB";
         ground: f64 = 0.45, number(0.0, 1.0), "share of the light of the lower sky that reaches surfaces: the ground absorbs the rest";
         shadow: bool = true, switch(), "whether the light casts shadows" => Program;
         light_size: f64 = 2.0, number(0.05, 45.0), "angular radius of the light in degrees; a larger one makes softer shadows";

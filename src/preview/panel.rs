@@ -280,6 +280,7 @@ fn auto(
                 Value::Integer(i64::from((*low).max(16).min(*high)))
             }
             (false, Kind::Number([low, high])) => Value::Float(1.0_f64.clamp(*low, *high)),
+            (false, Kind::Triple([low, high])) => vec![0.0_f64.clamp(*low, *high); 3].into(),
             _ => return None,
         });
     }

@@ -6,9 +6,11 @@ fn answer(q: Numbers) -> Numbers {
     let ray = Beam(vec3<f32>(0.0), q.b.xyz, 0.0, 0.0, 0.0, q.b.w);
     let at = surface(ray, Hit(q.a.w, 0u, vec2<f32>(0.0)));
     let grain = footprint(ray, q.a.w);
+    let sun = Lamp(look.light, 2.0 * bounds_far(), look.softness);
+    let near = lamp_from(q.a.xyz);
     return Numbers(
-        vec4<f32>(at.normal, shadow(q.a.xyz, q.c.xyz, grain).open),
+        vec4<f32>(at.normal, shadow(q.a.xyz, q.c.xyz, grain, sun).open),
         vec4<f32>(at.pigment, occlusion(q.a.xyz, q.c.xyz, grain)),
-        vec4<f32>(fog(vec3<f32>(0.2, 0.5, 0.9), q.b.xyz, q.a.w), 0.0),
+        vec4<f32>(fog(vec3<f32>(0.2, 0.5, 0.9), q.b.xyz, q.a.w), near.softness),
     );
 }

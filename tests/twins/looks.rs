@@ -3,6 +3,7 @@
 use bytemuck::bytes_of;
 use conemarch::base::random::{random_pair, random_seed};
 use conemarch::base::view::{Beam, footprint};
+use conemarch::pass::lamp::lamp_from;
 use conemarch::pass::material::{Substance, material_frame};
 use conemarch::pass::{LookFeature, fog, occlusion, shadow};
 use conemarch::plan::Plan;
@@ -132,6 +133,7 @@ fn surfaces_and_their_light_agree() {
     let eye = DVec3::new(1.0, -6.0, 2.5);
     let mut plan = seen_from(eye, distance(balls(1.0), Some(1)));
     plan.look.fog = 1.0;
+    plan.look.lamp = 1.0;
     plan.look.light_size = 20.0;
     plan.look.occlusion_reach = 0.3;
     let asked = questions(8, |random| {
@@ -148,6 +150,7 @@ fn surfaces_and_their_light_agree() {
         ("shadow", 0.1, Allowed(1e-6, 5e-5)),
         ("occlusion", 0.1, Allowed(1e-5, 1e-4)),
         ("fog", 0.1, Allowed(1e-6, 1e-5)),
+        ("lamp", 0.01, Allowed(1e-6, 1e-5)),
     ];
     let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
         let ray = Beam {
@@ -164,7 +167,9 @@ fn surfaces_and_their_light_agree() {
         };
         let at = scene.surface(&ray, &hit);
         let (point, normal, grain) = (three(q[0]), three(q[2]), footprint(&ray, t));
-        let shaded = shadow::shadow(&scene, &light, point, normal, grain).open;
+        let sun = light.sun(scene.bounds_far());
+        let shaded = shadow::shadow((&scene, &light), point, normal, grain, &sun).open;
+        let near = lamp_from(&light, point).expect("a lamp");
         let hidden = occlusion::occlusion(&scene, &light, point, normal, grain);
         let fogged = fog::fog(&light, DVec3::new(0.2, 0.5, 0.9), ray.axis, t);
         pairs.add_vector("normal", a[0], at.normal);
@@ -172,6 +177,7 @@ fn surfaces_and_their_light_agree() {
         pairs.add("shadow", a[0][3], shaded);
         pairs.add("occlusion", a[1][3], hidden);
         pairs.add_vector("fog", a[2], fogged);
+        pairs.add("lamp", a[2][3], near.softness);
     });
     let probe = |change| {
         let plan = changed(&plan, change);
@@ -188,6 +194,7 @@ fn surfaces_and_their_light_agree() {
         ("shadow", probe(|p| p.look.light_size *= MOVED)),
         ("occlusion", probe(|p| p.look.occlusion *= MOVED)),
         ("fog", probe(|p| p.look.fog *= MOVED)),
+        ("lamp", probe(|p| p.look.lamp_size *= MOVED)),
     ];
     twins.assert_agree("balls", &probe(|_| ()), &moved);
 }

@@ -13,6 +13,11 @@ fn albedo_of(surface: Surface) -> vec3<f32> {
     return pigment_color(surface.pigment);
 }
 
+/// The light of the surface itself. A linear colour is no trap.
+fn emission_of(surface: Surface) -> vec3<f32> {
+    return select(emission(surface.pigment), vec3<f32>(0.0), COLOR_IS_PIGMENT);
+}
+
 @compute @workgroup_size(64)
 fn color(
     @builtin(workgroup_id) group: vec3<u32>,

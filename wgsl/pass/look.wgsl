@@ -13,7 +13,7 @@ struct LookUniform {
     /// Specular share.
     gloss: f32,
     world_up: vec3<f32>,
-    /// Tangent of the light's angular radius.
+    /// Tangent of the sun's angular radius.
     softness: f32,
     /// Length over which occlusion looks for neighbours.
     occlusion_reach: f32,
@@ -27,7 +27,25 @@ struct LookUniform {
     ground: f32,
     /// How often light goes from surface to surface before the last one, if it is followed.
     bounces: u32,
+    /// The lamp relative to the eye, and its radius.
+    lamp_at: vec3<f32>,
+    lamp_size: f32,
+    /// Its colour times its strength at distance 1.
+    lamp: vec3<f32>,
+    /// How near the trap the glow ends.
+    emission_width: f32,
+    emission: vec3<f32>,
+    /// The trap that glows, from 0 to 2.
+    emission_trap: u32,
     palette: array<vec4<f32>, 8>,
+}
+
+/// A light as a point sees it: the direction to it, its distance, and the tangent of its angular
+/// radius.
+struct Lamp {
+    axis: vec3<f32>,
+    far: f32,
+    softness: f32,
 }
 
 /// What a shadow ray found.

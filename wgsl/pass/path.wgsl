@@ -1,4 +1,4 @@
-// Light by paths: a ray to a point of the sun's disc and a ray in a direction that the material
+// Light by paths: rays to a point of the sun and of the lamp, and a ray in a direction that the material
 // chooses, from surface to surface. The mean over the samples is the light that a picture without
 // such noise would have (Kajiya, The rendering equation, 1986).
 
@@ -25,10 +25,10 @@ fn path_sight(ray: Beam, reach: f32) -> Sight {
     return Sight(s, walk_hit(walk));
 }
 
-/// A direction to a point of the sun, uniform over a disc across it.
-fn path_sun(pair: vec2<f32>) -> vec3<f32> {
-    let across = look.softness * sqrt(pair.y) * material_turn(pair.x);
-    return normalize(material_frame(look.light) * vec3<f32>(across, 1.0));
+/// A direction to a point of a light, uniform over a disc across it.
+fn path_toward(lamp: Lamp, pair: vec2<f32>) -> vec3<f32> {
+    let across = lamp.softness * sqrt(pair.y) * material_turn(pair.x);
+    return normalize(material_frame(lamp.axis) * vec3<f32>(across, 1.0));
 }
 
 /// Radiance that leaves a hit towards the eye, and 0 if a ray reached its step limit, else 1. `q` is
@@ -52,18 +52,31 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
         v = normalize(vec3<f32>(v.xy, max(v.z, 1e-3)));
         let material = material_at(min(albedo_of(at), vec3<f32>(1.0)), v);
         let start = point + lift * at.normal;
-        let sun = path_sun(random_pair(seed, turn.stage.before, 3u * bounce));
-        let to_sun = sun * frame;
-        if to_sun.z > 0.0 && look.key > 0.0 {
-            let sight = path_sight(Beam(start, sun, 0.0, 0.0, grain, 0.0), far);
+        light += through * emission_of(at);
+        for (var nth = 0u; nth < 2u; nth++) {
+            var lamp = Lamp(look.light, far, look.softness);
+            var strength = look.key * look.light_color;
+            if nth == 1u {
+                lamp = lamp_from(start);
+                strength = lamp_light(lamp.far);
+            }
+            if all(strength == vec3<f32>(0.0)) {
+                continue;
+            }
+            let pair = random_pair(seed, turn.stage.before, 4u * bounce + nth);
+            let toward = path_toward(lamp, pair);
+            let l = toward * frame;
+            if l.z <= 0.0 {
+                continue;
+            }
+            let sight = path_sight(Beam(start, toward, 0.0, 0.0, grain, 0.0), lamp.far);
             if sight.state == STATE_SKY {
-                let key = PI * look.key * look.light_color;
-                light += through * material_reflects(material, v, to_sun).rgb * key;
+                light += through * material_reflects(material, v, l).rgb * (PI * strength);
             }
             decided = select(decided, 0.0, sight.state == STATE_UNCONVERGED);
         }
-        let choice = random_pair(seed, turn.stage.before, 3u * bounce + 1u);
-        let pair = random_pair(seed, turn.stage.before, 3u * bounce + 2u);
+        let choice = random_pair(seed, turn.stage.before, 4u * bounce + 2u);
+        let pair = random_pair(seed, turn.stage.before, 4u * bounce + 3u);
         let l = material_scatter(material, v, pair, choice.x);
         if l.z <= 0.0 {
             break;

@@ -10,7 +10,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32, pixel: vec2<u32>
     // A surface that faces away is dark: it needs no shadow ray.
     var light = Shadow(0.0, true);
     if facing > 0.0 {
-        light = shadow(q, n, grain);
+        light = shadow(q, n, grain, Lamp(look.light, 2.0 * bounds_far(), look.softness));
     }
     let lit = facing * light.open;
     let open = occlusion(q, n, grain);
@@ -27,5 +27,13 @@ fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32, pixel: vec2<u32>
     // A narrow Blinn-Phong highlight.
     let shine = pow(max(0.0, dot(n, half_way)), 40.0);
     c += look.light_color * (look.gloss * lit * shine);
+    let lamp = lamp_from(q);
+    let to_lamp = dot(n, lamp.axis);
+    if to_lamp > 0.0 {
+        let near = shadow(q, n, grain, lamp);
+        c += albedo * (to_lamp * near.open) * lamp_light(lamp.far);
+        light.decided &= near.decided;
+    }
+    c += emission_of(surface);
     return vec4<f32>(c, select(0.0, 1.0, light.decided));
 }

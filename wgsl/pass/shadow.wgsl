@@ -1,9 +1,9 @@
-// The soft shadow of the key light. A ray goes from the point to the light: a hit is full
+// The soft shadow of a light. A ray goes from the point to the light: a hit is full
 // shadow, and the narrowest empty ball on the way gives the penumbra.
 
-fn shadow(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> Shadow {
-    let ray = Beam(q + shadow_lift(grain) * normal, look.light, 0.0, 0.0, grain, 0.0);
-    var walk = begin(ray, 0.0, 2.0 * bounds_far());
+fn shadow(q: vec3<f32>, normal: vec3<f32>, grain: f32, lamp: Lamp) -> Shadow {
+    let ray = Beam(q + shadow_lift(grain) * normal, lamp.axis, 0.0, 0.0, grain, 0.0);
+    var walk = begin(ray, 0.0, lamp.far);
     var open = 1.0;
     var decided = false;
     for (var i = 0u; i < look.shadow_steps; i++) {
@@ -16,7 +16,7 @@ fn shadow(q: vec3<f32>, normal: vec3<f32>, grain: f32) -> Shadow {
             break;
         }
         if walk.t > 4.0 * grain {
-            open = min(open, walk_radius(ray, walk) / (look.softness * walk.t));
+            open = min(open, walk_radius(ray, walk) / (lamp.softness * walk.t));
         }
     }
     return Shadow(smoothstep(0.0, 1.0, open), decided);

@@ -1,0 +1,15 @@
+// The light of a lamp in the scene: a small ball that shines evenly, weaker by the square of the
+// distance.
+
+/// The lamp as a point sees it.
+fn lamp_from(q: vec3<f32>) -> Lamp {
+    let way = look.lamp_at - q;
+    // Not inside it.
+    let far = max(length(way), look.lamp_size);
+    return Lamp(way / far, far, look.lamp_size / far);
+}
+
+/// Radiance of a white wall that faces the lamp at a distance.
+fn lamp_light(far: f32) -> vec3<f32> {
+    return look.lamp / (far * far);
+}
