@@ -67,7 +67,7 @@ pub fn color<S: Solid>(solid: &S, light: &Light, ray: &Beam, hit: &Hit, state: S
     }
     let surface = solid.surface(ray, hit);
     let (mut c, decided) = shade(solid, light, ray, hit.t, &surface);
-    c = fog::fog(light, c, ray.axis, hit.t);
+    c = fog::fog(light, c, ray, hit.t);
     if light.look.flag_unconverged && (state == State::Unconverged || !decided) {
         c = DVec3::new(1.0, 0.0, 1.0);
     }

@@ -49,8 +49,10 @@ pub struct LookUniform {
     pub palette_cycles: f32,
     /// 1 to paint unconverged pixels in magenta.
     pub flag: u32,
-    /// Unused.
-    pub pad: [u32; 2],
+    /// Scale heights of the fog per unit of length; 0 for fog of one density.
+    pub fog_rise: f32,
+    /// How many of them the eye is above the fog's level.
+    pub fog_start: f32,
     /// The palette's colours, linear.
     pub palette: [Vec4; MOST_STOPS],
 }
@@ -67,6 +69,10 @@ pub struct Light {
     pub shadow_steps: u32,
     /// Unit vector up.
     pub world_up: DVec3,
+    /// Scale heights of the fog per unit of length; 0 for fog of one density.
+    pub fog_rise: f64,
+    /// How many of them the eye is above the fog's level.
+    pub fog_start: f64,
 }
 
 impl Light {
@@ -83,12 +89,23 @@ impl Light {
         look.light = look.light.normalize();
         look.occlusion_reach *= distance;
         look.fog /= distance;
+        let world_up = plan.camera.up.normalize();
+        let above =
+            (plan.camera.eye - plan.camera.target).dot(world_up) - look.fog_level * distance;
+        let thins = LookFeature::FogHeight.is_on(&look);
+        let fog_rise = if thins {
+            1.0 / (look.fog_height.max(1e-6) * distance)
+        } else {
+            0.0
+        };
         let crossing = solid.twin().most_steps().unwrap_or(SHADOW_STEPS);
         let auto = crossing.clamp(SHADOW_STEPS, MOST_SHADOW_STEPS);
         Self {
             softness: look.light_size.to_radians().tan(),
             shadow_steps: look.shadow_steps.unwrap_or(auto),
-            world_up: plan.camera.up.normalize(),
+            world_up,
+            fog_rise,
+            fog_start: fog_rise * above,
             look,
         }
     }
@@ -122,7 +139,8 @@ impl Light {
             stops: look.palette.len() as u32,
             palette_cycles: look.palette_cycles as f32,
             flag: u32::from(look.flag_unconverged),
-            pad: [0; 2],
+            fog_rise: self.fog_rise as f32,
+            fog_start: self.fog_start as f32,
             palette,
         }
     }

@@ -155,7 +155,7 @@ pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     let of_plans = plans.flat_map(|plan| {
         let solid = outline(&plan, &assets);
         let passes = programs_of(&plan, &solid).into_iter();
-        passes.chain([pick::program(&solid)])
+        passes.chain([pick::program(&plan.view(), &solid)])
     });
     for program in map_programs()
         .into_iter()

@@ -70,7 +70,7 @@ fn color(
         // An unconverged ray is lit where it stopped, mostly close to a surface.
         let grain = footprint(ray, hit.t);
         let shaded = shade(ray, ray.origin + hit.t * ray.axis, at, grain);
-        c = fog(shaded.rgb, ray.axis, hit.t);
+        c = fog(shaded.rgb, ray, hit.t);
         decided = shaded.w;
         n = at.normal;
         if look.flag == 1u && (s == STATE_UNCONVERGED || decided == 0.0) {

@@ -23,7 +23,10 @@ struct LookUniform {
     palette_cycles: f32,
     /// 1 to paint unconverged pixels in magenta.
     flag: u32,
-    pad: vec2<u32>,
+    /// Scale heights of the fog per unit of length, 0 for fog of one density, and how many of
+    /// them the eye is above the fog's level.
+    fog_rise: f32,
+    fog_start: f32,
     palette: array<vec4<f32>, 8>,
 }
 
