@@ -23,12 +23,14 @@ use common::overclaims::{brought_near, overclaims};
 use common::plans::{camera, compared, preset, sized};
 use common::solved::{balls, cameras, rays, slab, solids, solved};
 use conemarch::base::outcome::Counts;
+use conemarch::base::projection::Projection;
 use conemarch::gpu::render::Cutting;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::scene::Scene;
+use glam::DVec3;
 
 /// Asserts that no cell of a render claims too much; says how near they bring rays.
 fn assert_sound(plan: &Plan, what: &str) -> f64 {
@@ -84,6 +86,55 @@ fn no_cell_starts_behind_a_surface_in_large_images() {
     assert_sound(&balls(0.05, &wide, [1366, 768]), "wide and close");
 }
 
+#[test]
+fn no_cell_starts_behind_a_surface_in_any_projection() {
+    for (word, projection) in &Projection::WORDS[1..] {
+        let mut most = 0.0_f64;
+        for (n, camera) in cameras().iter().enumerate() {
+            for fov in [1.0, 48.5, 170.0, 360.0] {
+                if fov > projection.widest() {
+                    continue;
+                }
+                let camera = Camera {
+                    fov,
+                    projection: *projection,
+                    ..camera.clone()
+                };
+                for size in [[1, 1], [33, 17], [1, 400], [400, 200]] {
+                    let what = format!("{word}, camera {n}, fov {fov}, {size:?}");
+                    let near = assert_sound(&balls(0.05, &camera, size), &what);
+                    most = most.max(near);
+                    assert_sound(&slab(&camera, size), &format!("slab, {what}"));
+                }
+            }
+        }
+        // Nor do cells keep to the truth by claiming next to nothing.
+        assert!(most > 0.9, "{word}: {most}");
+    }
+}
+
+/// The disc of a slab has its radius in a view from above by parallel rays.
+#[test]
+fn parallel_rays_keep_sizes() {
+    let above = Camera {
+        projection: Projection::Orthographic,
+        up: DVec3::Y,
+        ..camera([0.0, 0.0, 30.0], [0.0, 0.0, 0.0])
+    };
+    let mut plan = slab(&above, [400, 300]);
+    plan.scene = common::plans::scene("kind = 'slab'\nnormal = [0, 0, 1]\nhalf = 0.5\nradius = 6");
+    for frame in [render(&plan, LEVELS), on_cpu(&plan, LEVELS)] {
+        let pixel = 2.0 * 30.0 * (0.5 * plan.camera.fov.to_radians()).tan() / 300.0;
+        let area = frame.census()[1] as f64 * pixel * pixel;
+        assert!(
+            (area / (36.0 * std::f64::consts::PI) - 1.0).abs() < 2e-3,
+            "{area}"
+        );
+        let flat = |t: &f32| t.is_infinite() || (*t - 29.5).abs() < 1e-4;
+        assert!(frame.depth.iter().all(flat));
+    }
+}
+
 /// The rule of the 2012 slides leaves gaps, and both counts must find them: they can.
 #[test]
 fn the_rule_of_the_slides_is_caught() {
@@ -98,6 +149,13 @@ fn the_rule_of_the_slides_is_caught() {
         assert!(found > 100, "{:?}", report.start_violations);
         assert!(report.behind > 0.001, "{}", report.behind);
     }
+}
+
+/// A built-in plan by another projection.
+fn projected(name: &str, size: [u32; 2], projection: Projection) -> Plan {
+    let mut plan = sized(name, size);
+    plan.camera.projection = projection;
+    plan
 }
 
 /// Every number of a frame but times, as bits.
@@ -124,6 +182,9 @@ fn blocks_and_chunks_never_change_a_bit() {
         sized("bench-outside", size),
         balls(1e-3, &cameras()[3], size),
         slab(&cameras()[1], size),
+        projected("bench-outside", size, Projection::Orthographic),
+        projected("bench-inside", size, Projection::Fisheye),
+        projected("bench-inside", size, Projection::Equirectangular),
     ];
     for mut plan in plans {
         // A limit that some rays reach, for their state must not depend on the cut, and
@@ -145,7 +206,7 @@ fn blocks_and_chunks_never_change_a_bit() {
             }
             // Anything that matters does change bits.
             let mut other = plan.clone();
-            other.camera.fov += 1e-4;
+            other.camera.eye.x += 1e-4;
             assert!(whole != bits(&render(&other, EVERYTHING)));
         }
     }

@@ -3,7 +3,7 @@
 //! - [`mod@array`]: arrays of numbers that a device keeps from frame to frame
 //! - [`key`]: the keys of presets
 //! - [`shader`]: WGSL programs joined from files
-//! - [`view`]: the camera's rays and cones
+//! - [`view`]: the camera's rays and cones, in each [`projection`]
 //! - [`cone`]: how far an empty ball carries a cone
 //! - [`outcome`]: what a pixel is, and what it cost
 //! - [`filter`]: where the samples of a pixel are; [`random`]: numbers for their light
@@ -12,14 +12,20 @@
 //! - [`mod@clock`]: time; [`parallel`]: work over all cores
 //! - [`units`]: amounts of memory for people to read
 
+mod angle;
 pub mod array;
 pub mod clock;
 pub mod cone;
+mod equirectangular;
 pub mod filter;
+mod fisheye;
 pub mod key;
 pub mod named;
+mod orthographic;
 pub mod outcome;
 pub mod parallel;
+mod perspective;
+pub mod projection;
 pub mod random;
 pub mod shader;
 pub mod srgb;

@@ -6,10 +6,15 @@
 //! The *footprint* at a distance is half a pixel's width there, or less if the image shows the
 //! details of a larger one.
 //! Points of a beam are relative to the eye; only scenes add the eye.
+//! How directions are laid out in the image is a [`Projection`].
 //! Twin: `wgsl/base/view.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
+
+use super::projection::Projection;
+use super::shader::Module;
+use crate::wgsl;
 
 /// The view as WGSL reads it.
 #[repr(C)]
@@ -17,7 +22,7 @@ use glam::{DVec2, DVec3, Vec3};
 pub struct ViewUniform {
     /// Unit vector to the right of the image.
     pub right: Vec3,
-    /// A pixel's width in the image plane at distance 1.
+    /// A pixel's height in the image plane at distance 1, or in radians.
     pub pixel: f32,
     /// Unit vector to the top of the image.
     pub up: Vec3,
@@ -29,7 +34,7 @@ pub struct ViewUniform {
     pub reach: f32,
     /// Width and height of the full image in pixels.
     pub size: [u32; 2],
-    /// The footprint at distance 1 along the view axis.
+    /// The footprint at distance 1 along the view axis; of parallel rays, at any distance.
     pub grain: f32,
     /// Radius of the lens; 0 for none.
     pub lens: f32,
@@ -39,8 +44,8 @@ pub struct ViewUniform {
     pub spread: f32,
     /// Blades of the lens; 0 if it is round.
     pub blades: u32,
-    /// Unused.
-    pub pad: u32,
+    /// A pixel's width: of parallel rays a length, else as its height.
+    pub across: f32,
 }
 
 /// More than the rounding error of a chord in f32: two unit vectors are each off by up to
@@ -48,12 +53,12 @@ pub struct ViewUniform {
 pub const CHORD_SLACK: f64 = 4e-7;
 
 /// A factor on the lens of cones. It is more than the rounding of a point of the lens in f32.
-const LENS_SLACK: f64 = 1.0 + 1e-6;
+pub(super) const LENS_SLACK: f64 = 1.0 + 1e-6;
 
 /// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint
 /// is `grain0 + grain t`.
 ///
-/// A pinhole camera has `r0 = 0`. A positive `r0` serves orthographic and stereo views.
+/// A pinhole camera has `r0 = 0`. A lens and parallel rays have a positive `r0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
     /// Start, relative to the eye.
@@ -72,7 +77,7 @@ pub struct Beam {
 
 impl Beam {
     /// A beam from the eye of a pinhole camera.
-    fn pinhole(axis: DVec3, k: f64, grain: f64) -> Self {
+    pub(super) fn pinhole(axis: DVec3, k: f64, grain: f64) -> Self {
         Self {
             origin: DVec3::ZERO,
             axis,
@@ -151,21 +156,27 @@ pub struct View {
     pub up: DVec3,
     /// Unit vector into the image.
     pub forward: DVec3,
-    /// A pixel's width in the image plane at distance 1.
+    /// How directions are laid out in the image.
+    pub projection: Projection,
+    /// A pixel's height in the middle of the image: in the image plane at distance 1 if that is
+    /// even, else in radians.
     pub pixel: f64,
+    /// A pixel's width there. Parallel rays are so far apart; else it is measured as the height.
+    pub across: f64,
     /// Width and height of the full image in pixels.
     pub size: [u32; 2],
     /// How far rays of a pixel go from its centre along each axis, in pixels.
     pub reach: f64,
     /// What rays start from; `None` for the eye.
     pub lens: Option<Lens>,
-    /// The footprint at distance 1 along the view axis: half a pixel's width, or less if the image
-    /// shows the details of a larger one.
+    /// The footprint at distance 1 along the view axis, and of parallel rays at any distance: half a
+    /// pixel's width, or less if the image shows the details of a larger one.
     pub grain: f64,
 }
 
 impl View {
-    /// A view from `eye` to `target` that is `fov` degrees high. `up` must not be along it.
+    /// A perspective view from `eye` to `target` that is `fov` degrees high. `up` must not be along
+    /// it.
     pub fn new(eye: DVec3, target: DVec3, up: DVec3, fov: f64, size: [u32; 2]) -> Self {
         let forward = (target - eye).normalize();
         let right = forward.cross(up.normalize()).normalize();
@@ -175,7 +186,9 @@ impl View {
             right,
             up: right.cross(forward),
             forward,
+            projection: Projection::Perspective,
             pixel,
+            across: pixel,
             size,
             reach: 0.0,
             lens: None,
@@ -189,7 +202,7 @@ impl View {
             right: self.right.as_vec3(),
             pixel: self.pixel as f32,
             up: self.up.as_vec3(),
-            slack: CHORD_SLACK as f32,
+            slack: self.slack() as f32,
             forward: self.forward.as_vec3(),
             reach: self.reach as f32,
             size: self.size,
@@ -198,12 +211,34 @@ impl View {
             focus: self.lens.map_or(0.0, |lens| lens.focus) as f32,
             spread: self.lens.map_or(0.0, |lens| lens.spread()) as f32,
             blades: self.lens.map_or(0, |lens| lens.blades),
-            ..Zeroable::zeroed()
+            across: self.across as f32,
         }
     }
 
-    /// The direction through a point of the image, given in pixels from the upper left
-    /// corner. Its length is not 1.
+    /// The WGSL modules of the view.
+    pub fn modules(&self) -> Vec<Module> {
+        let mut all = vec![wgsl!("base/view.wgsl")];
+        all.extend(self.projection.modules());
+        all
+    }
+
+    /// How far from the eye rays start at most.
+    pub fn spacing(&self) -> f64 {
+        let lens = self.lens.map_or(0.0, |lens| lens.radius);
+        let half = self.size.map(|n| 0.5 * f64::from(n) + self.reach);
+        match self.projection {
+            Projection::Orthographic => lens + self.across * half[0].hypot(half[1]),
+            _ => lens,
+        }
+    }
+
+    /// Added to the chords of cones, as rays start all over the lens.
+    pub(super) fn spread(&self) -> f64 {
+        self.lens.map_or(0.0, |lens| lens.spread())
+    }
+
+    /// The direction through a point of the image plane of a perspective view, given in pixels from
+    /// the upper left corner. Its length is not 1.
     pub fn view_direction(&self, x: f64, y: f64) -> DVec3 {
         let sx = (x - 0.5 * f64::from(self.size[0])) * self.pixel;
         let sy = (0.5 * f64::from(self.size[1]) - y) * self.pixel;
@@ -217,10 +252,8 @@ impl View {
 
     /// The ray through a place in pixels from the centre of a pixel.
     pub fn view_ray_at(&self, pixel: [u32; 2], offset: DVec2) -> Beam {
-        let [x, y] = pixel.map(|p| f64::from(p) + 0.5);
-        let u = self.view_direction(x + offset.x, y + offset.y);
-        let n = u.length();
-        Beam::pinhole(u / n, 0.0, self.grain / n)
+        let centre = DVec2::from_array(pixel.map(|p| f64::from(p) + 0.5));
+        self.projection.view_through(self, centre + offset)
     }
 
     /// The ray through a place in pixels from the centre of a pixel, from a point of the lens. `share`
@@ -230,37 +263,23 @@ impl View {
         let Some(lens) = self.lens else { return ray };
         let share = (share + hash(pixel)).fract();
         let point = lens.radius * lens.point(share);
-        let origin = point.x * self.right + point.y * self.up;
+        let aside = point.x * self.right + point.y * self.up;
         // All rays of a place meet in the plane of the focus.
-        let ahead = lens.focus / ray.axis.dot(self.forward) * ray.axis - origin;
+        let ahead = lens.focus / ray.axis.dot(self.forward) * ray.axis - aside;
         Beam {
-            origin,
+            origin: ray.origin + aside,
             axis: ahead.normalize(),
             ..ray
         }
     }
 
     /// The cone over all rays of the pixels of a cell. The image's border cuts the cell.
-    ///
-    /// `k = min(2, 2|h| / (2|u| - |h|))`, where h is half the diagonal and u the axis in the
-    /// image plane, and 2 for a cell wider than that (docs/method.md, 1).
     pub fn view_cone(&self, cell: [u32; 2], divisor: u32) -> Beam {
         let low = cell.map(|c| c * divisor);
         let high = [0, 1].map(|i| (low[i] + divisor).min(self.size[i]));
         let middle = [0, 1].map(|i| 0.5 * f64::from(low[i] + high[i]));
-        let u = self.view_direction(middle[0], middle[1]);
-        let n = u.length();
         let span = [0, 1].map(|i| f64::from(high[i] - low[i] - 1) + 2.0 * self.reach);
-        let h = 0.5 * self.pixel * span[0].hypot(span[1]);
-        let spread = self.lens.map_or(0.0, |lens| lens.spread());
-        let k = if h < n {
-            (2.0 * h / (2.0 * n - h) + CHORD_SLACK + spread).min(2.0)
-        } else {
-            2.0
-        };
-        let cone = Beam::pinhole(u / n, k, self.grain / (n - h).max(1.0));
-        let r0 = self.lens.map_or(0.0, |lens| LENS_SLACK * lens.radius);
-        Beam { r0, ..cone }
+        self.projection.view_over(self, middle.into(), span.into())
     }
 }
 

@@ -76,7 +76,7 @@ impl Asked {
     ) -> Result<Self, RenderError> {
         let gpu = &*shared.device;
         let scene = plan.scene.solid(&plan.viewpoint(), assets)?;
-        let program = with_texts(sources, pick::program(&scene));
+        let program = with_texts(sources, pick::program(&plan.view(), &scene));
         let kernel = shared.kernels.get(gpu, &program)?;
         let arrays = shared.arrays.lock();
         let arrays = arrays.unwrap_or_else(PoisonError::into_inner);

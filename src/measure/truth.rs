@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::base::outcome::State;
+use crate::base::view::footprint;
 use crate::cpu;
 use crate::gpu::RenderError;
 use crate::pass::progress::{Progress, Watch};
@@ -99,8 +100,8 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
         let changed = |(n, (hit, state)): (usize, &(Hit, State))| {
             let (i, t) = (n * SAMPLE, hit.t);
             let before = f64::from(frame.depth[i]);
-            let grain = view.view_ray(pixels[n]).grain;
-            let far = *state == State::Hit && (before - t).abs() > 2.0 * grain * t;
+            let size = footprint(&view.view_ray(pixels[n]), t);
+            let far = *state == State::Hit && (before - t).abs() > 2.0 * size;
             frame.state[i] != *state as u8 || far
         };
         let moved = sample.iter().enumerate().filter(|s| changed(*s)).count();

@@ -48,7 +48,7 @@ pub fn color<S: Solid>(
         None => quick::shade(solid, light, ray, hit.t, &surface),
         Some(of) => path::shade((solid, light, of), (pixel, before), ray, hit.t, &surface),
     };
-    c = fog::fog(light, c, ray.axis, hit.t);
+    c = fog::fog(light, c, ray, hit.t);
     if light.look.flag_unconverged && (state == State::Unconverged || !decided) {
         c = DVec3::new(1.0, 0.0, 1.0);
     }

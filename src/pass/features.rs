@@ -54,6 +54,9 @@ features![
     /// Exponential fog.
     Fog: wgsl!("pass/fog.wgsl").neutral(), wgsl!("pass/fog_off.wgsl"),
         |look| look.fog > 0.0;
+    /// Fog that thins out with the height.
+    FogHeight: wgsl!("pass/fog_height.wgsl").neutral(), wgsl!("pass/fog_height_off.wgsl"),
+        |look| look.fog_height > 0.0;
 ];
 
 /// The modules of a look: how light is found, and its features.

@@ -2,13 +2,16 @@
 
 use glam::DVec3;
 
+use crate::base::view::Beam;
 use crate::pass::LookFeature;
+use crate::pass::fog_height::fog_depth;
 use crate::pass::look::Light;
 
 /// A colour that is seen through `t` units of fog along a ray.
-pub fn fog(light: &Light, color: DVec3, axis: DVec3, t: f64) -> DVec3 {
+pub fn fog(light: &Light, color: DVec3, ray: &Beam, t: f64) -> DVec3 {
     if !light.has(LookFeature::Fog) {
         return color;
     }
-    light.sky(axis).lerp(color, (-light.look.fog * t).exp())
+    let depth = fog_depth(light, ray, t);
+    light.sky(ray.axis).lerp(color, (-depth).exp())
 }

@@ -67,6 +67,12 @@ pub struct LookUniform {
     pub emission: Vec3,
     /// The trap that glows, from 0 to 2.
     pub emission_trap: u32,
+    /// Scale heights of the fog per unit of length; 0 for fog of one density.
+    pub fog_rise: f32,
+    /// How many of them the eye is above the fog's level.
+    pub fog_start: f32,
+    /// Unused.
+    pub pad: [u32; 2],
     /// The palette's colours, linear.
     pub palette: [Vec4; MOST_STOPS],
 }
@@ -98,6 +104,10 @@ pub struct Light {
     pub lamp_at: DVec3,
     /// What surfaces are made of, if light is followed from one to another.
     pub substance: Option<Substance>,
+    /// Scale heights of the fog per unit of length; 0 for fog of one density.
+    pub fog_rise: f64,
+    /// How many of them the eye is above the fog's level.
+    pub fog_start: f64,
 }
 
 impl Light {
@@ -128,12 +138,21 @@ impl Light {
         };
         let crossing = solid.twin().most_steps().unwrap_or(least);
         let auto = crossing.clamp(least, MOST_SHADOW_STEPS);
+        let world_up = plan.camera.up.normalize();
+        let above =
+            (plan.camera.eye - plan.camera.target).dot(world_up) - look.fog_level * distance;
+        let fog_rise = match LookFeature::FogHeight.is_on(&look) {
+            true => 1.0 / (look.fog_height.max(1e-6) * distance),
+            false => 0.0,
+        };
         Self {
             softness: look.light_size.to_radians().tan(),
             shadow_steps: look.shadow_steps.unwrap_or(auto),
-            world_up: plan.camera.up.normalize(),
+            world_up,
             lamp_at: look.lamp_at.map_or(DVec3::ZERO, |at| at - plan.camera.eye),
             substance: (look.mode == LightMode::Path).then(|| Substance::of(&look)),
+            fog_rise,
+            fog_start: fog_rise * above,
             look,
         }
     }
@@ -183,6 +202,9 @@ impl Light {
             emission_width: look.emission_width as f32,
             emission: (look.emission * look.emission_color).as_vec3(),
             emission_trap: look.emission_trap as u32,
+            fog_rise: self.fog_rise as f32,
+            fog_start: self.fog_start as f32,
+            pad: [0; 2],
             palette,
         }
     }

@@ -4,8 +4,9 @@
 //! - [`march`]: the cones of one level; [`trace`]: one ray per pixel
 //! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits; [`layout`]: where
 //!   their results are
-//! - [`color`]: light and colour, with [`look`] and [`fog`]: by formulas, [`quick`] with [`shadow`]
-//!   and [`occlusion`], or by paths, [`path`] with [`material`]; [`lamp`] and [`emission`] for both
+//! - [`color`]: light and colour, with [`look`] and [`fog`], which may thin out with the height
+//!   ([`fog_height`]): by formulas, [`quick`] with [`shadow`] and [`occlusion`], or by paths,
+//!   [`path`] with [`material`]; [`lamp`] and [`emission`] for both
 //! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone`]: from light to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
@@ -18,6 +19,7 @@ pub mod emission;
 mod explain;
 pub mod features;
 pub mod fog;
+pub mod fog_height;
 pub mod lamp;
 pub mod layout;
 pub mod look;
@@ -44,7 +46,8 @@ pub use features::LookFeature;
 /// The program of a pass over cells or pixels.
 pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Program {
     let mut modules = solid.twin().modules();
-    modules.extend([wgsl!("base/view.wgsl"), wgsl!("pass/shared.wgsl")]);
+    modules.extend(plan.view().modules());
+    modules.push(wgsl!("pass/shared.wgsl"));
     modules.extend(turn::modules());
     modules.push(match extras.count && pass.marches() {
         true => wgsl!("pass/counters.wgsl"),

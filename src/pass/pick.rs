@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 
 use crate::base::outcome::State;
 use crate::base::shader::Program;
+use crate::base::view::View;
 use crate::scene::AnySolid;
 use crate::wgsl;
 
@@ -95,11 +96,11 @@ impl PickAnswer {
     }
 }
 
-/// The program over a scene.
-pub fn program(scene: &AnySolid) -> Program {
+/// The program over a scene in a view.
+pub fn program(view: &View, scene: &AnySolid) -> Program {
     let mut modules = scene.twin().modules();
+    modules.extend(view.modules());
     modules.extend([
-        wgsl!("base/view.wgsl"),
         wgsl!("pass/shared.wgsl"),
         wgsl!("pass/counters_off.wgsl"),
         wgsl!("pass/pick.wgsl"),

@@ -199,9 +199,13 @@ impl StageKind {
                 over_cells("develop", &own)
             }
             Self::Sketch(_) => {
-                let look = [wgsl!("base/view.wgsl"), wgsl!("pass/look.wgsl")];
-                let own = [wgsl!("pass/tone.wgsl"), wgsl!("pass/sketch.wgsl")];
-                over_cells("sketch", &[look, own].concat())
+                let mut all = plan.view().modules();
+                all.extend([
+                    wgsl!("pass/look.wgsl"),
+                    wgsl!("pass/tone.wgsl"),
+                    wgsl!("pass/sketch.wgsl"),
+                ]);
+                over_cells("sketch", &all)
             }
         }
     }

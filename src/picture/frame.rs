@@ -1,7 +1,7 @@
 //! The result of a render: layers with one value per pixel, and the figures of each pass.
 
 use crate::base::outcome::{Counts, State};
-use crate::base::view::{Beam, View};
+use crate::base::view::{Beam, View, footprint};
 use crate::heightfield::assets::Preparation;
 use crate::plan::{Extras, Pass, Plan};
 use serde::{Serialize, Serializer};
@@ -217,8 +217,8 @@ pub fn errors(frame: &Frame, reference: &Frame, view: &View) -> Vec<f64> {
         (HIT, SKY) => f64::NEG_INFINITY,
         (HIT, HIT) => {
             let t = f64::from(reference.depth[i]);
-            let footprint = frame.ray(view, i).grain * t;
-            (f64::from(frame.depth[i]) - t) / footprint.max(f64::MIN_POSITIVE)
+            let size = footprint(&frame.ray(view, i), t);
+            (f64::from(frame.depth[i]) - t) / size.max(f64::MIN_POSITIVE)
         }
         _ => f64::NAN,
     };

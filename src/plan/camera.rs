@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::base::key::{Fault, auto_count, auto_number, number, triple};
+use crate::base::key::{Fault, auto_count, auto_number, number, triple, word};
+use crate::base::projection::Projection;
 use crate::base::view::{Lens, View};
 use crate::settings;
 
@@ -12,7 +13,8 @@ settings! {
         eye: DVec3 = DVec3::new(10.0, -17.0, 12.0), triple(-1e9, 1e9), "position of the camera";
         target: DVec3 = DVec3::ZERO, triple(-1e9, 1e9), "point that the camera looks at, in the middle of the image";
         up: DVec3 = DVec3::Z, triple(-1e9, 1e9), "direction that points up in the image";
-        fov: f64 = 40.0, number(1.0, 170.0), "vertical field of view in degrees";
+        fov: f64 = 40.0, number(1.0, 360.0), "vertical field of view in degrees, at most 170 unless the projection is fisheye; an orthographic view shows as much at the target as a perspective one does, and an equirectangular one shows everything";
+        projection: Projection = Projection::Perspective, word(Projection::WORDS), "how directions become an image: perspective; orthographic, by parallel rays from the plane of the eye; fisheye, where the angle to the view is proportional to the distance from the middle, up to 180 degrees; equirectangular, a panorama of 360 x 180 degrees for an image twice as wide as high" => Program;
         aperture: f64 = 0.0, number(0.0, 0.25), "radius of the lens as a share of the distance to the focus: 0 for none, 0.01 for a blurred background; a picture of one sample has no blur";
         focus: Option<f64> = None, auto_number(1e-9, 1e9), "distance to the plane that is sharp, along the view axis; auto is that of the target";
         blades: Option<u32> = None, auto_count(3, 16), "blades of the lens, which are the corners of blurred lights; auto is a round lens";
@@ -33,6 +35,21 @@ impl Camera {
             side.length() >= 1e-9,
             "camera.up",
             "up must not be zero or along the view; choose another direction, like [0, 0, 1] or [0, 1, 0]",
+        )?;
+        let (widest, name) = (self.projection.widest(), self.projection.name());
+        Fault::unless(
+            self.fov <= widest,
+            "camera.fov",
+            format!(
+                "camera.projection {name} shows at most {widest} degrees; use that, or projection fisheye"
+            ),
+        )?;
+        Fault::unless(
+            self.aperture == 0.0 || self.projection.has_lens(),
+            "camera.aperture",
+            format!(
+                "camera.projection {name} has no lens; use aperture 0, or projection perspective"
+            ),
         )
     }
 
@@ -48,6 +65,11 @@ impl Camera {
 
     /// The camera over an image of a size, without a lens. The camera must pass [`Camera::check`].
     pub fn view(&self, size: [u32; 2]) -> View {
-        View::new(self.eye, self.target, self.up, self.fov, size)
+        let distance = self.eye.distance(self.target);
+        View::new(self.eye, self.target, self.up, self.fov, size).by(
+            self.projection,
+            self.fov,
+            distance,
+        )
     }
 }

@@ -72,6 +72,10 @@ settings! {
             "how far ambient occlusion looks for neighbours, as a share of the distance from eye to target";
         fog: f64 = 0.0, number(0.0, 20.0),
             "density of the fog: at the distance from eye to target, the share exp(-fog) of a colour is left; 0 for none" => Program;
+        fog_height: f64 = 0.0, number(0.0, 1000.0),
+            "height over which the fog thins out to the share 1/e, as a share of the distance from eye to target; 0 for fog that is as dense everywhere" => Program;
+        fog_level: f64 = 0.0, number(-1000.0, 1000.0),
+            "height above the target at which the fog has its density, as a share of the distance from eye to target; only for fog_height";
         gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights, 0 for none; in mode path 0.08 is that of most materials but metal, 2 that of a mirror";
         sky_high: DVec3 = DVec3::new(0.30, 0.42, 0.58), triple(0.0, 1.0), "colour of the sky overhead, sRGB";
         sky_low: DVec3 = DVec3::new(0.80, 0.77, 0.73), triple(0.0, 1.0), "colour of the sky below, sRGB";

@@ -171,10 +171,12 @@ impl Plan {
     /// The eye, the finest pixel and the steps of the plan.
     pub fn viewpoint(&self) -> Viewpoint {
         let view = self.view();
+        let corner = view.view_ray_at([0, 0], DVec2::splat(-view.reach));
         Viewpoint {
             eye: self.camera.eye,
-            grain: view.view_ray_at([0, 0], DVec2::splat(-view.reach)).grain,
-            lens: view.lens.map_or(0.0, |lens| lens.radius),
+            grain0: corner.grain0,
+            grain: corner.grain,
+            spacing: view.spacing(),
             stepping: self.march.stepping(),
         }
     }

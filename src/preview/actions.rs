@@ -382,7 +382,7 @@ impl Live {
         if self.modifiers.state().control_key() {
             self.document.change(|plan| {
                 let fov = plan.camera.fov / factor;
-                plan.camera.fov = fov.clamp(1.0, 170.0);
+                plan.camera.fov = fov.clamp(1.0, plan.camera.projection.widest());
             });
         } else {
             self.flight.speed = (self.flight.speed * factor).clamp(1e-3, 1e3);

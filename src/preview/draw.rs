@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3, Vec4};
 use wgpu::{BindingResource, TextureFormat, TextureUsages, TextureView};
 
+use crate::base::projection::Projection;
 use crate::base::shader::Module;
 use crate::base::view::View;
 use crate::gpu::device::Device;
@@ -65,8 +66,14 @@ pub fn view_of(texture: &wgpu::Texture) -> TextureView {
     texture.create_view(&Default::default())
 }
 
-/// The map from pixels of one view to pixels of another with the same eye.
+/// The map from pixels of one view to pixels of another with the same eye. Only even image planes
+/// have one. Any other picture stays in its place.
 fn turned(from: &View, to: &View) -> DMat3 {
+    let even = |view: &View| view.projection == Projection::Perspective;
+    if !even(from) || !even(to) {
+        let factor = |i: usize| f64::from(to.size[i]) / f64::from(from.size[i]);
+        return DMat3::from_diagonal(DVec3::new(factor(0), factor(1), 1.0));
+    }
     let half = |view: &View| [0, 1].map(|i| 0.5 * f64::from(view.size[i]));
     let [w, h] = half(from);
     // Directions of pixels.

@@ -45,7 +45,7 @@ pub fn clearance(plan: &Plan, assets: &Assets) -> Option<f64> {
 /// What the ray of a pixel meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met {
-    /// The distance from the eye.
+    /// The distance along the ray.
     pub distance: f64,
     /// The point in the world.
     pub point: DVec3,
@@ -63,10 +63,10 @@ pub fn met(plan: &Plan, assets: &Assets, pixel: [u32; 2]) -> Option<Met> {
     let solid = plan.scene.solid(&plan.viewpoint(), assets).ok()?;
     let steps = plan.ray_steps(&solid);
     let (distance, state, work) = solid.run(Ray(plan, pixel, steps));
-    let axis = plan.view().view_ray(pixel).axis;
+    let ray = plan.view().view_ray(pixel);
     Some(Met {
         distance,
-        point: plan.camera.eye + distance * axis,
+        point: plan.camera.eye + ray.at(distance),
         state,
         evaluations: work.evaluations,
     })

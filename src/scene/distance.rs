@@ -109,8 +109,8 @@ impl Distance {
 
     /// The same for rays that start at most so far from the eye.
     #[must_use]
-    pub fn through_lens(mut self, radius: f64) -> Self {
-        self.far += radius;
+    pub fn spaced(mut self, spacing: f64) -> Self {
+        self.far += spacing;
         self
     }
 
@@ -273,13 +273,18 @@ impl Solid for Distance {
         let eps = self.threshold(cone, t);
         let shell = self.stepping.shell * eps;
         let mut d = self.bounds.distance(self.eye + q) - cone.r0 - shell;
+        // How wide the cone is: between parallel rays, the footprint does not grow.
+        let wide = match cone.grain == 0.0 {
+            true => cone.r0,
+            false => cone.k * t,
+        };
         // Far from the bounds their distance is enough.
-        if d <= 2.0 * cone.k * t {
+        if d <= 2.0 * wide {
             let (p, most) = (self.eye + q, self.iterations);
             let trial = if at.radius > 0.0 {
                 DISTANCE_TRIAL * at.radius
             } else if t > 0.0 {
-                4.0 * cone.k * t
+                4.0 * wide
             } else {
                 self.evaluator.value(p, most).0.max(0.0)
             };

@@ -26,7 +26,7 @@ impl DistanceSettings {
     /// The scene from a viewpoint.
     pub fn seen(&self, from: &Viewpoint) -> Distance {
         let formula = self.formula.clone();
-        Distance::new(formula, self.limit(from), from.eye, from.stepping).through_lens(from.lens)
+        Distance::new(formula, self.limit(from), from.eye, from.stepping).spaced(from.spacing)
     }
 
     /// The iteration limit: the given one, or as many as the finest footprint needs.
@@ -46,7 +46,7 @@ impl DistanceSettings {
         let clear = bounds.distance(from.eye).max(inside);
         // On the surface the footprint would be zero.
         let least = 1e-10 * bounds.farthest(from.eye);
-        from.grain * clear.max(least)
+        from.grain0 + from.grain * clear.max(least)
     }
 }
 

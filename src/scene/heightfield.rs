@@ -84,14 +84,14 @@ impl SceneSettings for HeightfieldSettings {
     }
 
     fn solid(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
-        let ready = assets.ready(self, from.grain)?;
-        let solid = Heightfield::new(ready, from.eye).through_lens(from.lens);
+        let ready = assets.ready(self, from.growth())?;
+        let solid = Heightfield::new(ready, from.eye).spaced(from.spacing);
         Ok(AnySolid::Heightfield(solid))
     }
 
     fn outline(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
-        let ready = assets.outline(self, from.grain)?;
-        let solid = Heightfield::new(ready, from.eye).through_lens(from.lens);
+        let ready = assets.outline(self, from.growth())?;
+        let solid = Heightfield::new(ready, from.eye).spaced(from.spacing);
         Ok(AnySolid::Heightfield(solid))
     }
 
@@ -118,9 +118,9 @@ pub struct Heightfield {
 impl Heightfield {
     /// The same for rays that start at most so far from the eye.
     #[must_use]
-    pub fn through_lens(mut self, radius: f64) -> Self {
-        self.far += radius;
-        self.slack += 5e-7 * radius / self.made.placement.units();
+    pub fn spaced(mut self, spacing: f64) -> Self {
+        self.far += spacing;
+        self.slack += 5e-7 * spacing / self.made.placement.units();
         self
     }
 

@@ -17,12 +17,22 @@ pub const MOST_SHADOW_STEPS: u32 = 2048;
 pub struct Viewpoint {
     /// The camera's position.
     pub eye: DVec3,
-    /// Half a pixel's width at distance 1 in a corner of the image, where pixels are finest.
+    /// Half a pixel's width at distance 0; 0 unless rays are parallel.
+    pub grain0: f64,
+    /// How much it grows per unit of distance in a corner of the image, where pixels are finest.
     pub grain: f64,
-    /// Radius of the lens about the eye; 0 for none.
-    pub lens: f64,
+    /// How far from the eye rays start at most.
+    pub spacing: f64,
     /// How steps are taken.
     pub stepping: Stepping,
+}
+
+impl Viewpoint {
+    /// The growth of pixels with the distance, as a tracer asks for it that takes coarse heights far
+    /// from the eye. It is never zero: between parallel rays no heights are coarse.
+    pub fn growth(&self) -> f64 {
+        self.grain.max(1e-20)
+    }
 }
 
 /// The settings of one kind of scene.

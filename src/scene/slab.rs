@@ -66,7 +66,7 @@ impl SceneSettings for SlabSettings {
     }
 
     fn solid(&self, from: &Viewpoint, _: &Assets) -> Result<AnySolid, PrepareError> {
-        let slab = Slab::new(self, from.eye, from.stepping.rule).through_lens(from.lens);
+        let slab = Slab::new(self, from.eye, from.stepping.rule).spaced(from.spacing);
         Ok(AnySolid::Slab(slab))
     }
 }
@@ -87,8 +87,8 @@ pub struct Slab {
 impl Slab {
     /// The same for rays that start at most so far from the eye.
     #[must_use]
-    pub fn through_lens(mut self, radius: f64) -> Self {
-        self.far += radius;
+    pub fn spaced(mut self, spacing: f64) -> Self {
+        self.far += spacing;
         self
     }
 

@@ -24,7 +24,11 @@ const OPTIONS: &str = r#"
 --stats no/s.json ; 1 ; no/s.json|no folder `no`
 -o empty.toml/a.png ; 1 ; empty.toml/a.png
 -o folder.png ; 1 ; folder.png: is a folder
---set camera.fov=400 ; 2 ; --set camera.fov=400: must be a number from 1 to 170
+--set camera.fov=400 ; 2 ; --set camera.fov=400: must be a number from 1 to 360
+--set camera.fov=200 ; 2 ; --set camera.fov=200: |perspective shows at most 170 degrees|fisheye
+--set camera.fov=200 --set camera.projection=orthographic ; 2 ; orthographic shows at most 170
+--set camera.projection=fisheye --set camera.aperture=0.1 ; 2 ; fisheye has no lens|perspective
+--set camera.projection=fishy ; 2 ; one of "perspective", "orthographic", "fisheye", "equirectangular"
 --set camera.fov=nan ; 2 ; --set camera.fov=nan
 --set camera.fow=40 ; 2 ; unknown key|`fov`
 --set cam.fov=40 ; 2 ; unknown section `cam`
@@ -49,7 +53,7 @@ mandlebox ; 2 ; `mandlebox`|perhaps `mandelbox`|bench-far, |terrain
 empty.toml ; 1 ; empty.toml: scene.kind is missing
 binary.toml ; 1 ; binary.toml: is not text in UTF-8
 large.toml ; 1 ; large.toml: is larger than 1 MiB
-broken.toml ; 1 ; broken.toml:5: camera.fov = 400: must be a number from 1 to 170
+broken.toml ; 1 ; broken.toml:5: camera.fov = 400: must be a number from 1 to 360
 syntax.toml ; 1 ; syntax.toml:2: this is not TOML
 box.fract ; 1 ; box.fract: is a settings file of Mandelbulber|presets of conemarch
 comment.txt ; 1 ; comment.txt: is a settings file of Mandelbulber

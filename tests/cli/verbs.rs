@@ -93,6 +93,7 @@ fn presets_files_and_keys_are_completed() {
         "camera.target=",
         "camera.up=",
         "camera.fov=",
+        "camera.projection=",
         "camera.aperture=",
         "camera.focus=",
         "camera.blades=",

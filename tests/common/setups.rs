@@ -41,8 +41,8 @@ pub fn formula_probe(formula: Formula, iterations: u32) -> Probe {
 pub fn probe_of(plan: &Plan, probe: Module) -> Probe {
     let solid = solid(plan);
     let mut modules = solid.twin().modules();
+    modules.extend(plan.view().modules());
     modules.extend([
-        wgsl!("base/view.wgsl"),
         wgsl!("pass/shared.wgsl"),
         wgsl!("pass/counters_off.wgsl"),
         probe,

@@ -68,7 +68,7 @@ pub fn rays(plan: &Plan) -> impl Iterator<Item = Beam> {
 /// For plans of other scenes than balls and slabs.
 pub fn solved(plan: &Plan) -> (Frame, Vec<f64>) {
     let solids = solids(plan).expect("balls or a slab");
-    let meet = |ray: Beam| exact::first_hit(&solids, plan.camera.eye, ray.axis);
+    let meet = |ray: Beam| exact::first_hit(&solids, plan.camera.eye + ray.origin, ray.axis);
     let t: Vec<f64> = rays(plan).map(meet).collect();
     let frame = Frame {
         size: plan.size,

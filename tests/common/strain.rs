@@ -2,6 +2,7 @@
 //! against what is true.
 
 use conemarch::base::outcome::State;
+use conemarch::base::view::{Beam, footprint};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::Plan;
 use conemarch::plan::march::Mode;
@@ -55,19 +56,21 @@ pub fn faults(plan: &Plan, frame: &Frame) -> Vec<String> {
     found
 }
 
-/// Share of pixels for which something holds of their number and their footprint's growth.
-fn share(plan: &Plan, holds: impl Fn(usize, f64) -> bool) -> f64 {
-    let grains = rays(plan).map(|ray| ray.grain).enumerate();
-    let all: Vec<bool> = grains.map(|(i, grain)| holds(i, grain)).collect();
+/// Share of pixels for which something holds of their number and their ray.
+fn share(plan: &Plan, holds: impl Fn(usize, &Beam) -> bool) -> f64 {
+    let all: Vec<bool> = rays(plan)
+        .enumerate()
+        .map(|(i, ray)| holds(i, &ray))
+        .collect();
     all.iter().filter(|held| **held).count() as f64 / all.len() as f64
 }
 
 /// Share of pixels in which two frames differ: another state, or depths by over two
 /// footprints.
 pub fn apart(plan: &Plan, a: &Frame, b: &Frame) -> f64 {
-    share(plan, |i, grain| {
+    share(plan, |i, ray| {
         let [s, t] = [a.depth[i], b.depth[i]].map(f64::from);
-        let far = a.state[i] == HIT && (s - t).abs() > APART * grain * s.max(t);
+        let far = a.state[i] == HIT && (s - t).abs() > APART * footprint(ray, s.max(t));
         a.state[i] != b.state[i] || far
     })
 }
@@ -87,9 +90,9 @@ pub fn reference(plan: &Plan) -> Frame {
 /// Share of pixels of a frame that miss what the reference hits, or hit over two
 /// footprints behind it. What is unconverged is neither.
 pub fn wrong(plan: &Plan, frame: &Frame, reference: &Frame) -> f64 {
-    share(plan, |i, grain| {
+    share(plan, |i, ray| {
         let [t, t_ref] = [frame.depth[i], reference.depth[i]].map(f64::from);
-        let behind = t - t_ref > APART * grain * t_ref.max(f64::from(f32::MIN_POSITIVE));
+        let behind = t - t_ref > (APART * footprint(ray, t_ref)).max(f64::from(f32::MIN_POSITIVE));
         let ended = frame.state[i] != UNCONVERGED && reference.state[i] == HIT;
         ended && (frame.state[i] != HIT || behind)
     })

@@ -233,6 +233,7 @@ fn told_by_device(seeds: std::ops::Range<u64>, change: Change) -> Vec<String> {
         let mut modules = solid.modules();
         modules.extend([
             wgsl!("base/view.wgsl"),
+            wgsl!("base/perspective.wgsl"),
             wgsl!("pass/shared.wgsl"),
             wgsl!("pass/counters_off.wgsl"),
             probe!("advance"),

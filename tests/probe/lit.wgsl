@@ -11,6 +11,6 @@ fn answer(q: Numbers) -> Numbers {
     return Numbers(
         vec4<f32>(at.normal, shadow(q.a.xyz, q.c.xyz, grain, sun).open),
         vec4<f32>(at.pigment, occlusion(q.a.xyz, q.c.xyz, grain)),
-        vec4<f32>(fog(vec3<f32>(0.2, 0.5, 0.9), q.b.xyz, q.a.w), near.softness),
+        vec4<f32>(fog(vec3<f32>(0.2, 0.5, 0.9), ray, q.a.w), near.softness),
     );
 }

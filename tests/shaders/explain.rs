@@ -191,6 +191,7 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
         wgsl/base/view.wgsl
+        wgsl/base/perspective.wgsl
         wgsl/pass/shared.wgsl
         wgsl/pass/turn.wgsl
         wgsl/pass/queue.wgsl
@@ -203,6 +204,7 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
         wgsl/base/view.wgsl
+        wgsl/base/perspective.wgsl
         wgsl/pass/shared.wgsl
         wgsl/pass/turn.wgsl
         wgsl/pass/queue.wgsl
@@ -215,6 +217,7 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
         wgsl/base/view.wgsl
+        wgsl/base/perspective.wgsl
         wgsl/pass/shared.wgsl
         wgsl/pass/turn.wgsl
         wgsl/pass/queue.wgsl

@@ -82,7 +82,7 @@ fn scenes() -> Vec<Scene> {
     all
 }
 
-/// All plans: presets and scenes, in every mode and with every feature of the look. The
+/// All plans: presets and scenes, in every mode, and with each feature of the look. The
 /// modes and the looks of a heightfield are tried apart.
 fn plans() -> Vec<Plan> {
     let presets = BUILTIN.iter().map(|(name, _)| preset(name, &[]));
@@ -90,7 +90,10 @@ fn plans() -> Vec<Plan> {
     let mut all = Vec::new();
     for plan in first {
         for mode in &Mode::ALL {
-            for look in 0..1 << LookFeature::ALL.len() {
+            // No feature, each alone, and all without each.
+            let none = [0, (1 << LookFeature::ALL.len()) - 1];
+            let alone = (0..LookFeature::ALL.len()).flat_map(|at| none.map(|of| of ^ (1 << at)));
+            for look in none.into_iter().chain(alone) {
                 let apart = matches!(plan.scene, Scene::Heightfield(_));
                 if apart && look > 0 && *mode != plan.march.mode {
                     continue;
@@ -161,7 +164,7 @@ pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
     let of_plans = plans.flat_map(|plan| {
         let solid = outline(&plan, &assets);
         let passes = programs_of(&plan, &solid).into_iter();
-        passes.chain([pick::program(&solid)])
+        passes.chain([pick::program(&plan.view(), &solid)])
     });
     for program in map_programs()
         .into_iter()

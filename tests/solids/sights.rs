@@ -1,9 +1,11 @@
 //! The view: rays go through their pixels, and the rays of a cell's pixels lie within
-//! its cone, at every image size and field of view.
+//! its cone, at every image size and field of view, in every projection.
 
-use conemarch::base::view::View;
+use conemarch::base::filter::RADIUS;
+use conemarch::base::projection::Projection;
+use conemarch::base::view::{Beam, View, footprint};
 use conemarch::plan::camera::Camera;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::common::random::Random;
 
@@ -117,4 +119,157 @@ fn rays_go_through_the_middles_of_their_pixels() {
             }
         }
     }
+}
+
+/// The views that differ in all that cones depend on.
+fn views(projection: Projection) -> Vec<View> {
+    let fovs = [1.0, 48.5, 170.0, 250.0, 360.0];
+    let fovs = fovs.into_iter().filter(|fov| *fov <= projection.widest());
+    let all = fovs.flat_map(|fov| SIZES.map(|size| (fov, size)));
+    let of = |(fov, size): (f64, [u32; 2])| {
+        let camera = Camera {
+            eye: DVec3::new(1.0, 2.0, -3.0),
+            target: DVec3::new(-2.0, 0.5, 4.0),
+            up: DVec3::new(0.2, 1.0, 0.1),
+            fov,
+            projection,
+            aperture: 0.1,
+            ..Camera::default()
+        };
+        let view = camera.view(size);
+        let lens = camera.lens().filter(|_| projection.has_lens());
+        let samples = View {
+            reach: RADIUS,
+            ..view
+        };
+        [view, samples, View { lens, ..samples }]
+    };
+    all.flat_map(of).collect()
+}
+
+/// The largest share of the room in a cone that a ray takes along its way.
+fn taken(cone: &Beam, ray: &Beam) -> f64 {
+    let room = |t: f64| ray.at(t).distance(cone.at(t)) / (cone.r0 + cone.k * t);
+    [1e-3, 0.7, 8.0, 1e4]
+        .map(room)
+        .into_iter()
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn every_ray_lies_in_the_cone_of_its_cell_in_every_projection() {
+    let random = &mut Random::new(13);
+    for (word, projection) in Projection::WORDS {
+        let mut most = 0.0_f64;
+        for view in views(*projection) {
+            for level in 1..7 {
+                let divisor = 1 << level;
+                for _ in 0..60 {
+                    let within = |n: u32, share: f64| (f64::from(n) * share) as u32;
+                    let cells = view.size.map(|n| n.div_ceil(divisor));
+                    let cell = cells.map(|n| within(n, random.unit()));
+                    let cone = view.view_cone(cell, divisor);
+                    assert!((cone.axis.length() - 1.0).abs() < 1e-12);
+                    assert!(cone.k > 0.0 && cone.k <= 2.0);
+                    for n in 0..20 {
+                        let low = cell.map(|c| c * divisor);
+                        // Corners are the hardest.
+                        let share = |random: &mut Random| match n < 10 {
+                            true => random.unit(),
+                            false => f64::from(u8::from(random.unit() < 0.5)) * (1.0 - 1e-9),
+                        };
+                        let pixel = [0, 1].map(|i| {
+                            let count = (view.size[i] - low[i]).min(divisor);
+                            low[i] + within(count, share(random))
+                        });
+                        let place = DVec2::new(share(random), share(random));
+                        let offset = view.reach * (2.0 * place - 1.0);
+                        let ray = view.view_ray_from(
+                            pixel,
+                            offset,
+                            DVec2::new(random.unit(), share(random)),
+                        );
+                        let taken = taken(&cone, &ray);
+                        let what = format!("{word} {view:?} {cell:?} {divisor} {pixel:?} {offset}");
+                        assert!(taken <= 1.0 + 1e-12, "{taken} {what}");
+                        most = most.max(taken);
+                        let finer = footprint(&ray, 3.0) <= footprint(&cone, 3.0) * (1.0 + 1e-12);
+                        assert!(finer, "{what}");
+                        assert!(
+                            ray.origin.length() <= view.spacing() * (1.0 + 1e-9),
+                            "{what}"
+                        );
+                    }
+                }
+            }
+        }
+        // Nor are the cones wider than they must be.
+        assert!(most > 0.98, "{word} {most}");
+    }
+}
+
+#[test]
+fn projections_look_where_they_say() {
+    let view = |projection, fov, size| {
+        let camera = Camera {
+            eye: DVec3::new(0.0, -4.0, 0.0),
+            target: DVec3::ZERO,
+            up: DVec3::Z,
+            fov,
+            projection,
+            ..Camera::default()
+        };
+        camera.view(size)
+    };
+    let near = |ray: Beam, origin: DVec3, axis: DVec3| {
+        assert!(ray.origin.distance(origin) < 1e-12, "{ray:?}");
+        assert!(ray.axis.distance(axis) < 1e-12, "{ray:?}");
+    };
+    let (right, ahead, up) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let half = DVec2::splat(0.5);
+    // As high at the target as a perspective view of 60 degrees.
+    let flat = view(Projection::Orthographic, 60.0, [200, 100]);
+    let high = 4.0 / 3.0_f64.sqrt();
+    near(flat.view_ray_at([100, 50], -half), DVec3::ZERO, ahead);
+    near(
+        flat.view_ray_at([0, 0], -half),
+        high * (up - 2.0 * right),
+        ahead,
+    );
+    assert!((flat.view_ray([3, 4]).grain0 / (high / 100.0) - 1.0).abs() < 1e-12);
+    // 180 degrees high: the top looks up, and so far to the side the ray looks right.
+    let fish = view(Projection::Fisheye, 180.0, [400, 100]);
+    near(fish.view_ray_at([200, 50], -half), DVec3::ZERO, ahead);
+    near(fish.view_ray_at([200, 0], -half), DVec3::ZERO, up);
+    near(fish.view_ray_at([250, 50], -half), DVec3::ZERO, right);
+    near(
+        fish.view_ray_at([225, 50], -half),
+        DVec3::ZERO,
+        (ahead + right).normalize(),
+    );
+    // Beyond 180 degrees from the axis all rays look back.
+    near(fish.view_ray_at([390, 10], -half), DVec3::ZERO, -ahead);
+    let globe = view(Projection::Equirectangular, 40.0, [400, 100]);
+    near(globe.view_ray_at([200, 50], -half), DVec3::ZERO, ahead);
+    near(globe.view_ray_at([300, 50], -half), DVec3::ZERO, right);
+    near(globe.view_ray_at([0, 50], -half), DVec3::ZERO, -ahead);
+    near(globe.view_ray_at([77, 0], -half), DVec3::ZERO, up);
+    near(
+        globe.view_ray_at([300, 25], -half),
+        DVec3::ZERO,
+        (up + right).normalize(),
+    );
+    // Past the seam and past the pole goes on with what is there.
+    let there = globe.view_ray([399, 20]).axis;
+    near(
+        globe.view_ray_at([0, 20], DVec2::new(-1.0, 0.0)),
+        DVec3::ZERO,
+        there,
+    );
+    let there = globe.view_ray([230, 0]).axis;
+    near(
+        globe.view_ray_at([30, 0], DVec2::new(0.0, -1.0)),
+        DVec3::ZERO,
+        there,
+    );
 }

@@ -26,6 +26,7 @@ mod work;
 use adapter::{COUNTED, LEVELS, on_cpu, render};
 use common::plans::{compared, preset, sized, switch};
 use conemarch::base::outcome::State;
+use conemarch::base::projection::Projection;
 use conemarch::base::srgb::srgb;
 use conemarch::measure::compare::{DepthError, Report, quantile};
 use conemarch::measure::truth::truth;
@@ -118,6 +119,29 @@ fn the_two_executors_agree_on_every_preset() {
         assert!(hit > 10_000, "{name}: {hit} hits");
         // More than a few rays that end nowhere is a fault of the preset.
         assert!(unconverged < 60, "{name}: {unconverged} unconverged");
+    }
+}
+
+#[test]
+fn the_two_executors_agree_in_every_projection() {
+    for (word, projection) in &Projection::WORDS[1..] {
+        for (name, samples) in [("mandelbox", 1), ("mandelbox-hall", 3), ("terrain", 1)] {
+            let mut plan = sized(name, [320, 180]);
+            plan.camera.projection = *projection;
+            plan.samples = samples;
+            plan.look.fog = 0.7;
+            plan.look.fog_height = 0.3;
+            let frame = render(&plan, Extras::default());
+            let reference = on_cpu(&plan, Extras::default());
+            let apart = apart(&plan, &frame, &reference);
+            assert_eq!(faults(&apart), [""; 0], "{word}, {name}: {apart:?}");
+            let [_, hit, unconverged] = frame.census();
+            assert!(hit > 1000, "{word}, {name}: {hit} hits");
+            assert!(
+                unconverged < 60,
+                "{word}, {name}: {unconverged} unconverged"
+            );
+        }
     }
 }
 

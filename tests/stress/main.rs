@@ -41,6 +41,7 @@ use common::hard::{self, SIZE};
 use common::plans::{boxed, camera, distance_solid, mandelbox, sized};
 use common::solved::rays;
 use common::strain;
+use conemarch::base::projection::Projection;
 use conemarch::formula::DistanceEstimate;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::picture::frame::Frame;
@@ -202,6 +203,12 @@ fn any_plan_renders_alike_on_both_executors() {
             plan.reference = Some(90);
             plan.camera.aperture = 0.05 * f64::from(nth.get() % 5);
             plan.camera.blades = nth.get().is_multiple_of(3).then_some(5);
+        }
+        // Every third plan has another projection.
+        if nth.get().is_multiple_of(3) {
+            let projection = Projection::WORDS[1 + nth.get() as usize / 3 % 3].1;
+            plan.camera.projection = projection;
+            plan.camera.aperture *= f64::from(u8::from(projection.has_lens()));
         }
         let text = write(&plan);
         assert_eq!(read(&text, "a random plan").unwrap(), plan);

@@ -130,10 +130,19 @@ fn materials_agree() {
 
 #[test]
 fn surfaces_and_their_light_agree() {
+    for fog_height in [0.0, 0.2] {
+        surfaces_agree(fog_height);
+    }
+}
+
+/// The comparison, with fog that thins out over a height, or as dense everywhere.
+fn surfaces_agree(fog_height: f64) {
     let eye = DVec3::new(1.0, -6.0, 2.5);
     let mut plan = seen_from(eye, distance(balls(1.0), Some(1)));
     plan.look.fog = 1.0;
     plan.look.lamp = 1.0;
+    plan.look.fog_height = fog_height;
+    plan.look.fog_level = -0.1;
     plan.look.light_size = 20.0;
     plan.look.occlusion_reach = 0.3;
     let asked = questions(8, |random| {
@@ -171,7 +180,7 @@ fn surfaces_and_their_light_agree() {
         let shaded = shadow::shadow((&scene, &light), point, normal, grain, &sun).open;
         let near = lamp_from(&light, point).expect("a lamp");
         let hidden = occlusion::occlusion(&scene, &light, point, normal, grain);
-        let fogged = fog::fog(&light, DVec3::new(0.2, 0.5, 0.9), ray.axis, t);
+        let fogged = fog::fog(&light, DVec3::new(0.2, 0.5, 0.9), &ray, t);
         pairs.add_vector("normal", a[0], at.normal);
         pairs.add_vector("pigment", a[1], at.pigment);
         pairs.add("shadow", a[0][3], shaded);
@@ -186,7 +195,7 @@ fn surfaces_and_their_light_agree() {
             .extend(LookFeature::ALL.iter().map(|feature| feature.module(true)));
         with_look(lit, &plan)
     };
-    let moved = [
+    let mut moved = vec![
         (
             "normal pigment",
             probe(|p| p.camera.eye += DVec3::splat(0.05)),
@@ -196,5 +205,9 @@ fn surfaces_and_their_light_agree() {
         ("fog", probe(|p| p.look.fog *= MOVED)),
         ("lamp", probe(|p| p.look.lamp_size *= MOVED)),
     ];
+    if fog_height > 0.0 {
+        moved.push(("fog", probe(|p| p.look.fog_height *= MOVED)));
+        moved.push(("fog", probe(|p| p.look.fog_level *= 1.0 + 1e-2)));
+    }
     twins.assert_agree("balls", &probe(|_| ()), &moved);
 }

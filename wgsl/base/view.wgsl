@@ -1,21 +1,23 @@
-// The pinhole camera: the ray of a pixel and the cone of a cell (docs/method.md, 1).
+// The camera: the ray of a pixel and the cone of a cell (docs/method.md, 1). A projection's file
+// is joined to this one. It has `view_through`, the ray through a place, and `view_over`, the cone
+// over the places of a cell.
 //
 // Indices are those of the full image, even if only a block of it is rendered, so a pixel has
 // the same bits in any block. Origins are relative to the eye; only scenes add the eye.
 
 struct ViewUniform {
     right: vec3<f32>,
-    /// A pixel's width in the image plane at distance 1.
+    /// A pixel's height in the image plane at distance 1, or in radians.
     pixel: f32,
     up: vec3<f32>,
-    /// Added to every cone's chord: the rounding of two unit vectors.
+    /// Added to every cone's chord: the rounding of two directions.
     slack: f32,
     forward: vec3<f32>,
     /// How far rays of a pixel go from its centre, in pixels.
     reach: f32,
     /// Width and height of the full image in pixels.
     size: vec2<u32>,
-    /// The footprint at distance 1 along the view axis.
+    /// The footprint at distance 1 along the view axis; of parallel rays, at any distance.
     grain: f32,
     /// Radius of the lens, 0 for none, and distance to the plane that is sharp.
     lens: f32,
@@ -24,7 +26,8 @@ struct ViewUniform {
     spread: f32,
     /// Blades of the lens; 0 if it is round.
     blades: u32,
-    pad: u32,
+    /// A pixel's width: of parallel rays a length, else as its height.
+    across: f32,
 }
 
 /// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint,
@@ -50,14 +53,6 @@ fn footprint(beam: Beam, t: f32) -> f32 {
     return beam.grain0 + beam.grain * t;
 }
 
-/// The direction through a point of the image, given in pixels from the upper left corner. Its
-/// length is not 1.
-fn view_direction(x: f32, y: f32) -> vec3<f32> {
-    let sx = (x - 0.5 * f32(view.size.x)) * view.pixel;
-    let sy = (0.5 * f32(view.size.y) - y) * view.pixel;
-    return view.forward + sx * view.right + sy * view.up;
-}
-
 /// The ray through the centre of a pixel: k = 0.
 fn view_ray(pixel: vec2<u32>) -> Beam {
     return view_ray_at(pixel, vec2<f32>(0.5));
@@ -65,9 +60,7 @@ fn view_ray(pixel: vec2<u32>) -> Beam {
 
 /// The ray through a place in pixels from the upper left corner of a pixel.
 fn view_ray_at(pixel: vec2<u32>, place: vec2<f32>) -> Beam {
-    let u = view_direction(f32(pixel.x) + place.x, f32(pixel.y) + place.y);
-    let n = length(u);
-    return Beam(vec3<f32>(0.0), u / n, 0.0, 0.0, 0.0, view.grain / n);
+    return view_through(vec2<f32>(pixel), place);
 }
 
 /// Two numbers from 0 to 1 that look random, for each pixel.
@@ -104,28 +97,18 @@ fn view_ray_from(pixel: vec2<u32>, place: vec2<f32>, share: vec2<f32>) -> Beam {
     var ray = view_ray_at(pixel, place);
     if view.lens > 0.0 && share.x >= 0.0 {
         let point = view.lens * view_lens_point(fract(share + view_hash(pixel)));
-        ray.origin = point.x * view.right + point.y * view.up;
+        let aside = point.x * view.right + point.y * view.up;
         // All rays of a place meet in the plane of the focus.
-        ray.axis = normalize(view.focus / dot(ray.axis, view.forward) * ray.axis - ray.origin);
+        ray.axis = normalize(view.focus / dot(ray.axis, view.forward) * ray.axis - aside);
+        ray.origin += aside;
     }
     return ray;
 }
 
 /// The cone over all rays of the pixels of a cell. The image's border cuts the cell.
-///
-/// The chord k is at most `2|h| / (2|u| - |h|)`, where h is half the diagonal. This bound is
-/// free of cancellation. The grain is that of the coarsest pixel in the cell.
 fn view_cone(cell: vec2<u32>, divisor: u32) -> Beam {
     let low = cell * divisor;
     let high = min(low + vec2<u32>(divisor), view.size);
-    let u = view_direction(0.5 * f32(low.x + high.x), 0.5 * f32(low.y + high.y));
-    let n = length(u);
-    let h = 0.5 * view.pixel * length(vec2<f32>(high - low - vec2<u32>(1u)) + 2.0 * view.reach);
-    var k = 2.0;
-    if h < n {
-        k = min(2.0, 2.0 * h / (2.0 * n - h) + view.slack + view.spread);
-    }
-    // |u| >= 1 for every ray, as the image plane is at distance 1.
-    let nearest = max(1.0, n - h);
-    return Beam(vec3<f32>(0.0), u / n, 1.000001 * view.lens, k, 0.0, view.grain / nearest);
+    let middle = vec2<f32>(0.5 * f32(low.x + high.x), 0.5 * f32(low.y + high.y));
+    return view_over(middle, vec2<f32>(high - low - vec2<u32>(1u)) + 2.0 * view.reach);
 }

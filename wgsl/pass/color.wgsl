@@ -52,7 +52,7 @@ fn color(
         let grain = footprint(ray, hit.t);
         let pixel = turn.stage.origin + cell;
         let shaded = shade(ray, ray.origin + hit.t * ray.axis, at, grain, pixel);
-        c = fog(shaded.rgb, ray.axis, hit.t);
+        c = fog(shaded.rgb, ray, hit.t);
         decided = shaded.w;
         n = at.normal;
         if look.flag == 1u && (s == STATE_UNCONVERGED || decided == 0.0) {

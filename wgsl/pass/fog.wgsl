@@ -1,10 +1,10 @@
 // Exponential fog, which blends towards the sky with the distance from the eye.
 
-fn fog(color: vec3<f32>, axis: vec3<f32>, t: f32) -> vec3<f32> {
+fn fog(color: vec3<f32>, ray: Beam, t: f32) -> vec3<f32> {
     // A program may be kept when the number becomes zero; `mix` would round.
     if look.fog == 0.0 {
         return color;
     }
-    let seen = exp(-look.fog * t);
-    return mix(sky(axis), color, seen);
+    let seen = exp(-fog_depth(ray, t));
+    return mix(sky(ray.axis), color, seen);
 }

@@ -37,6 +37,11 @@ struct LookUniform {
     emission: vec3<f32>,
     /// The trap that glows, from 0 to 2.
     emission_trap: u32,
+    /// Scale heights of the fog per unit of length, 0 for fog of one density, and how many of
+    /// them the eye is above the fog's level.
+    fog_rise: f32,
+    fog_start: f32,
+    pad: vec2<u32>,
     palette: array<vec4<f32>, 8>,
 }
 

@@ -6,12 +6,18 @@
 const SKETCH_FILL = 0.25;
 const SKETCH_KEY = 0.5;
 
+/// The ray through the middle of a cell.
+fn sketch_ray(cell: vec2<u32>) -> Beam {
+    let corner = vec2<f32>(turn.stage.divisor * (turn.stage.origin + cell));
+    return view_through(corner, vec2<f32>(0.5 * f32(turn.stage.divisor)));
+}
+
 /// Where the front of a cell is, relative to the eye; at the block's edge that of the last cell.
 fn sketch_point(cell: vec2<i32>) -> vec3<f32> {
     let at = vec2<u32>(clamp(cell, vec2<i32>(0), vec2<i32>(turn.stage.cells) - 1));
     let front = cell_front(at.y * turn.stage.cells.x + at.x);
-    let pixel = f32(turn.stage.divisor) * (vec2<f32>(turn.stage.origin + at) + 0.5);
-    return front * normalize(view_direction(pixel.x, pixel.y));
+    let ray = sketch_ray(at);
+    return ray.origin + front * ray.axis;
 }
 
 @compute @workgroup_size(64)
@@ -29,8 +35,7 @@ fn sketch(
     let cell = queue_cell(packed);
     let index = queue_index(cell);
     let at = vec2<i32>(cell);
-    let middle = f32(turn.stage.divisor) * (vec2<f32>(turn.stage.origin + cell) + 0.5);
-    var c = sky(normalize(view_direction(middle.x, middle.y)));
+    var c = sky(sketch_ray(cell).axis);
     let state = cell_state(turn.stage.state + index);
     if state == STATE_HIT || state == STATE_UNCONVERGED {
         let across = sketch_point(at + vec2<i32>(1, 0)) - sketch_point(at - vec2<i32>(1, 0));

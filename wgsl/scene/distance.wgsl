@@ -153,11 +153,13 @@ fn advance(cone: Beam, at: Advance) -> Advance {
     let eps = distance_scene.detail * footprint(cone, t);
     let shell = distance_scene.shell * eps;
     var d = bounds_distance(q) - cone.r0 - shell;
+    // How wide the cone is: between parallel rays, the footprint does not grow.
+    let wide = select(cone.k * t, cone.r0, cone.grain == 0.0);
     // Far from the bounds their distance is enough.
-    if d <= 2.0 * cone.k * t {
+    if d <= 2.0 * wide {
         let p = scene_point(q);
         let most = distance_scene.iterations;
-        var trial = select(4.0 * cone.k * t, DISTANCE_TRIAL * at.radius, at.radius > 0.0);
+        var trial = select(4.0 * wide, DISTANCE_TRIAL * at.radius, at.radius > 0.0);
         if t == 0.0 {
             trial = max(f32(estimate(p, most)), 0.0);
         }
