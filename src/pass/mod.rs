@@ -6,7 +6,7 @@
 //!   their results are
 //! - [`color`]: light and colour, with [`look`], [`shadow`], [`occlusion`] and [`fog`]
 //! - [`pick`]: what there is at a pixel or at a point
-//! - [`tone`]: from light to the bytes of a picture
+//! - [`tone_map`], [`tone`]: from light to display values, and from these to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
 //! - [`progress`]: how far a render has come; `explain`: its programs, without a GPU
 //!
@@ -25,6 +25,7 @@ pub mod prepare;
 pub mod progress;
 pub mod shadow;
 pub mod tone;
+pub mod tone_map;
 pub mod trace;
 pub mod turn;
 

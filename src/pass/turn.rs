@@ -195,16 +195,21 @@ impl StageKind {
             Self::Pass(pass) => program(plan, solid, pass, extras),
             Self::Census => over_cells("census", &[wgsl!("pass/census.wgsl")]),
             Self::Develop => {
-                let own = [wgsl!("pass/tone.wgsl"), wgsl!("pass/develop.wgsl")];
-                over_cells("develop", &own)
+                let own = [tone(), vec![wgsl!("pass/develop.wgsl")]];
+                over_cells("develop", &own.concat())
             }
             Self::Sketch(_) => {
-                let look = [wgsl!("base/view.wgsl"), wgsl!("pass/look.wgsl")];
-                let own = [wgsl!("pass/tone.wgsl"), wgsl!("pass/sketch.wgsl")];
-                over_cells("sketch", &[look, own].concat())
+                let look = vec![wgsl!("base/view.wgsl"), wgsl!("pass/look.wgsl")];
+                let own = [look, tone(), vec![wgsl!("pass/sketch.wgsl")]];
+                over_cells("sketch", &own.concat())
             }
         }
     }
+}
+
+/// The modules that show light.
+fn tone() -> Vec<Module> {
+    vec![wgsl!("pass/tone.wgsl"), wgsl!("pass/tone_map.wgsl")]
 }
 
 /// The modules of a program over cells.
