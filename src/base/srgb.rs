@@ -2,6 +2,9 @@
 
 use glam::DVec3;
 
+/// The shares of red, green and blue in luminance (ITU-R BT.709).
+pub const LUMA: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
+
 /// sRGB to linear.
 ///
 /// ```

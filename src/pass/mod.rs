@@ -8,7 +8,7 @@
 //!   ([`fog_height`]): by formulas, [`quick`] with [`shadow`] and [`occlusion`], or by paths,
 //!   [`path`] with [`material`]; [`lamp`] and [`emission`] for both
 //! - [`pick`]: what there is at a pixel or at a point
-//! - [`tone`]: from light to the bytes of a picture
+//! - [`tone_map`], [`tone`]: from light to display values, and from these to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
 //! - [`progress`]: how far a render has come; `explain`: its programs, without a GPU
 //!
@@ -33,6 +33,7 @@ pub mod progress;
 pub mod quick;
 pub mod shadow;
 pub mod tone;
+pub mod tone_map;
 pub mod trace;
 pub mod turn;
 

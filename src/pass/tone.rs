@@ -9,8 +9,10 @@
 
 use glam::DVec3;
 
-use crate::base::srgb::{linear, srgb};
-use crate::pass::look::{tone, untone};
+use crate::base::srgb::linear;
+use crate::pass::look::untone;
+use crate::pass::tone_map::Tone;
+use crate::plan::look::ToneMap;
 
 /// The highest level, that of the byte 255.
 pub const MOST_LEVEL: u16 = 16 * 255;
@@ -31,20 +33,24 @@ pub fn byte(level: u16, [x, y]: [u32; 2]) -> u8 {
 }
 
 /// The factor of exposure, and then the least radiance that is shown as each level from 1 on,
-/// infinite for one that no radiance reaches.
-pub fn tone_steps(exposure: f64) -> Vec<f32> {
-    let reaches = |x: f32, least: u16| {
-        let shown = srgb(tone(exposure, DVec3::new(f64::from(x), 0.0, 0.0))).x;
-        level(shown) >= least
-    };
+/// infinite for one that no radiance reaches. If the tone mixes channels, exposure comes before
+/// the table, and its factor is 1 here.
+pub fn tone_steps(tone: &Tone) -> Vec<f32> {
+    let exposure = if tone.mixes { 1.0 } else { tone.exposure };
+    let of = |x: f32| level(tone.channels(DVec3::X * f64::from(x) * exposure).x);
     let step = |least: u16| {
         let shown = (f64::from(least) - 0.5) / f64::from(MOST_LEVEL);
+        let light = linear(DVec3::splat(shown)).x;
+        let light = match tone.map {
+            ToneMap::Filmic => untone(light),
+            _ => light,
+        };
         // The inverse is a few units in the last place off.
-        let mut x = (untone(linear(DVec3::splat(shown)).x) / exposure) as f32;
-        while x > 0.0 && reaches(x, least) {
+        let mut x = (light / exposure) as f32;
+        while x > 0.0 && of(x) >= least {
             x = x.next_down();
         }
-        while x < f32::INFINITY && !reaches(x, least) {
+        while x < f32::INFINITY && of(x) < least {
             x = x.next_up();
         }
         x
@@ -56,18 +62,24 @@ pub fn tone_steps(exposure: f64) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::look::Look;
 
     #[test]
     fn steps_are_where_the_level_changes() {
-        for stops in [-20.0_f64, -3.0, 0.0, 0.37, 20.0] {
-            let exposure = stops.exp2();
-            let steps = tone_steps(exposure);
-            let of = |x: f32| {
-                let shown = srgb(tone(exposure, DVec3::splat(f64::from(x))));
-                level(shown.x)
-            };
+        let maps = [ToneMap::Filmic, ToneMap::None];
+        for (exposure, map) in [-20.0, -3.0, 0.0, 0.37, 20.0]
+            .iter()
+            .zip(maps.iter().cycle())
+        {
+            let tone = Tone::of(&Look {
+                exposure: *exposure,
+                tone: *map,
+                ..Look::default()
+            });
+            let steps = tone_steps(&tone);
+            let of = |x: f32| level(tone.shown(DVec3::splat(f64::from(x))).x);
             for (least, x) in (1..).zip(&steps[1..]) {
-                assert_eq!((of(*x), of(x.next_down())), (least, least - 1), "{stops}");
+                assert_eq!((of(*x), of(x.next_down())), (least, least - 1), "{tone:?}");
             }
         }
     }

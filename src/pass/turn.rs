@@ -195,20 +195,23 @@ impl StageKind {
             Self::Pass(pass) => program(plan, solid, pass, extras),
             Self::Census => over_cells("census", &[wgsl!("pass/census.wgsl")]),
             Self::Develop => {
-                let own = [wgsl!("pass/tone.wgsl"), wgsl!("pass/develop.wgsl")];
-                over_cells("develop", &own)
+                let own = [tone(), vec![wgsl!("pass/develop.wgsl")]];
+                over_cells("develop", &own.concat())
             }
             Self::Sketch(_) => {
                 let mut all = plan.view().modules();
-                all.extend([
-                    wgsl!("pass/look.wgsl"),
-                    wgsl!("pass/tone.wgsl"),
-                    wgsl!("pass/sketch.wgsl"),
-                ]);
+                all.push(wgsl!("pass/look.wgsl"));
+                all.extend(tone());
+                all.push(wgsl!("pass/sketch.wgsl"));
                 over_cells("sketch", &all)
             }
         }
     }
+}
+
+/// The modules that show light.
+fn tone() -> Vec<Module> {
+    vec![wgsl!("pass/tone.wgsl"), wgsl!("pass/tone_map.wgsl")]
 }
 
 /// The modules of a program over cells.

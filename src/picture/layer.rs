@@ -8,9 +8,8 @@ use glam::DVec3;
 use crate::base::named::named_enum;
 use crate::base::outcome::State;
 use crate::base::parallel::for_each_part;
-use crate::base::srgb::srgb;
-use crate::pass::look::tone;
 use crate::pass::tone::{byte, level};
+use crate::pass::tone_map::Tone;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
 use crate::raster::png::BitDepth;
@@ -88,8 +87,8 @@ impl<'a> Shades<'a> {
     pub fn new(layer: Layer, frame: &'a Frame, plan: &Plan) -> Self {
         let shade: Box<dyn Fn(usize) -> DVec3 + Sync + 'a> = match layer {
             Layer::Color => {
-                let exposure = plan.look.exposure.exp2();
-                Box::new(move |i| srgb(tone(exposure, vector(frame.radiance[i]))))
+                let tone = Tone::of(&plan.look);
+                Box::new(move |i| tone.shown(vector(frame.radiance[i])))
             }
             Layer::Depth => {
                 let depth = |t: &f32| DVec3::splat(f64::from(*t));

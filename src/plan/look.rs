@@ -43,6 +43,27 @@ named_enum! {
     }
 }
 
+/// The temperature of daylight (D65) in kelvins, which leaves colours as they are.
+pub const DAYLIGHT: f64 = 6504.0;
+
+named_enum! {
+    /// How light becomes display values: `crate::pass::tone_map`.
+    pub enum ToneMap {
+        /// A rational curve of each channel (Narkowicz 2015).
+        Filmic = "filmic",
+        /// AgX.
+        Agx = "agx",
+        /// AgX with more contrast and colour.
+        Punchy = "agx-punchy",
+        /// The neutral map of the Khronos group.
+        Neutral = "neutral",
+        /// A fit of ACES by Stephen Hill.
+        Aces = "aces",
+        /// None: what is brighter than white is clipped.
+        None = "none",
+    }
+}
+
 settings! {
     /// How a picture looks. Colours are sRGB triples from 0 to 1.
     pub struct Look {
@@ -88,6 +109,9 @@ settings! {
         ], triples(MOST_STOPS, 0.0, 1.0), "colours of the surface, sRGB; the height picks one, or the orbit trap of a formula: how near the iterated point comes to given shapes";
         palette_cycles: f64 = 1.7, number(0.01, 100.0), "how many times the palette is passed through, in turns forwards and backwards";
         exposure: f64 = 0.0, number(-20.0, 20.0), "brightness in stops; each stop doubles the light" => Tone;
+        tone: ToneMap = ToneMap::Filmic, word(&ToneMap::WORDS), "how light becomes display values: a filmic curve of each channel, AgX, AgX with more contrast, the neutral map that keeps palettes true, a fit of ACES, or none, which clips" => Tone;
+        white: f64 = DAYLIGHT, number(1500.0, 15000.0), "temperature in kelvins of the light that appears white; a lower one makes the picture bluer" => Tone;
+        saturation: f64 = 1.0, number(0.0, 4.0), "strength of the colours before the tone map, 0 for grey" => Tone;
         flag_unconverged: bool = false, switch(),
             "whether pixels are magenta if their ray or their shadow ray reached its step limit; the default is true for heightfields";
     }

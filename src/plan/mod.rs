@@ -284,7 +284,7 @@ pub struct Extras {
     /// Read no layer back. The frame has figures only; the picture on the device is complete.
     pub unread: bool,
     /// Start from what the last frame left on the device: if only the look differs, from its
-    /// rays, and if only the exposure differs, from its colours. Programs stay when the number of a
+    /// rays, and if only tone and exposure differ, from its colours. Programs stay when the number of a
     /// feature becomes zero.
     pub reuse: bool,
 }

@@ -21,6 +21,7 @@ mod device;
 mod live;
 mod paths;
 mod samples;
+mod tone;
 mod work;
 
 use adapter::{COUNTED, LEVELS, on_cpu, render};

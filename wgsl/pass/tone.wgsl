@@ -1,8 +1,8 @@
 // The tone pass: the light of a pixel as 8 bits of sRGB, in the texture that is shown. Of two bytes
 // one or the other is taken from pixel to pixel.
 //
-// The curve is that of the files, in f64 on the host: a table holds the least radiance of each
-// level, 16 to a byte. So the texture has the bytes of the file.
+// The curve of a channel is that of the files, in f64 on the host: a table holds the least radiance
+// of each level, 16 to a byte. So the texture has the bytes of the file.
 
 /// The factor of exposure, and then the least radiance that is shown as each level from 1 on.
 @group(1) @binding(2) var<storage, read> tone_steps: array<f32>;
@@ -14,7 +14,8 @@ const TONE_MOST_LEVEL = 4080u;
 fn tone_level(x: f32) -> u32 {
     // Brighter light is white, and its square would overflow.
     let e = clamp(x * tone_steps[0], 0.0, 1e6);
-    let shown = min(e * (e * 2.51 + 0.03) / (e * (e * 2.43 + 0.59) + 0.14), 1.0);
+    let filmic = e * (e * 2.51 + 0.03) / (e * (e * 2.43 + 0.59) + 0.14);
+    let shown = min(select(e, filmic, tone_parameters.map == TONE_FILMIC), 1.0);
     let curve = select(1.055 * pow(shown, 1.0 / 2.4) - 0.055, 12.92 * shown, shown <= 0.0031308);
     var level = min(u32(f32(TONE_MOST_LEVEL) * curve + 0.5), TONE_MOST_LEVEL);
     // In f32 the level is off by one at most. The table decides.
@@ -27,7 +28,7 @@ fn tone_level(x: f32) -> u32 {
 }
 
 fn tone_store(pixel: vec2<u32>, c: vec3<f32>) {
-    let levels = vec3<u32>(tone_level(c.r), tone_level(c.g), tone_level(c.b));
+    let levels = tone_levels(c);
     // The order of the pixels is that of the R2 sequence, in units of 2^-32.
     let part = (pixel.x * 0xc13fa9a9u + pixel.y * 0x91e10da6u) >> 28u;
     let bytes = (levels + part) >> vec3<u32>(4u);

@@ -27,6 +27,7 @@ use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
 use crate::pass::progress::{Progress, Watch};
 use crate::pass::tone::tone_steps;
+use crate::pass::tone_map::Tone;
 use crate::pass::turn::{self, StageKind};
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::pyramid::Block;
@@ -206,8 +207,10 @@ impl FrameRequest {
         let mut parameters = marched.clone();
         parameters.push(("look_parameters", look.clone()));
         if needs.picture.is_some() {
-            let steps = tone_steps(plan.look.exposure.exp2());
+            let tone = Tone::of(&plan.look);
+            let steps = tone_steps(&tone);
             parameters.push(("tone_steps", cast_slice(&steps).to_vec()));
+            parameters.push(("tone_parameters", bytes_of(&tone.uniform()).to_vec()));
         }
         let mut traffic = Traffic::default();
         let device = &self.shared.device;
