@@ -24,7 +24,7 @@ pub use folder::Folder;
 pub use layer::{Layer, Shades, heat};
 #[cfg(feature = "cli")]
 pub use place::{Place, clear, commit};
-pub use png::{LAYER_KEYWORD, write_png};
+pub use png::{LAYER_KEYWORD, PngHead, write_png, write_png_rows};
 pub use web::{write_jpeg, write_webp};
 
 pub use crate::raster::png::BitDepth;

@@ -20,6 +20,7 @@ mod common {
 mod device;
 mod live;
 mod samples;
+mod windows;
 mod work;
 
 use adapter::{COUNTED, LEVELS, on_cpu, render};
