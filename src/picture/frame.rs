@@ -41,6 +41,16 @@ impl PassFigures {
             iterations: None,
         }
     }
+
+    /// Adds what the pass did in another part of the picture.
+    pub fn add(&mut self, part: &Self) {
+        let sum = |a: Option<u64>, b: Option<u64>| a.zip(b).map(|(a, b)| a + b);
+        self.cells += part.cells;
+        self.gpu_ms = self.gpu_ms.zip(part.gpu_ms).map(|(a, b)| a + b);
+        self.wall_ms += part.wall_ms;
+        self.evaluations = sum(self.evaluations, part.evaluations);
+        self.iterations = sum(self.iterations, part.iterations);
+    }
 }
 
 /// The result of a cone level, row by row.
@@ -71,6 +81,17 @@ pub struct Traffic {
     pub compilations: usize,
     /// Buffers that were created. Those of a frame on the device count as one.
     pub allocations: u32,
+}
+
+impl Traffic {
+    /// Adds that of another part of the picture.
+    pub fn add(&mut self, part: &Self) {
+        self.drains += part.drains;
+        self.submissions += part.submissions;
+        self.uploads += part.uploads;
+        self.compilations += part.compilations;
+        self.allocations += part.allocations;
+    }
 }
 
 /// A rendered picture. Layers go row by row from the upper left. A layer that was not asked for
