@@ -115,6 +115,15 @@ impl Executor {
         }
     }
 
+    /// What decides the bits of a picture beside its plan: the device and its driver.
+    pub fn identity(&self) -> String {
+        match self.device() {
+            Some(device) if device.info.driver_info.is_empty() => device.info.name.clone(),
+            Some(device) => format!("{}, {}", device.info.name, device.info.driver_info),
+            None => "the CPU, f64".into(),
+        }
+    }
+
     /// `vulkan`, `metal`, `dx12` or `cpu`.
     pub fn backend(&self) -> String {
         let backend = |device: &Device| format!("{:?}", device.info.backend).to_lowercase();

@@ -1,8 +1,8 @@
 //! Ctrl-C and other requests to end: the work stops as soon as it can and leaves no file.
 
 use std::process::exit;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -22,6 +22,9 @@ const SIGNALS: [i32; 2] = [SIGINT, SIGTERM];
 
 /// The exit code that a signal asked for; 0 before.
 static ASKED: AtomicUsize = AtomicUsize::new(0);
+
+/// What stays of work that is ended, as a part of a sentence.
+static KEPT: Mutex<Option<String>> = Mutex::new(None);
 
 /// How long the work has to notice: a single pass may take much longer, and nobody waits
 /// for that.
@@ -75,9 +78,18 @@ pub fn code() -> u8 {
     ASKED.load(Ordering::SeqCst) as u8
 }
 
-/// Ends the process without a trace of files.
+/// From now on this stays when the process is ended.
+pub fn keeps(what: Option<String>) {
+    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = what;
+}
+
+/// Ends the process without a trace of files, but for what is kept.
 fn end() -> ! {
     let _kept = picture::clear();
-    say(&format!("error: {CANCELLED}"));
+    let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    match &*kept {
+        Some(kept) => say(&format!("error: cancelled; {kept}")),
+        None => say(&format!("error: {CANCELLED}")),
+    }
     exit(code().into());
 }

@@ -13,7 +13,9 @@ use crate::command::conemap::ConeMapVerb;
 #[cfg(feature = "preview")]
 use crate::command::preview;
 use crate::command::print::say;
-use crate::command::{animate, bench, completions, conemap, devices, failure, presets, render};
+use crate::command::{
+    animate, bench, completions, conemap, devices, failure, merge, presets, render,
+};
 
 /// Renders fractals and height maps by multi-pass cone marching.
 ///
@@ -29,6 +31,8 @@ pub struct Line {
 enum Verb {
     /// Render a preset to a picture
     Render(Box<render::Render>),
+    /// Join the parts of a picture that `render --tile` wrote
+    Merge(merge::Merge),
     /// Fly through a scene and tune it in a window
     #[cfg(feature = "preview")]
     Preview(preview::Preview),
@@ -101,6 +105,7 @@ impl Line {
     fn run(&self) -> Result<()> {
         match &self.verb {
             Verb::Render(args) => render::run(args),
+            Verb::Merge(args) => merge::run(args),
             #[cfg(feature = "preview")]
             Verb::Preview(args) => preview::run(args),
             Verb::Animate(args) => animate::run(args),

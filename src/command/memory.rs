@@ -40,14 +40,25 @@ fn line(name: &str, text: &str) -> Option<u64> {
     kib.checked_mul(1024)
 }
 
-/// Checks that a render fits into memory: its pixels, and the cone maps that it needs.
+/// Checks that a render fits into memory: the pixels of its window, and the cone maps that it needs.
 ///
 /// # Errors
 /// It does not fit.
 pub fn check(plan: &Plan, bytes_per_pixel: u64, assets: &Assets) -> Result<()> {
     let available = available();
-    let lacking = lacking(plan.size, bytes_per_pixel, available);
+    let lacking = match plan.window {
+        Some(window) => lacking_part(window.size, bytes_per_pixel, available),
+        None => lacking(plan.size, bytes_per_pixel, available),
+    };
     fits(lacking.or_else(|| lacking_for(plan, assets, available)))
+}
+
+/// Checks that so many pixels fit into memory.
+///
+/// # Errors
+/// They do not fit.
+pub fn check_pixels(size: [u32; 2], bytes_per_pixel: u64) -> Result<()> {
+    fits(lacking_part(size, bytes_per_pixel, available()))
 }
 
 /// Checks that making a cone map with so many ratios fits into memory.
@@ -85,6 +96,17 @@ fn lacking([w, h]: [u32; 2], bytes_per_pixel: u64, available: u64) -> Option<Str
         format!("--size {width}x{} would fit", side(h, fitting / width))
     };
     Some(format!("a picture of {w}x{h} {there_is}; {advice}"))
+}
+
+/// A sentence if a part of a picture does not fit.
+fn lacking_part([w, h]: [u32; 2], bytes_per_pixel: u64, available: u64) -> Option<String> {
+    let needed = u64::from(w) * u64::from(h) * bytes_per_pixel;
+    (needed > available).then(|| {
+        let there_is = there_is(needed, available);
+        format!(
+            "a part of {w}x{h} pixels of the picture {there_is}; free some, or render parts of a finer --tile"
+        )
+    })
 }
 
 fn there_is(needed: u64, available: u64) -> String {

@@ -1,8 +1,10 @@
 //! The command line: its verbs, and what they share.
 //!
 //! - [`mod@line`]: the command line as a whole; [`arguments`]: parsers of arguments
-//! - [`render`], `preview`, [`animate`], [`mod@bench`], [`conemap`], [`presets`], [`devices`], [`completions`]: the verbs
+//! - [`render`], [`merge`], `preview`, [`animate`], [`mod@bench`], [`conemap`], [`presets`], [`devices`], [`completions`]: the verbs
 //! - [`executor`]: the device or the CPU that `--device` chooses
+//! - [`bands`]: big pictures, with their finished bands in a file, [`kept`]; [`tile`]: parts of a
+//!   picture
 //! - [`memory`]: checks before the work that a picture fits
 //! - [`output`]: where a render writes, and how; [`sink`]: files and standard output
 //! - [`progress`]: how much is done; [`mod@print`]: standard output and standard error
@@ -11,6 +13,7 @@
 
 pub mod animate;
 pub mod arguments;
+pub mod bands;
 pub mod bench;
 pub mod completions;
 pub mod conemap;
@@ -18,8 +21,10 @@ pub mod devices;
 pub mod executor;
 pub mod failure;
 pub mod interrupt;
+pub mod kept;
 pub mod line;
 pub mod memory;
+pub mod merge;
 pub mod output;
 pub mod presets;
 #[cfg(feature = "preview")]
@@ -30,3 +35,4 @@ pub mod render;
 pub mod sink;
 pub mod stats;
 pub mod table;
+pub mod tile;

@@ -6,13 +6,16 @@ use std::io::{BufReader, Cursor, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
+use clap::{Args, value_parser};
 
+use crate::command::arguments::bits;
 use crate::command::failure::usage;
 use crate::command::render::Render;
 use crate::command::sink::{ending, is_stdout};
 use crate::picture::frame::Frame;
 use crate::picture::{
-    LAYER_KEYWORD, Layer, OutputError, Shades, write_exr, write_jpeg, write_png, write_webp,
+    BitDepth, LAYER_KEYWORD, Layer, OutputError, Shades, write_exr, write_jpeg, write_png,
+    write_webp,
 };
 use crate::plan::{Extras, Plan};
 use crate::preset;
@@ -32,6 +35,22 @@ pub enum Format {
     Exr,
 }
 
+/// How a picture is written.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Options {
+    /// Bits of each colour of a PNG; 16 leave no steps in smooth shades [default: 8]
+    #[arg(long, value_name = "BITS", value_parser = bits())]
+    pub(crate) depth: Option<BitDepth>,
+
+    /// Quality of a JPEG, from 1 to 100 [default: 92]
+    #[arg(long, value_name = "QUALITY", value_parser = value_parser!(u8).range(1..=100))]
+    pub(crate) quality: Option<u8>,
+
+    /// What the picture shows.
+    #[arg(skip)]
+    pub(crate) layer: Layer,
+}
+
 /// Formats by the extensions of file names.
 const FORMATS: [(&str, Format); 5] = [
     ("png", Format::Png),
@@ -49,7 +68,7 @@ impl Format {
     ///
     /// # Errors
     /// The extension is unknown, or an option or the size does not fit the format.
-    pub fn of(output: &Path, args: &Render, size: [u32; 2]) -> Result<Self> {
+    pub fn of(output: &Path, args: &Options, size: [u32; 2]) -> Result<Self> {
         let extension = ending(output);
         let known = FORMATS.iter().find(|(known, _)| *known == extension);
         let format = match known {
@@ -101,7 +120,7 @@ impl Format {
     /// The encoder failed.
     pub fn encode(
         self,
-        args: &Render,
+        args: &Options,
         plan: &Plan,
         frame: &Frame,
         errors: Vec<f64>,

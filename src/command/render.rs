@@ -4,24 +4,26 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
 use clap::builder::TypedValueParser;
-use clap::{Args, ValueHint, value_parser};
+use clap::{Args, ValueHint};
 
-use crate::command::arguments::{bits, pixel_samples, size, words};
+use crate::command::arguments::{pixel_samples, size, words};
+use crate::command::bands::{Bands, BigPicture};
 use crate::command::bench::common::of_how_many;
 use crate::command::bench::runner::{Runner, TIMED};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
-use crate::command::output::{Format, default_name};
+use crate::command::output::{Format, Options, default_name};
 use crate::command::print::{print, say};
 use crate::command::progress::Reporter;
 use crate::command::sink::{Parcel, Sink, apart, spared};
-use crate::command::stats::{Stats, summary};
-use crate::command::{completions, interrupt, memory};
+use crate::command::stats::{Figures, Stats, summary};
+use crate::command::tile::Tile;
+use crate::command::{completions, interrupt, memory, tile};
 use crate::gpu::adapters::Choice;
 use crate::measure::truth::{Cache, MOST_ROUNDS, cached};
 use crate::pass;
+use crate::picture::Layer;
 use crate::picture::frame::{Frame, errors};
-use crate::picture::{BitDepth, Layer};
 use crate::plan::{Extras, Plan};
 use crate::preset::{self, Override, Preset};
 use crate::scene::Assets;
@@ -73,13 +75,24 @@ pub struct Render {
     #[arg(long, value_name = "LAYER", default_value = "color", value_parser = layers())]
     pub(crate) layer: Layer,
 
-    /// Bits of each colour of a PNG; 16 leave no steps in smooth shades [default: 8]
-    #[arg(long, value_name = "BITS", value_parser = bits())]
-    pub(crate) depth: Option<BitDepth>,
+    #[command(flatten)]
+    pub(crate) options: Options,
 
-    /// Quality of a JPEG, from 1 to 100 [default: 92]
-    #[arg(long, value_name = "QUALITY", value_parser = value_parser!(u8).range(1..=100))]
-    pub(crate) quality: Option<u8>,
+    /// Go on with a picture that was not finished, from its last band, to the same bytes
+    ///
+    /// A PNG of more than 16 megapixels is rendered in bands of rows. Each finished band is kept in
+    /// FILE.png.part beside the picture, which goes when the picture is whole. After an interrupt, a
+    /// full disk or a kill, the same command with --resume goes on; without it, such a file is never
+    /// overwritten. With --resume a smaller picture has bands too. If nothing is kept, the picture
+    /// begins at its first row.
+    #[arg(long, conflicts_with_all = ["tile", "stats"])]
+    pub(crate) resume: bool,
+
+    /// Render one part of the picture to an .exr file: the column and the row of a grid, from 0
+    ///
+    /// `conemarch merge` joins the parts. Their pixels are those of the whole picture.
+    #[arg(long, value_name = "C,R/CxR", value_parser = Tile::read, requires = "output")]
+    tile: Option<Tile>,
 
     /// Count the work and write its figures as JSON, - for standard output
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -119,7 +132,17 @@ pub fn run(args: &Render) -> Result<()> {
         Some(path) => path.clone(),
         None => default_name(args, &plan, own_size)?,
     };
-    let format = Format::of(&output, args, plan.size)?;
+    let options = args.options();
+    let format = Format::of(&output, &options, plan.size)?;
+    if let Some(tile) = args.tile {
+        if format != Format::Exr {
+            return Err(usage(
+                "a part of a picture is an .exr file; name one with -o, and `merge` makes the picture of all parts",
+            ));
+        }
+        plan.window = Some(tile.window(plan.size)?);
+    }
+    let bands = Bands::of(args, &plan, format, &output)?;
     let stats = args.stats.as_deref();
     let outputs = [("the picture", Some(output.as_path())), ("--stats", stats)];
     apart(&outputs)?;
@@ -129,7 +152,9 @@ pub fn run(args: &Render) -> Result<()> {
     spared(&outputs[1..], preset.as_slice())?;
     let extras = extras(args, format);
     let per_pixel = format.bytes_per_pixel(args.layer, extras);
-    memory::check(&plan.resolved(extras), per_pixel, &assets)?;
+    let mut largest = plan.resolved(extras).into_owned();
+    largest.window = plan.window.or(bands.map(|bands| bands.block(0)));
+    memory::check(&largest, per_pixel, &assets)?;
     for note in plan.scene.notes(&assets) {
         say(&format!("note: {note}"));
     }
@@ -149,32 +174,41 @@ pub fn run(args: &Render) -> Result<()> {
     if let Some(warning) = executor.precision_warning(&plan) {
         say(&format!("warning: {warning}"));
     }
-    let mut progress = Reporter::start("rendering");
-    let mut frame = executor.render(&plan, &assets, extras, &mut progress.watch())?;
-    drop(progress);
-    let errors = match args.layer {
-        Layer::Error => {
-            let mut progress = Reporter::start("rendering the truth");
-            let watch = &mut progress.watch();
-            let (truth, _) = cached(Cache::user().as_ref(), &plan, &assets, watch)?;
-            errors(&frame, &truth.frame, &plan.view())
-        }
-        _ => Vec::new(),
-    };
     let mut parcel = Parcel::default();
-    let mut progress = Reporter::start("writing the picture");
-    progress.report(0.0, "encoding");
-    parcel.put(picture, &format.encode(args, &plan, &frame, errors)?)?;
-    drop(progress);
-    let summary = summary(&output, &frame);
-    let is_inside = ends_at_the_eye(&frame, &plan);
+    let mut big = None;
+    let mut made = match (bands, picture) {
+        (Some(bands), Sink::File(mut place)) => {
+            let at = (output.as_path(), executor.identity());
+            let begun = BigPicture::begin((args, &plan, bands), at, &assets)?;
+            let made = big
+                .insert(begun)
+                .make(&mut executor, (&assets, extras), &mut place)?;
+            parcel.add(place);
+            made
+        }
+        (_, picture) => {
+            let content = whole(args, (&plan, &assets, extras), &mut executor, format)?;
+            parcel.put(picture, &content.0)?;
+            content.1
+        }
+    };
+    let summary = summary(&output, plan.pixels().size, &made);
+    let is_inside = ends_at_the_eye(&made, &plan);
     if let Some(figures) = figures {
-        warm_times(&mut executor, &plan, &assets, &mut frame)?;
-        let stats = Stats::new(&name, &plan, &executor, &frame);
+        // What has bands takes long.
+        if bands.is_none() {
+            warm_times(&mut executor, &plan, &assets, &mut made)?;
+        }
+        let stats = Stats::new(&name, &plan, &executor, &made);
         parcel.put_json(figures, &stats)?;
     }
-    interrupt::check()?;
-    parcel.hand_over()?;
+    let handed = interrupt::check()
+        .map_err(Into::into)
+        .and_then(|()| parcel.hand_over());
+    match big {
+        Some(big) => big.end(handed)?,
+        None => handed?,
+    }
     say(&summary);
     if is_inside {
         say(
@@ -182,6 +216,43 @@ pub fn run(args: &Render) -> Result<()> {
         );
     }
     Ok(())
+}
+
+/// Renders a picture at once. Returns its file and its figures.
+fn whole(
+    args: &Render,
+    (plan, assets, extras): (&Plan, &Assets, Extras),
+    executor: &mut Executor,
+    format: Format,
+) -> Result<(Vec<u8>, Figures)> {
+    let mut progress = Reporter::start("rendering");
+    let frame = executor.render(plan, assets, extras, &mut progress.watch())?;
+    drop(progress);
+    let errors = match args.layer {
+        Layer::Error => {
+            let mut progress = Reporter::start("rendering the truth");
+            let watch = &mut progress.watch();
+            let (truth, _) = cached(Cache::user().as_ref(), plan, assets, watch)?;
+            errors(&frame, &truth.frame, &plan.view())
+        }
+        _ => Vec::new(),
+    };
+    let mut progress = Reporter::start("writing the picture");
+    progress.report(0.0, "encoding");
+    let content = match plan.window {
+        Some(_) => tile::encode(plan, &frame, executor, assets)?,
+        None => format.encode(&args.options(), plan, &frame, errors)?,
+    };
+    Ok((content, Figures::of(&frame)))
+}
+
+impl Render {
+    fn options(&self) -> Options {
+        Options {
+            layer: self.layer,
+            ..self.options
+        }
+    }
 }
 
 /// A preset with overrides, and the files that it names.
@@ -216,9 +287,9 @@ pub fn moment(plan: &Plan, beat: f64) -> Result<Plan> {
 }
 
 /// Whether no ray comes farther than a hundred-thousandth of the way to the target.
-fn ends_at_the_eye(frame: &Frame, plan: &Plan) -> bool {
+fn ends_at_the_eye(figures: &Figures, plan: &Plan) -> bool {
     let near = 1e-5 * plan.camera.eye.distance(plan.camera.target);
-    frame.depth.iter().all(|t| f64::from(*t) <= near)
+    f64::from(figures.tally.farthest) <= near
 }
 
 /// Prints what would be run, once all arguments are known to be right: those that a
@@ -253,16 +324,16 @@ const MOST_AGAIN: f64 = 5_000.0;
 /// Warm runs that a median is taken of.
 const AGAIN: usize = 3;
 
-/// Puts the times of warm runs into a frame, as the first one compiled its programs and
+/// Puts the times of warm runs into figures, as the first one compiled its programs and
 /// counted; only what takes very long keeps the times of that one.
 fn warm_times(
     executor: &mut Executor,
     plan: &Plan,
     assets: &Assets,
-    frame: &mut Frame,
+    figures: &mut Figures,
 ) -> Result<()> {
     // The warm runs are of one sample.
-    if frame.march_ms > MOST_AGAIN || plan.samples > 1 {
+    if figures.march_ms > MOST_AGAIN || plan.samples > 1 {
         return Ok(());
     }
     let mut runner = Runner::new(executor, assets, "warm runs", AGAIN);
@@ -270,9 +341,9 @@ fn warm_times(
     let mut runs: Vec<Frame> = runs.collect::<Result<_, _>>()?;
     runs.sort_by(|a, b| a.march_ms.total_cmp(&b.march_ms));
     let middle = &runs[AGAIN / 2];
-    frame.march_ms = middle.march_ms;
+    figures.march_ms = middle.march_ms;
     // What was prepared is kept: only the first time tells what it takes.
-    let passes = frame.passes.iter_mut().filter(|p| p.pass.marches());
+    let passes = figures.passes.iter_mut().filter(|p| p.pass.marches());
     for (pass, warm) in passes.zip(middle.marched()) {
         pass.gpu_ms = warm.gpu_ms;
         pass.wall_ms = warm.wall_ms;

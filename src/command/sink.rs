@@ -156,6 +156,11 @@ impl Parcel {
         Ok(self.put(sink, &text)?)
     }
 
+    /// Adds what goes to standard output.
+    pub fn print(&mut self, content: &[u8]) {
+        self.printed.extend(content);
+    }
+
     /// Adds a file that is written already.
     pub fn add(&mut self, place: Place) {
         self.places.push(place);

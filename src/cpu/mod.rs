@@ -15,7 +15,7 @@ use crate::pass::march::{Ended, march};
 use crate::pass::prepare::{FrameError, prepare};
 use crate::pass::progress::{Progress, Watch};
 use crate::pass::{color, trace};
-use crate::picture::frame::Frame;
+use crate::picture::frame::{Frame, in_image};
 use crate::plan::pyramid::Level;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::{Assets, Hit, Solid, Task};
@@ -168,18 +168,23 @@ struct Run<'a, S> {
 type Sum = (u64, u64);
 
 impl<S: Solid> Run<'_, S> {
-    /// The rays of the sample.
+    /// The rays of the sample by pixels of the frame.
     fn rays(&self) -> impl Fn([u32; 2]) -> Beam + Sync + use<S> {
         let (view, place) = (self.view, offset(self.sample));
+        let origin = self.frame.origin;
         let share = (self.sample > 0).then(|| lens_share(self.sample));
-        move |pixel| match share {
-            Some(share) => view.view_ray_from(pixel, place, share),
-            None => view.view_ray_at(pixel, place),
+        move |pixel| {
+            let pixel = in_image(origin, pixel);
+            match share {
+                Some(share) => view.view_ray_from(pixel, place, share),
+                None => view.view_ray_at(pixel, place),
+            }
         }
     }
 
     fn march(&mut self, at: usize, level: Level, bands: &mut Bands) -> Result<Sum, FrameError> {
         let cells = level.cells(self.frame.size);
+        let first = self.frame.origin.map(|o| o / level.divisor);
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
         let one = |cell| {
             let parent = parent_of(parents, cell);
@@ -187,7 +192,13 @@ impl<S: Solid> Run<'_, S> {
             if parent.ended == Ended::Sky {
                 return (parent, work);
             }
-            let proof = Proof::of((solid, view), cell, level, parent.front, &mut work);
+            let proof = Proof::of(
+                (solid, view),
+                in_image(first, cell),
+                level,
+                parent.front,
+                &mut work,
+            );
             (proof, work)
         };
         let mut proofs = Vec::with_capacity(cells[0] as usize * cells[1] as usize);
@@ -246,13 +257,13 @@ impl<S: Solid> Run<'_, S> {
         let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
         let (states, undecided) = (&self.frame.state, &mut self.undecided);
         undecided.resize(states.len(), false);
-        let (counts, before) = (self.counts, self.before);
+        let (counts, before, origin) = (self.counts, self.before, self.frame.origin);
         let one = |pixel: [u32; 2]| {
             let at = pixel[1] as usize * size[0] as usize + pixel[0] as usize;
             let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
             color::color(
                 (solid, light),
-                (pixel, before),
+                (in_image(origin, pixel), before),
                 &ray(pixel),
                 &hits[at],
                 state,

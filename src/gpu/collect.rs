@@ -109,7 +109,7 @@ impl Parts {
         let words = |i: usize| -> Result<Vec<u32>, DeviceError> {
             from.read(device, starts[i], self.all()[i].words as usize)
         };
-        let whole = Place::new(layout, 1, frame.size[0]);
+        let whole = Place::new(layout, 1, frame);
         let states_of = |words: Vec<u32>| -> Vec<Option<State>> {
             words.iter().map(|w| state(*w, generation)).collect()
         };
@@ -131,7 +131,7 @@ impl Parts {
                 Pass::March(level) => level.divisor,
                 _ => 1,
             };
-            let place = Place::new(layout, divisor, frame.size[0]);
+            let place = Place::new(layout, divisor, frame);
             let first = layout.state(divisor) as usize;
             let cells = first..first + layout.count(divisor) as usize;
             let area = layout.count(1) as usize;
@@ -197,7 +197,7 @@ fn code(state: Option<State>) -> u8 {
     state.unwrap_or(State::Sky) as u8
 }
 
-/// The place of a block in a layer of the whole image.
+/// The place of a block in a layer of a frame.
 struct Place {
     origin: [u32; 2],
     cells: [u32; 2],
@@ -205,12 +205,13 @@ struct Place {
 }
 
 impl Place {
-    /// The place of a block in the layer of a divisor of an image so many pixels wide.
-    fn new(layout: &Layout, divisor: u32, width: u32) -> Self {
+    /// The place of a block in the layer of a divisor.
+    fn new(layout: &Layout, divisor: u32, frame: &Frame) -> Self {
+        let from = |axis: usize| layout.block.origin[axis] - frame.origin[axis];
         Self {
-            origin: layout.block.origin.map(|o| o / divisor),
+            origin: [0, 1].map(|axis| from(axis) / divisor),
             cells: layout.cells(divisor),
-            width: width.div_ceil(divisor),
+            width: frame.size[0].div_ceil(divisor),
         }
     }
 

@@ -17,7 +17,7 @@ pub fn explain(plan: &Plan, assets: &Assets, extras: Extras) -> Result<String, P
     let plan = &*plan.resolved(extras);
     let solid = plan.scene.outline(&plan.viewpoint(), assets)?;
     let mut text = String::new();
-    let [w, h] = plan.size;
+    let [w, h] = plan.pixels().size;
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{w} x {h}, mode {}", plan.march.mode.name());
     let _ = writeln!(text, "{}", solid.twin().describe());
@@ -31,7 +31,7 @@ pub fn explain(plan: &Plan, assets: &Assets, extras: Extras) -> Result<String, P
             Pass::Trace => plan.ray_steps(&solid).to_string(),
             Pass::Prepare(_) | Pass::Color => "-".into(),
         };
-        let [w, h] = pass.cells(plan.size);
+        let [w, h] = pass.cells(plan.pixels().size);
         let _ = writeln!(text, "  {:<12} {w:>6} x {h:<6} steps {limit}", pass.name());
         let program = match pass {
             Pass::Prepare(map) => program_of(map.generator),

@@ -10,14 +10,14 @@
 use std::io::{Seek, Write};
 
 use exr::meta::attribute::Chromaticities;
-use exr::prelude::{Vec2, WritableImage};
+use exr::prelude::{IntegerBounds, Vec2, WritableImage};
 
 use crate::picture::SOFTWARE;
 use crate::picture::error::OutputError;
 use crate::picture::frame::Frame;
 use crate::plan::Plan;
 use crate::preset::PNG_KEYWORD;
-use crate::raster::exr::{image, text_of};
+use crate::raster::exr::{Channels, image, text_of};
 
 /// Depth of the sky: farther than any scene, and finite, as compositors compute with it.
 /// Blender writes the same number.
@@ -31,6 +31,9 @@ const SRGB: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.3290),
 };
 
+/// Channels by their names, row by row.
+pub type Named = Vec<(String, Vec<f32>)>;
+
 /// Writes a frame that was rendered with normals. `preset` is the text of the plan.
 ///
 /// # Errors
@@ -41,6 +44,45 @@ pub fn write_exr(
     plan: &Plan,
     preset: &str,
 ) -> Result<(), OutputError> {
+    write_exr_channels(to, (plan.size, channels(frame, plan)), plan, preset)
+}
+
+/// Writes the channels of [`write_exr`], however they were made, of so many pixels.
+///
+/// # Errors
+/// The disk is full.
+pub fn write_exr_channels(
+    to: &mut (impl Write + Seek),
+    (size, list): ([u32; 2], Named),
+    plan: &Plan,
+    preset: &str,
+) -> Result<(), OutputError> {
+    encode(to, &described(size, list, plan, preset))
+}
+
+/// Writes the frame of a plan's window as a part of the whole image: the file's display window is
+/// the image, and its data window the part. `comments` is a text for people and for `merge`.
+///
+/// # Errors
+/// The disk is full.
+pub fn write_exr_part(
+    to: &mut (impl Write + Seek),
+    frame: &Frame,
+    plan: &Plan,
+    preset: &str,
+    comments: &str,
+) -> Result<(), OutputError> {
+    let mut image = described(frame.size, channels(frame, plan), plan, preset);
+    let place = frame.origin.map(|o| o as i32);
+    let size = plan.size.map(|n| n as usize);
+    image.attributes.display_window = IntegerBounds::from_dimensions((size[0], size[1]));
+    image.layer_data.attributes.layer_position = Vec2(place[0], place[1]);
+    image.layer_data.attributes.comments = Some(comments.into());
+    encode(to, &image)
+}
+
+/// What a frame knows.
+fn channels(frame: &Frame, plan: &Plan) -> Named {
     let mut list = Vec::new();
     let mut channel = |name: &str, values| list.push((name.to_string(), values));
     let one = |of: &[[f32; 3]], i: usize| of.iter().map(|v| v[i]).collect::<Vec<f32>>();
@@ -66,12 +108,21 @@ pub fn write_exr(
     if !frame.work.is_empty() {
         channel("steps.Y", frame.steps());
     }
-    let mut image = image(frame.size, list, [PNG_KEYWORD, preset]);
+    list
+}
+
+/// Channels with all attributes.
+fn described(size: [u32; 2], list: Named, plan: &Plan, preset: &str) -> Channels {
+    let mut image = image(size, list, [PNG_KEYWORD, preset]);
     image.layer_data.attributes.software_name = Some(SOFTWARE.into());
     image.attributes.chromaticities = Some(SRGB);
     // The maps of further attributes are written in no certain order: one in each.
     let other = &mut image.attributes.other;
     other.insert("conemarch camera".into(), text_of(&camera(plan)));
+    image
+}
+
+fn encode(to: &mut (impl Write + Seek), image: &Channels) -> Result<(), OutputError> {
     let written = image.write().to_buffered(to);
     written.map_err(|e| OutputError::encode("EXR", e))
 }

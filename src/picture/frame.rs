@@ -3,6 +3,7 @@
 use crate::base::outcome::{Counts, State};
 use crate::base::view::{Beam, View, footprint};
 use crate::heightfield::assets::Preparation;
+use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Pass, Plan};
 use serde::{Serialize, Serializer};
 
@@ -40,6 +41,16 @@ impl PassFigures {
             iterations: None,
         }
     }
+
+    /// Adds what the pass did in another part of the picture.
+    pub fn add(&mut self, part: &Self) {
+        let sum = |a: Option<u64>, b: Option<u64>| a.zip(b).map(|(a, b)| a + b);
+        self.cells += part.cells;
+        self.gpu_ms = self.gpu_ms.zip(part.gpu_ms).map(|(a, b)| a + b);
+        self.wall_ms += part.wall_ms;
+        self.evaluations = sum(self.evaluations, part.evaluations);
+        self.iterations = sum(self.iterations, part.iterations);
+    }
 }
 
 /// The result of a cone level, row by row.
@@ -72,12 +83,25 @@ pub struct Traffic {
     pub allocations: u32,
 }
 
+impl Traffic {
+    /// Adds that of another part of the picture.
+    pub fn add(&mut self, part: &Self) {
+        self.drains += part.drains;
+        self.submissions += part.submissions;
+        self.uploads += part.uploads;
+        self.compilations += part.compilations;
+        self.allocations += part.allocations;
+    }
+}
+
 /// A rendered picture. Layers go row by row from the upper left. A layer that was not asked for
 /// is empty.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// The first pixel in the whole image: that of the plan's window.
+    pub origin: [u32; 2],
     /// Linear radiance: red, green, blue.
     pub radiance: Vec<[f32; 3]>,
     /// Distance from the eye along the ray: infinite for sky, and as far as the ray came for
@@ -104,13 +128,15 @@ pub struct Frame {
 impl Frame {
     /// An empty frame with layers of the right sizes.
     pub fn blank(plan: &Plan, extras: Extras) -> Self {
+        let Block { origin, size } = plan.pixels();
         let area = match extras.unread {
             true => 0,
-            false => plan.size[0] as usize * plan.size[1] as usize,
+            false => plan.pixels().area(),
         };
         let layer = |kept: bool, count: usize| if kept { count } else { 0 };
         let mut frame = Self {
-            size: plan.size,
+            size,
+            origin,
             depth: vec![f32::INFINITY; area],
             state: vec![State::Unconverged as u8; area],
             radiance: vec![[0.0; 3]; layer(!extras.depth_only, area)],
@@ -119,9 +145,9 @@ impl Frame {
             ..Self::default()
         };
         for pass in plan.passes(extras) {
-            frame.passes.push(PassFigures::new(pass, plan.size));
+            frame.passes.push(PassFigures::new(pass, size));
             if let Pass::March(level) = pass {
-                let cells = level.cells(plan.size);
+                let cells = level.cells(size);
                 let count = area.min(cells[0] as usize * cells[1] as usize);
                 frame.levels.push(LevelLayer {
                     divisor: level.divisor,
@@ -189,7 +215,8 @@ impl Frame {
     /// The ray of a pixel, counted row by row.
     pub fn ray(&self, view: &View, i: usize) -> Beam {
         let width = self.size[0] as usize;
-        view.view_ray([(i % width) as u32, (i / width) as u32])
+        let local = [(i % width) as u32, (i / width) as u32];
+        view.view_ray(in_image(self.origin, local))
     }
 
     /// The world position of each pixel's hit; zero for sky.
@@ -203,6 +230,11 @@ impl Frame {
         };
         self.depth.iter().enumerate().map(at).collect()
     }
+}
+
+/// A pixel of a part of the image that begins at `origin`, as one of the whole image.
+pub(crate) fn in_image(origin: [u32; 2], local: [u32; 2]) -> [u32; 2] {
+    [0, 1].map(|axis| origin[axis] + local[axis])
 }
 
 /// The signed depth error of each pixel, in footprints of the reference. It is infinite where a

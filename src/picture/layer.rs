@@ -10,9 +10,9 @@ use crate::base::outcome::State;
 use crate::base::parallel::for_each_part;
 use crate::pass::tone::{byte, level};
 use crate::pass::tone_map::Tone;
-use crate::picture::frame::Frame;
+use crate::picture::frame::{Frame, in_image};
 use crate::plan::{Extras, Plan};
-use crate::raster::png::BitDepth;
+use crate::raster::png::{self, BitDepth};
 
 named_enum! {
     /// What a picture can show, and its description.
@@ -40,6 +40,16 @@ named_enum! {
 }
 
 impl Layer {
+    /// Numbers per pixel: one is enough for a depth.
+    pub fn channels(self) -> usize {
+        if self == Self::Depth { 1 } else { 3 }
+    }
+
+    /// Whether a part of a picture can be shown without the rest.
+    pub fn is_local(self) -> bool {
+        matches!(self, Self::Color | Self::Normal | Self::State)
+    }
+
     /// What a render must keep for the layer.
     pub fn extras(self) -> Extras {
         Extras {
@@ -56,6 +66,7 @@ impl Layer {
 pub struct Shades<'a> {
     layer: Layer,
     size: [u32; 2],
+    origin: [u32; 2],
     shade: Box<dyn Fn(usize) -> DVec3 + Sync + 'a>,
 }
 
@@ -119,8 +130,12 @@ impl<'a> Shades<'a> {
             }),
             Layer::Error => Box::new(|_| UNCONVERGED),
         };
-        let size = frame.size;
-        Self { layer, size, shade }
+        Self {
+            layer,
+            size: frame.size,
+            origin: frame.origin,
+            shade,
+        }
     }
 
     /// The same with the errors that [`Layer::Error`] shows: of each pixel, in footprints.
@@ -143,7 +158,7 @@ impl<'a> Shades<'a> {
 
     /// Whether one number per pixel is enough.
     pub fn is_grey(&self) -> bool {
-        self.layer == Layer::Depth
+        self.layer.channels() == 1
     }
 
     /// The layer.
@@ -162,10 +177,15 @@ impl<'a> Shades<'a> {
         samples.into_iter().map(|s| s.to_le_bytes()[0]).collect()
     }
 
+    /// All pixels as the bytes of a PNG's rows.
+    pub fn rows(&self, depth: BitDepth) -> Vec<u8> {
+        png::bytes(depth, &self.samples(depth.most()))
+    }
+
     /// All pixels as whole numbers up to `most`, rows over threads: three per pixel,
     /// one where the layer is grey. Colours of 8 bits are dithered.
     pub(crate) fn samples(&self, most: u16) -> Vec<u16> {
-        let channels = if self.is_grey() { 1 } else { 3 };
+        let channels = self.layer.channels();
         let is_dithered = self.is_color() && most == BitDepth::Eight.most();
         let [width, height] = self.size.map(|n| n as usize);
         let mut out = vec![0; width * height * channels];
@@ -174,7 +194,10 @@ impl<'a> Shades<'a> {
                 let shade = self.at(y * width + x).to_array();
                 for (to, value) in pixel.iter_mut().zip(shade) {
                     *to = match is_dithered {
-                        true => byte(level(value), [x as u32, y as u32]).into(),
+                        true => {
+                            let pixel = in_image(self.origin, [x as u32, y as u32]);
+                            byte(level(value), pixel).into()
+                        }
                         // The cast saturates, and turns NaN into black.
                         false => (f64::from(most) * value.clamp(0.0, 1.0) + 0.5) as u16,
                     };

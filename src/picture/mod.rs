@@ -18,13 +18,13 @@ mod png;
 mod web;
 
 pub use error::OutputError;
-pub use exr::{FAR, write_exr};
+pub use exr::{FAR, Named, write_exr, write_exr_channels, write_exr_part};
 #[cfg(feature = "cli")]
 pub use folder::Folder;
 pub use layer::{Layer, Shades, heat};
 #[cfg(feature = "cli")]
-pub use place::{Place, clear, commit};
-pub use png::{LAYER_KEYWORD, write_png};
+pub use place::{Place, clear, commit, set_unfinished};
+pub use png::{LAYER_KEYWORD, PngHead, write_png, write_png_rows};
 pub use web::{write_jpeg, write_webp};
 
 pub use crate::raster::png::BitDepth;

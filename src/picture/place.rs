@@ -3,7 +3,7 @@
 //! [`clear`] takes away what is left when an interrupt ends the process.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Seek, Write};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -82,23 +82,35 @@ impl Place {
         Ok(place(target.clone(), Some(held), file))
     }
 
+    /// Whether the file appears at the end. What cannot be replaced, like a pipe, does not.
+    pub fn appears(&self) -> bool {
+        self.held.is_some()
+    }
+
     /// Writes the content.
     ///
     /// # Errors
     /// The disk is full or `content` fails.
-    pub fn write(
+    pub fn write<E: From<OutputError>>(
         &mut self,
-        content: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), OutputError>,
-    ) -> Result<(), OutputError> {
+        content: impl FnOnce(&mut BufWriter<Told<'_>>) -> Result<(), E>,
+    ) -> Result<(), E> {
         let shown = self.shown.clone();
         let fail = |e: io::Error| OutputError::full(&shown, &e);
         if self.held.is_some() {
             self.file.set_len(0).map_err(fail)?;
             self.file.rewind().map_err(fail)?;
         }
-        let mut to = BufWriter::new(&mut self.file);
-        content(&mut to)?;
-        to.flush().map_err(fail)
+        let mut to = BufWriter::new(Told {
+            file: &mut self.file,
+            fault: None,
+        });
+        let written = content(&mut to).and_then(|()| to.flush().map_err(|e| fail(e).into()));
+        // An encoder does not say which file is full.
+        match to.into_parts().0.fault {
+            Some(fault) if written.is_err() => Err(fail(fault).into()),
+            _ => written,
+        }
     }
 
     /// Writes bytes as the content.
@@ -111,6 +123,35 @@ impl Place {
             to.write_all(bytes)
                 .map_err(|e| OutputError::full(&shown, &e))
         })
+    }
+}
+
+/// A file that remembers why it could not be written.
+#[derive(Debug)]
+pub struct Told<'a> {
+    file: &'a mut File,
+    fault: Option<io::Error>,
+}
+
+impl Write for Told<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes).inspect_err(|e| {
+            // One that can be tried again is none.
+            if e.kind() != io::ErrorKind::Interrupted {
+                let same = e.raw_os_error().map(io::Error::from_raw_os_error);
+                self.fault = Some(same.unwrap_or_else(|| e.kind().into()));
+            }
+        })
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for Told<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
     }
 }
 
@@ -142,6 +183,15 @@ pub fn commit(places: Vec<Place>) -> Result<(), OutputError> {
         }
     }
     Ok(())
+}
+
+/// Says whether a file is a temporary one, which an interrupt takes away.
+pub fn set_unfinished(path: &Path, is_unfinished: bool) {
+    let mut list = unfinished();
+    list.retain(|other| other != path);
+    if is_unfinished {
+        list.push(path.into());
+    }
 }
 
 /// Removes all temporary files, and folders that were made for them and are empty then.

@@ -31,13 +31,16 @@ use camera::Camera;
 use cones::Probe;
 use look::{LightMode, Look};
 use march::Marching;
-use pyramid::Level;
+use pyramid::{Block, Level};
 
 /// The largest width and height of an image.
 pub const MOST_PIXELS: u32 = 65_536;
 
 /// The most samples of a pixel. Their sum has the precision of an f32.
 pub const MOST_PIXEL_SAMPLES: u32 = 65_536;
+
+/// Windows begin at multiples of this many pixels: the widest cell of any cone level.
+pub const WINDOW_STEP: u32 = 64;
 
 /// Everything that decides a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +65,10 @@ pub struct Plan {
     pub time: Timing,
     /// What changes in the film.
     pub tracks: Vec<Track>,
+    /// The part of the image that is rendered, if not all of it. It begins at multiples of
+    /// [`WINDOW_STEP`], and ends at such or at the end of the image. Its pixels are those of the
+    /// whole picture, bit for bit. Presets know nothing of it.
+    pub window: Option<Block>,
 }
 
 impl Plan {
@@ -83,7 +90,17 @@ impl Plan {
             reference: None,
             time: Timing::default(),
             tracks: Vec::new(),
+            window: None,
         }
+    }
+
+    /// The pixels that are rendered: the window, or all.
+    pub fn pixels(&self) -> Block {
+        let all = Block {
+            origin: [0; 2],
+            size: self.size,
+        };
+        self.window.unwrap_or(all)
     }
 
     /// The keys of a section, or with an empty name those above all sections; `None` if there is

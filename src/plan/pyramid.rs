@@ -47,10 +47,11 @@ pub struct Block {
 }
 
 impl Block {
-    /// Cuts an image into blocks, row by row. Their edge is the largest multiple of `coarsest`
-    /// that is at most `edge`, but at least `coarsest`. An image with no more pixels than such a
+    /// Cuts a rectangle of pixels into blocks, row by row. Their edge is the largest multiple of `coarsest`
+    /// that is at most `edge`, but at least `coarsest`. One with no more pixels than such a
     /// block is one block, if no edge exceeds [`MOST_EDGE`].
-    pub fn cut(size: [u32; 2], edge: u32, coarsest: u32) -> Vec<Block> {
+    pub fn cut(self, edge: u32, coarsest: u32) -> Vec<Block> {
+        let size = self.size;
         let edge = (edge / coarsest).max(1) * coarsest;
         let [area, most] = [size, [edge; 2]].map(|s| u64::from(s[0]) * u64::from(s[1]));
         let longest = size[0].max(size[1]);
@@ -60,9 +61,9 @@ impl Block {
         };
         let starts = |axis: usize| (0..size[axis]).step_by(edge as usize);
         let blocks = starts(1).flat_map(|y| starts(0).map(move |x| [x, y]));
-        let block = |origin: [u32; 2]| Block {
-            origin,
-            size: [0, 1].map(|axis| edge.min(size[axis] - origin[axis])),
+        let block = |start: [u32; 2]| Block {
+            origin: [0, 1].map(|axis| self.origin[axis] + start[axis]),
+            size: [0, 1].map(|axis| edge.min(size[axis] - start[axis])),
         };
         blocks.map(block).collect()
     }

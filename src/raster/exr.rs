@@ -86,6 +86,112 @@ pub fn channel(from: impl BufRead + Seek, name: &str) -> Result<Vec<f32>, String
     Ok(image.layer_data.channel_data.pixels.1)
 }
 
+/// What the head of a file tells that holds a part of an image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartHead {
+    /// Columns and rows of the whole image.
+    pub whole: [u32; 2],
+    /// The first pixel of the part, and its columns and rows.
+    pub origin: [u32; 2],
+    /// See `origin`.
+    pub size: [u32; 2],
+    /// Names of its channels, sorted.
+    pub channels: Vec<String>,
+    /// The text of the attribute that was asked for.
+    pub text: String,
+    /// The comments.
+    pub comments: String,
+}
+
+/// Reads the head of a file of one part of an image, and puts the reader back to its start.
+///
+/// # Errors
+/// In words: broken, or no such file.
+pub fn part_head(from: &mut (impl Read + Seek), attribute: &str) -> Result<PartHead, String> {
+    let meta = MetaData::read_from_buffered(&mut *from, false).map_err(|e| broken(&e))?;
+    from.rewind().map_err(|e| format!("cannot be read: {e}"))?;
+    let none = "is no part of a picture that `render --tile` wrote";
+    let [first] = &meta.headers[..] else {
+        return Err(none.into());
+    };
+    let own = &first.own_attributes;
+    let (window, place) = (first.shared_attributes.display_window, own.layer_position);
+    let number = |n: usize| u32::try_from(n).map_err(|_| none);
+    let from_zero = |n: i32| u32::try_from(n).map_err(|_| none);
+    let (Some(AttributeValue::Text(text)), Some(comments)) =
+        (own.other.get(&Text::from(attribute)), &own.comments)
+    else {
+        return Err(none.into());
+    };
+    let found = PartHead {
+        whole: [number(window.size.x())?, number(window.size.y())?],
+        origin: [from_zero(place.x())?, from_zero(place.y())?],
+        size: [number(first.layer_size.x())?, number(first.layer_size.y())?],
+        channels: first
+            .channels
+            .list
+            .iter()
+            .map(|c| c.name.to_string())
+            .collect(),
+        text: text.to_string(),
+        comments: comments.to_string(),
+    };
+    let inside = |axis: usize| {
+        let end = u64::from(found.origin[axis]) + u64::from(found.size[axis]);
+        found.size[axis] > 0 && end <= u64::from(found.whole[axis])
+    };
+    match inside(0) && inside(1) && !first.deep {
+        true => Ok(found),
+        false => Err(none.into()),
+    }
+}
+
+/// Reads red, green and blue of a file, row by row.
+///
+/// # Errors
+/// In words: broken or cut short, or without them.
+pub fn light(from: impl BufRead + Seek) -> Result<Vec<[f32; 3]>, String> {
+    let read = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .specific_channels()
+        .required("R")
+        .required("G")
+        .required("B")
+        .collect_pixels(
+            |size, _| (size.width(), vec![[f32::NAN; 3]; size.area()]),
+            |(width, values): &mut (usize, Vec<[f32; 3]>), at, (r, g, b): (f32, f32, f32)| {
+                values[at.y() * *width + at.x()] = [r, g, b];
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .pedantic();
+    let image: Image<_> = read.from_buffered(from).map_err(|e| broken(&e))?;
+    Ok(image.layer_data.channel_data.pixels.1)
+}
+
+/// Reads all channels of a file that have f32, row by row.
+///
+/// # Errors
+/// In words: broken or cut short.
+pub fn all_channels(from: impl BufRead + Seek) -> Result<Vec<(String, Vec<f32>)>, String> {
+    let read = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .pedantic();
+    let image: Channels = read.from_buffered(from).map_err(|e| broken(&e))?;
+    let list = image.layer_data.channel_data.list.into_iter();
+    let named = list.map(|channel| match channel.sample_data {
+        FlatSamples::F32(values) => Ok((channel.name.to_string(), values)),
+        _ => Err("has channels of other numbers than f32".to_string()),
+    });
+    named.collect()
+}
+
 fn broken(e: &exr::error::Error) -> String {
     format!("is an EXR that cannot be read: {e}; fetch or save it again")
 }

@@ -138,30 +138,48 @@ fn broken(e: &DecodingError) -> String {
     }
 }
 
-/// Writes whole numbers with texts by their keywords. `is_light` says that they are sRGB.
+/// What stands in the head of a file that is written.
+#[derive(Clone, Copy, Debug)]
+pub struct Head<'a> {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Bits of a channel.
+    pub depth: BitDepth,
+    /// Numbers per pixel: 1 grey, 2 with alpha, 3 colour, 4 with alpha.
+    pub channels: usize,
+    /// Whether the numbers are sRGB.
+    pub is_light: bool,
+    /// Texts by their keywords.
+    pub texts: &'a [(&'a str, &'a str)],
+}
+
+/// Compressed bytes in a chunk of a file, so that one of any height takes little memory.
+const CHUNK: usize = 1 << 20;
+
+/// Writes a file from parts of its rows, each the bytes of whole rows in order.
 ///
 /// # Errors
-/// What the encoder or the writer said.
-pub fn write(
+/// A part fails, or what the encoder or the writer said.
+pub fn write_rows<E: From<EncodingError>>(
     to: impl Write,
-    [width, height]: [u32; 2],
-    depth: BitDepth,
-    numbers: &[u16],
-    is_light: bool,
-    texts: &[(&str, &str)],
-) -> Result<(), EncodingError> {
+    head: &Head<'_>,
+    parts: impl IntoIterator<Item = Result<Vec<u8>, E>>,
+) -> Result<(), E> {
+    let [width, height] = head.size;
     let mut encoder = Encoder::new(to, width, height);
-    let places = width as usize * height as usize;
-    encoder.set_color(match numbers.len() / places.max(1) {
+    encoder.set_color(match head.channels {
         1 => ColorType::Grayscale,
         2 => ColorType::GrayscaleAlpha,
         3 => ColorType::Rgb,
         _ => ColorType::Rgba,
     });
-    if is_light {
+    if head.depth == BitDepth::Sixteen {
+        encoder.set_depth(png::BitDepth::Sixteen);
+    }
+    if head.is_light {
         encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     }
-    for (keyword, text) in texts {
+    for (keyword, text) in head.texts {
         // More programs know tEXt than iTXt, but it has no other letters.
         if text.is_ascii() {
             encoder.add_text_chunk((*keyword).into(), (*text).into())?;
@@ -169,14 +187,42 @@ pub fn write(
             encoder.add_itxt_chunk((*keyword).into(), (*text).into())?;
         }
     }
-    let bytes: Vec<u8> = match depth {
-        BitDepth::Eight => numbers.iter().map(|n| *n as u8).collect(),
-        BitDepth::Sixteen => {
-            encoder.set_depth(png::BitDepth::Sixteen);
-            numbers.iter().flat_map(|n| n.to_be_bytes()).collect()
-        }
-    };
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&bytes)?;
-    writer.finish()
+    let mut rows = writer.stream_writer_with_size(CHUNK)?;
+    for part in parts {
+        rows.write_all(&part?).map_err(EncodingError::from)?;
+    }
+    rows.finish()?;
+    Ok(writer.finish()?)
+}
+
+/// Whole numbers as a file has them.
+pub fn bytes(depth: BitDepth, numbers: &[u16]) -> Vec<u8> {
+    match depth {
+        BitDepth::Eight => numbers.iter().map(|n| *n as u8).collect(),
+        BitDepth::Sixteen => numbers.iter().flat_map(|n| n.to_be_bytes()).collect(),
+    }
+}
+
+/// Writes whole numbers with texts by their keywords. `is_light` says that they are sRGB.
+///
+/// # Errors
+/// What the encoder or the writer said.
+pub fn write(
+    to: impl Write,
+    size: [u32; 2],
+    depth: BitDepth,
+    numbers: &[u16],
+    is_light: bool,
+    texts: &[(&str, &str)],
+) -> Result<(), EncodingError> {
+    let places = size[0] as usize * size[1] as usize;
+    let head = Head {
+        size,
+        depth,
+        channels: numbers.len() / places.max(1),
+        is_light,
+        texts,
+    };
+    write_rows(to, &head, [Ok(bytes(depth, numbers))])
 }

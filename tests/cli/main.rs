@@ -9,6 +9,7 @@
 )]
 
 mod bad_input;
+mod bands;
 mod bench;
 mod films;
 #[path = "../common/folder.rs"]
@@ -19,6 +20,7 @@ mod folder;
 mod images;
 #[path = "../../benches/pages/presets.rs"]
 mod page;
+mod parts;
 mod pictures;
 mod preset_errors;
 mod presets;

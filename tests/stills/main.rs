@@ -22,6 +22,7 @@ mod live;
 mod paths;
 mod samples;
 mod tone;
+mod windows;
 mod work;
 
 use adapter::{COUNTED, LEVELS, on_cpu, render};

@@ -30,7 +30,6 @@ use crate::pass::tone::tone_steps;
 use crate::pass::tone_map::Tone;
 use crate::pass::turn::{self, StageKind};
 use crate::picture::frame::{Frame, Traffic};
-use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::{AnySolid, Assets};
 
@@ -161,7 +160,7 @@ impl FrameRequest {
         let Self { plan, extras, .. } = self;
         let scene = plan.scene.solid(&plan.viewpoint(), &self.assets)?;
         let coarsest = plan.coarsest();
-        let blocks = Block::cut(plan.size, self.cutting.edge(), coarsest);
+        let blocks = plan.pixels().cut(self.cutting.edge(), coarsest);
         let marked = scene.twin().marks_hits();
         let layers = match (extras.depth_only, extras.normals) {
             (true, _) => 0,
@@ -170,7 +169,8 @@ impl FrameRequest {
         let blocks = Layout::of_blocks(&blocks, coarsest, extras.count, marked, layers);
         let limits = self.shared.device.device.limits();
         let largest = limits.max_texture_dimension_2d;
-        let shown = extras.shown && plan.size.iter().all(|n| *n <= largest);
+        let fits = plan.window.is_none() && plan.size.iter().all(|n| *n <= largest);
+        let shown = extras.shown && fits;
         let kinds = StageKind::all(&plan.passes(*extras), shown);
         let text = |program| with_texts(self.sources.as_ref(), program);
         let held = self.held.as_ref().filter(|_| extras.reuse);

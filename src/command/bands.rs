@@ -1,0 +1,205 @@
+//! Big pictures: rendered in bands of rows, kept beside the picture, and joined at the end. Memory
+//! does not grow with the height.
+
+use std::path::Path;
+
+use anyhow::{Result, anyhow};
+
+use crate::command::executor::Executor;
+use crate::command::kept::{Kept, Owner};
+use crate::command::output::Format;
+use crate::command::progress::Reporter;
+use crate::command::render::Render;
+use crate::command::sink::is_stdout;
+use crate::command::stats::Figures;
+use crate::command::tile::fingerprint;
+use crate::command::{failure::usage, interrupt};
+use crate::pass::progress::Progress;
+use crate::picture::{BitDepth, Layer, Place, PngHead, Shades, write_png_rows};
+use crate::plan::pyramid::Block;
+use crate::plan::{Extras, Plan, WINDOW_STEP};
+use crate::preset;
+use crate::scene::Assets;
+
+/// A picture of more pixels is rendered in bands. Smaller ones take at most a gigabyte.
+const MOST_AT_ONCE: u64 = 1 << 24;
+/// Pixels of a band, about: some blocks of a device, and a quarter of a gigabyte.
+const BAND: u32 = 1 << 22;
+/// Bands of a picture at least, if it is high enough, so that little is lost.
+const LEAST_BANDS: u32 = 16;
+
+/// How a picture is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bands {
+    size: [u32; 2],
+    rows: u32,
+}
+
+impl Bands {
+    /// The bands of a size.
+    pub fn new(size: [u32; 2]) -> Self {
+        let rows = (BAND / size[0]).min(size[1] / LEAST_BANDS);
+        Self {
+            size,
+            rows: (rows / WINDOW_STEP).max(1) * WINDOW_STEP,
+        }
+    }
+
+    /// The bands that a picture is rendered in, if it is big or is to be resumed.
+    ///
+    /// # Errors
+    /// It is to be resumed, and it has no bands.
+    pub fn of(args: &Render, plan: &Plan, format: Format, output: &Path) -> Result<Option<Self>> {
+        let whole = output.metadata().is_ok_and(|m| !m.is_file()) || is_stdout(output);
+        let can = format == Format::Png && args.layer.is_local() && !whole && plan.window.is_none();
+        if args.resume && !can {
+            return Err(usage(
+                "only a .png file of the layer color, normal or state can be resumed; leave --resume out, or write such a file",
+            ));
+        }
+        let is_big = plan.size.map(u64::from).iter().product::<u64>() > MOST_AT_ONCE;
+        let has_bands = can && (is_big || args.resume);
+        Ok(has_bands.then(|| Self::new(plan.size)))
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.size[1].div_ceil(self.rows) as usize
+    }
+
+    /// The pixels of a band.
+    pub fn block(&self, band: usize) -> Block {
+        let first = band as u32 * self.rows;
+        Block {
+            origin: [0, first],
+            size: [self.size[0], self.rows.min(self.size[1] - first)],
+        }
+    }
+}
+
+/// A big picture under way.
+pub struct BigPicture<'a> {
+    plan: &'a Plan,
+    layer: Layer,
+    depth: BitDepth,
+    bands: Bands,
+    preset: String,
+    kept: Kept,
+}
+
+impl<'a> BigPicture<'a> {
+    /// Begins a picture, or goes on with it.
+    ///
+    /// # Errors
+    /// What is kept beside the picture does not fit.
+    pub fn begin(
+        (args, plan, bands): (&Render, &'a Plan, Bands),
+        (output, device): (&Path, String),
+        assets: &Assets,
+    ) -> Result<Self> {
+        let preset = preset::write(plan);
+        let depth = args.options.depth.unwrap_or_default();
+        let more = format!("{} {depth:?} {}", args.layer.name(), bands.rows);
+        let owner = Owner {
+            version: env!("CARGO_PKG_VERSION").into(),
+            device,
+            picture: fingerprint(plan, assets, &more),
+        };
+        let row = head((plan, args.layer, depth), &preset).row_bytes();
+        let length = |band| bands.block(band).size[1] as usize * row;
+        let lengths: Vec<usize> = (0..bands.count()).map(length).collect();
+        Ok(Self {
+            plan,
+            layer: args.layer,
+            depth,
+            bands,
+            kept: Kept::open(output, owner, &lengths, args.resume)?,
+            preset,
+        })
+    }
+
+    /// Renders what is missing, and writes the picture. The times are those of the bands rendered
+    /// now.
+    ///
+    /// # Errors
+    /// The device failed, the disk is full, or an interrupt came. The bands before stay.
+    pub fn make(
+        &mut self,
+        executor: &mut Executor,
+        (assets, extras): (&Assets, Extras),
+        place: &mut Place,
+    ) -> Result<Figures> {
+        let figures = self.render(executor, assets, extras);
+        let made = figures.and_then(|figures| self.write(place).map(|()| figures));
+        made.map_err(|e| self.kept.context(e))
+    }
+
+    fn render(
+        &mut self,
+        executor: &mut Executor,
+        assets: &Assets,
+        extras: Extras,
+    ) -> Result<Figures> {
+        let mut figures: Option<Figures> = None;
+        let mut plan = self.plan.clone();
+        let (first, all) = (self.kept.count(), self.bands.count());
+        let mut progress = Reporter::start("rendering");
+        for band in first..all {
+            let mut watch = |now: &Progress| {
+                let share = (band as f64 + now.done) / all as f64;
+                let detail = format!("band {} of {all}, {}", band + 1, now.pass);
+                progress.report(share, &detail)
+            };
+            plan.window = Some(self.bands.block(band));
+            let frame = executor.render(&plan, assets, extras, &mut watch)?;
+            let own = Figures::of(&frame);
+            let rows = Shades::new(self.layer, &frame, &plan).rows(self.depth);
+            drop(frame);
+            self.kept.append(rows, own.tally)?;
+            match &mut figures {
+                Some(sum) => sum.add(&own),
+                None => figures = Some(own),
+            }
+        }
+        let tally = self.kept.tally();
+        let tally = tally.ok_or_else(|| anyhow!("a picture without rows"))?;
+        Ok(Figures {
+            tally,
+            ..figures.unwrap_or_else(|| Figures::none(tally))
+        })
+    }
+
+    fn write(&mut self, place: &mut Place) -> Result<()> {
+        let mut progress = Reporter::start("writing the picture");
+        let all = self.bands.count();
+        let head = head((self.plan, self.layer, self.depth), &self.preset);
+        let kept = &mut self.kept;
+        let rows = (0..all).map(|band| {
+            progress.report(band as f64 / all as f64, "encoding");
+            interrupt::check()?;
+            kept.rows(band)
+        });
+        place.write(|to| write_png_rows(to, &head, rows))
+    }
+
+    /// Ends a picture that `handed` over, or failed to.
+    ///
+    /// # Errors
+    /// It failed.
+    pub fn end(self, handed: Result<()>) -> Result<()> {
+        handed.map_err(|e| self.kept.context(e))?;
+        self.kept.remove();
+        Ok(())
+    }
+}
+
+/// The head of the file, so far as it says something of a render.
+fn head<'a>((plan, layer, depth): (&'a Plan, Layer, BitDepth), preset: &'a str) -> PngHead<'a> {
+    PngHead {
+        size: plan.size,
+        layer,
+        depth,
+        title: &plan.title,
+        preset,
+    }
+}

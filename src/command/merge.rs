@@ -1,0 +1,319 @@
+//! `conemarch merge PART... -o FILE`
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, anyhow};
+use clap::{Args, ValueHint};
+
+use crate::command::failure::usage;
+use crate::command::output::{Format, Options};
+use crate::command::print::say;
+use crate::command::progress::Reporter;
+use crate::command::sink::{Parcel, Sink, shown, spared};
+use crate::command::tile::Note;
+use crate::command::{interrupt, memory};
+use crate::picture::frame::Frame;
+use crate::picture::{Layer, Named, PngHead, Shades, write_exr_channels, write_png_rows};
+use crate::plan::Plan;
+use crate::preset::{self, PNG_KEYWORD};
+use crate::raster::exr::{PartHead, all_channels, light, part_head};
+use crate::raster::open::{self, Stream, open};
+
+/// What `merge` takes.
+#[derive(Args, Debug)]
+pub struct Merge {
+    /// The .exr files of all parts of one picture, which `render --tile` wrote
+    #[arg(value_name = "PART", required = true, value_hint = ValueHint::FilePath)]
+    parts: Vec<PathBuf>,
+
+    /// Where to write: a .png, .jpg, .webp or .exr file, or - for PNG on standard output
+    ///
+    /// The file has the bytes of the picture that `render` makes at once on the same device.
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    output: PathBuf,
+
+    #[command(flatten)]
+    options: Options,
+}
+
+/// A file of a part.
+#[derive(Debug)]
+struct Part {
+    path: PathBuf,
+    head: PartHead,
+    note: Note,
+}
+
+/// Joins parts to a picture.
+///
+/// # Errors
+/// A file is no part, the parts do not fit together, an unwritable file, an interrupt.
+pub fn run(args: &Merge) -> Result<()> {
+    interrupt::listen();
+    let parts: Vec<Part> = args
+        .parts
+        .iter()
+        .map(|path| Part::open(path))
+        .collect::<Result<_>>()?;
+    let plan = one_plan(&parts)?;
+    let format = Format::of(&args.output, &args.options, plan.size)?;
+    let inputs: Vec<_> = args
+        .parts
+        .iter()
+        .map(|path| ("a part", path.clone()))
+        .collect();
+    spared(&[("the picture", Some(args.output.as_path()))], &inputs)?;
+    let mut devices = BTreeMap::new();
+    for part in &parts {
+        *devices.entry(part.note.device.clone()).or_insert(0) += 1;
+    }
+    let count = parts.len();
+    let rows = in_rows(parts, plan.size)?;
+    let most = match format {
+        // Of a row of the grid: light, numbers and bytes, and the part that is read.
+        Format::Png => rows.iter().map(|row| row[0].head.size[1]).max(),
+        _ => Some(plan.size[1]),
+    };
+    let bytes = if format == Format::Exr { 135 } else { 40 };
+    memory::check_pixels([plan.size[0], most.unwrap_or(1)], bytes)?;
+    let mut sink = Sink::prepare(&args.output)?;
+    let mut progress = Reporter::start("joining the parts");
+    let all = rows.len();
+    let mut tell = |nth: usize| {
+        progress.report(nth as f64 / all as f64, "reading and encoding");
+        interrupt::check()
+    };
+    let text = preset::write(&plan);
+    let head = PngHead {
+        size: plan.size,
+        layer: Layer::Color,
+        depth: args.options.depth.unwrap_or_default(),
+        title: &plan.title,
+        preset: &text,
+    };
+    let mut parcel = Parcel::default();
+    match (format, &mut sink) {
+        (Format::Png, sink) => {
+            let lines = rows.iter().enumerate().map(|(nth, row)| {
+                tell(nth)?;
+                let frame = light_of(row, &plan)?;
+                Ok(Shades::new(Layer::Color, &frame, &plan).rows(head.depth))
+            });
+            match sink {
+                Sink::File(place) => place.write(|to| write_png_rows(to, &head, lines))?,
+                Sink::Stdout => {
+                    let mut content = Vec::new();
+                    write_png_rows::<anyhow::Error>(&mut content, &head, lines)?;
+                    parcel.print(&content);
+                }
+            }
+        }
+        (Format::Exr, Sink::File(place)) => {
+            let mut list = Named::new();
+            for (nth, part) in rows.iter().flatten().enumerate() {
+                tell(nth * all / count)?;
+                part.join(&mut list, plan.size)?;
+            }
+            place.write(|to| write_exr_channels(to, (plan.size, list), &plan, &text))?;
+        }
+        (_, sink) => {
+            let mut whole = Frame {
+                size: plan.size,
+                ..Frame::default()
+            };
+            for (nth, row) in rows.iter().enumerate() {
+                tell(nth)?;
+                whole.radiance.extend(light_of(row, &plan)?.radiance);
+            }
+            let content = format.encode(&args.options, &plan, &whole, Vec::new())?;
+            match sink {
+                Sink::File(place) => place.write_all(&content)?,
+                Sink::Stdout => parcel.print(&content),
+            }
+        }
+    }
+    drop(progress);
+    interrupt::check()?;
+    if let Sink::File(place) = sink {
+        parcel.add(place);
+    }
+    parcel.hand_over()?;
+    for (device, count) in devices {
+        let parts = if count == 1 {
+            "1 part".into()
+        } else {
+            format!("{count} parts")
+        };
+        say(&format!("{parts} by {device}"));
+    }
+    let [w, h] = plan.size;
+    say(&format!(
+        "{}  {w} x {h}  of {count} parts",
+        shown(&args.output)
+    ));
+    Ok(())
+}
+
+impl Part {
+    fn open(path: &Path) -> Result<Self> {
+        let read = || {
+            let mut file = stream(path)?;
+            let head = part_head(&mut file, PNG_KEYWORD)?;
+            let note = Note::read(&head.comments);
+            let note = note.ok_or("is no part of a picture that `render --tile` wrote")?;
+            Ok((head, note))
+        };
+        let (head, note) = read().map_err(|why: String| anyhow!("{}: {why}", path.display()))?;
+        // What the head claims is read at once.
+        memory::check_pixels(head.size, 12)?;
+        Ok(Self {
+            path: path.into(),
+            head,
+            note,
+        })
+    }
+
+    fn shown(&self) -> std::path::Display<'_> {
+        self.path.display()
+    }
+
+    fn fault(&self, why: &str) -> anyhow::Error {
+        anyhow!("{}: {why}", self.shown())
+    }
+
+    /// Puts values of the part into those of a row of the picture, or of all of it, so many pixels
+    /// wide, from a row on.
+    fn place<T: Copy>(&self, values: &[T], to: &mut [T], width: u32, first: u32) {
+        let [x, y] = self.head.origin;
+        let own = self.head.size[0] as usize;
+        for (row, values) in (y - first..).zip(values.chunks(own)) {
+            let at = row as usize * width as usize + x as usize;
+            to[at..at + own].copy_from_slice(values);
+        }
+    }
+
+    /// Joins all channels to those of the whole picture.
+    fn join(&self, list: &mut Named, size: [u32; 2]) -> Result<()> {
+        let read = stream(&self.path).and_then(all_channels);
+        let own = read.map_err(|why| self.fault(&why))?;
+        let pixels = size[0] as usize * size[1] as usize;
+        if list.is_empty() {
+            list.extend(
+                own.iter()
+                    .map(|(name, _)| (name.clone(), vec![0.0; pixels])),
+            );
+        }
+        for ((_, whole), (_, values)) in list.iter_mut().zip(&own) {
+            self.place(values, whole, size[0], 0);
+        }
+        Ok(())
+    }
+}
+
+fn stream(path: &Path) -> Result<Stream, String> {
+    let opened = open(path)?;
+    match opened.format {
+        open::Format::Exr => Ok(opened.file),
+        _ => Err("is no EXR; `render --tile` writes the parts of a picture".into()),
+    }
+}
+
+/// The plan of all parts.
+fn one_plan(parts: &[Part]) -> Result<Plan> {
+    let first = &parts[0];
+    for part in parts {
+        let other = |p: &Part| (p.head.whole, p.note.picture.clone(), p.head.text.clone());
+        if other(part) != other(first) {
+            return Err(anyhow!(
+                "`{}` and `{}` are parts of different pictures; render all parts with the same program, preset and options",
+                first.shown(),
+                part.shown()
+            ));
+        }
+        if part.head.channels != first.head.channels {
+            return Err(anyhow!(
+                "`{}` and `{}` have different channels; render all parts with --stats, or none",
+                first.shown(),
+                part.shown()
+            ));
+        }
+    }
+    let plan = preset::read(&first.head.text, &first.path.to_string_lossy())?;
+    match plan.size == first.head.whole {
+        true => Ok(plan),
+        false => Err(first.fault("its size is not that of its preset; render it again")),
+    }
+}
+
+/// The parts as the rows of their grid.
+fn in_rows(mut parts: Vec<Part>, [width, height]: [u32; 2]) -> Result<Vec<Vec<Part>>> {
+    parts.sort_by_key(|part| (part.head.origin[1], part.head.origin[0]));
+    let mut rows: Vec<Vec<Part>> = Vec::new();
+    // Where the next part begins, and where its row ends.
+    let (mut next, mut end) = ([0, 0], 0);
+    let mut last: Option<PathBuf> = None;
+    for part in parts {
+        let ([x, y], [w, h]) = (part.head.origin, part.head.size);
+        if next[0] == width {
+            next = [0, end];
+        }
+        if [y, x] < [next[1], next[0]] {
+            let other = last.unwrap_or_default();
+            return Err(anyhow!(
+                "`{}` and `{}` overlap; give each part once",
+                other.display(),
+                part.shown()
+            ));
+        }
+        if [x, y] != next {
+            return Err(hole(next));
+        }
+        if x == 0 {
+            end = y + h;
+            rows.push(Vec::new());
+        }
+        if y + h != end {
+            return Err(part.fault(
+                "is of another grid than the part to its left; render all parts of one --tile grid",
+            ));
+        }
+        next[0] = x + w;
+        last = Some(part.path.clone());
+        if let Some(row) = rows.last_mut() {
+            row.push(part);
+        }
+    }
+    match next[0] == width && end == height {
+        true => Ok(rows),
+        false if next[0] == width => Err(hole([0, end])),
+        false => Err(hole(next)),
+    }
+}
+
+fn hole([x, y]: [u32; 2]) -> anyhow::Error {
+    usage(format!(
+        "no part begins at column {x}, row {y} of the picture; give all parts of one --tile grid"
+    ))
+}
+
+/// The light of a row of parts.
+fn light_of(row: &[Part], plan: &Plan) -> Result<Frame> {
+    let [first, ..] = row else {
+        return Ok(Frame::default());
+    };
+    let (width, height) = (plan.size[0], first.head.size[1]);
+    let mut radiance = vec![[0.0; 3]; width as usize * height as usize];
+    for part in row {
+        interrupt::check()?;
+        let read = stream(&part.path).and_then(light);
+        let values = read.map_err(|why| part.fault(&why))?;
+        part.place(&values, &mut radiance, width, part.head.origin[1]);
+    }
+    Ok(Frame {
+        size: [width, height],
+        origin: [0, first.head.origin[1]],
+        radiance,
+        ..Frame::default()
+    })
+}
