@@ -19,10 +19,15 @@ presets![
     "bricks",
     "mandelbox",
     "mandelbox-canyon",
+    "mandelbox-clay",
     "mandelbox-corner",
+    "mandelbox-ember",
     "mandelbox-gate",
+    "mandelbox-globe",
+    "mandelbox-gold",
     "mandelbox-hall",
     "mandelbox-julia",
+    "mandelbox-lantern",
     "mandelbox-lattice",
     "mandelbox-miniature",
     "mandelbox-reef",
@@ -35,6 +40,7 @@ presets![
     "terrain",
     "tiles-deep",
     "tiles-shallow",
+    "valley-mist",
 ];
 
 /// The text of a built-in preset.

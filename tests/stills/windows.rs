@@ -2,6 +2,7 @@
 
 use conemarch::picture::frame::Frame;
 use conemarch::picture::{BitDepth, Layer, Shades};
+use conemarch::plan::look::LightMode;
 use conemarch::plan::pyramid::Block;
 use conemarch::plan::{Plan, WINDOW_STEP};
 
@@ -45,10 +46,13 @@ fn a_window_is_a_part_of_the_picture_bit_for_bit() {
     ];
     let mut wide = sized("mandelbox", size);
     (wide.march.coarsest, wide.samples) = (Some(WINDOW_STEP), 2);
+    let mut followed = sized("mandelbox-lantern", size);
+    (followed.look.mode, followed.look.bounces) = (LightMode::Path, 1);
     let plans = [
         wide,
         preset("mandelbox-miniature", &lens),
         sized("terrain", size),
+        followed,
     ];
     let windows = [
         ([0, 64], [150, 64]),
