@@ -112,7 +112,7 @@ mod tests {
                     }
                 }
                 assert!(
-                    front == t || k > 1e-6 || most > 0.999,
+                    front == t || k * (t + d) > 1e-4 * d || most > 0.999,
                     "{t} {d} {r0} {k} {most}"
                 );
             }
