@@ -58,7 +58,8 @@ pub(super) const LENS_SLACK: f64 = 1.0 + 1e-6;
 /// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint
 /// is `grain0 + grain t`.
 ///
-/// A pinhole camera has `r0 = 0`. A lens and parallel rays have a positive `r0`.
+/// A pinhole camera has `r0 = 0`. A lens and parallel rays have a positive `r0`. Cones of parallel
+/// rays, which start in a plane across the axis, are those of `grain = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
     /// Start, relative to the eye.

@@ -273,11 +273,9 @@ impl Solid for Distance {
         let eps = self.threshold(cone, t);
         let shell = self.stepping.shell * eps;
         let mut d = self.bounds.distance(self.eye + q) - cone.r0 - shell;
-        // How wide the cone is: between parallel rays, the footprint does not grow.
-        let wide = match cone.grain == 0.0 {
-            true => cone.r0,
-            false => cone.k * t,
-        };
+        // How wide the cone is.
+        let parallel = cone.grain == 0.0;
+        let wide = if parallel { cone.r0 } else { cone.k * t };
         // Far from the bounds their distance is enough.
         if d <= 2.0 * wide {
             let (p, most) = (self.eye + q, self.iterations);
@@ -298,11 +296,18 @@ impl Solid for Distance {
             d = d.max(ball.radius - shell - cone.r0);
         }
         let front = self.stepping.rule.cone_front(t, t, d, cone.k);
+        let (front, ball) = match parallel {
+            true => {
+                let (ball, rule) = (d + cone.r0, self.stepping.rule);
+                (rule.cone_parallel(t, ball, cone.r0, cone.k), ball)
+            }
+            false => (front, d),
+        };
         Advance {
             front,
             radius: d.max(0.0),
             // After a short gain, or without a ball, the four thinner children go on.
-            going: front - t > DISTANCE_ENOUGH * d.max(0.0),
+            going: front - t > DISTANCE_ENOUGH * ball.max(0.0),
         }
     }
 

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use conemarch::base::projection::Projection;
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
 use conemarch::pass::LookFeature;
@@ -86,7 +87,13 @@ fn scenes() -> Vec<Scene> {
 /// modes and the looks of a heightfield are tried apart.
 fn plans() -> Vec<Plan> {
     let presets = BUILTIN.iter().map(|(name, _)| preset(name, &[]));
-    let first = presets.chain(scenes().into_iter().map(Plan::new));
+    let projected = Projection::WORDS.iter().map(|(_, projection)| {
+        let mut plan = preset("mandelbox", &[]);
+        plan.camera.projection = *projection;
+        plan
+    });
+    let scenes = scenes().into_iter().map(Plan::new);
+    let first = presets.chain(projected).chain(scenes);
     let mut all = Vec::new();
     for plan in first {
         for mode in &Mode::ALL {

@@ -26,3 +26,13 @@ fn cone_front(front: f32, t: f32, d: f32, k: f32) -> f32 {
     }
     return max(front, (middle + root) * CONE_ROUND_DOWN);
 }
+
+/// The same for rays that start within `r0` of the axis in a plane across it, with the chord `k`,
+/// from an empty ball about the axis point at the front `t`.
+fn cone_parallel(t: f32, d: f32, r0: f32, k: f32) -> f32 {
+    let ball = d * CONE_TRUST - k * (t + d);
+    if !(ball > r0) {
+        return t;
+    }
+    return max(t, (t + sqrt((ball - r0) * (ball + r0))) * CONE_ROUND_DOWN);
+}

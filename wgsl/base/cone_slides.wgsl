@@ -10,3 +10,7 @@ fn cone_front(front: f32, t: f32, d: f32, k: f32) -> f32 {
     }
     return max(front, t + d);
 }
+
+fn cone_parallel(t: f32, d: f32, r0: f32, k: f32) -> f32 {
+    return cone_front(t, t, d - r0, k);
+}

@@ -153,8 +153,9 @@ fn advance(cone: Beam, at: Advance) -> Advance {
     let eps = distance_scene.detail * footprint(cone, t);
     let shell = distance_scene.shell * eps;
     var d = bounds_distance(q) - cone.r0 - shell;
-    // How wide the cone is: between parallel rays, the footprint does not grow.
-    let wide = select(cone.k * t, cone.r0, cone.grain == 0.0);
+    // How wide the cone is.
+    let parallel = cone.grain == 0.0;
+    let wide = select(cone.k * t, cone.r0, parallel);
     // Far from the bounds their distance is enough.
     if d <= 2.0 * wide {
         let p = scene_point(q);
@@ -173,6 +174,11 @@ fn advance(cone: Beam, at: Advance) -> Advance {
         d = max(d, ball - shell - cone.r0);
     }
     let front = cone_front(t, t, d, cone.k);
+    if parallel {
+        let ball = d + cone.r0;
+        let next = cone_parallel(t, ball, cone.r0, cone.k);
+        return Advance(next, max(d, 0.0), u32(next - t > DISTANCE_ENOUGH * max(ball, 0.0)));
+    }
     // After a short gain, or without a ball, the four thinner children go on.
     let going = front - t > DISTANCE_ENOUGH * max(d, 0.0);
     return Advance(front, max(d, 0.0), u32(going));
