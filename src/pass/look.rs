@@ -15,6 +15,10 @@ use crate::plan::Plan;
 use crate::plan::look::{LightMode, Look, MOST_STOPS, PATH_STEPS, SHADOW_STEPS};
 use crate::scene::{AnySolid, MOST_SHADOW_STEPS};
 
+/// The most rounds of inner loops on a path of light. Mesa's software Vulkan silently ends all loops
+/// after 65 535 rounds, and counts those of eight paths together. Usual paths have a tenth of this.
+const PATH_ROUNDS: u32 = 30_000;
+
 /// The look as WGSL reads it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -71,8 +75,10 @@ pub struct LookUniform {
     pub fog_rise: f32,
     /// How many of them the eye is above the fog's level.
     pub fog_start: f32,
+    /// The most steps of a path of light.
+    pub path_steps: u32,
     /// Unused.
-    pub pad: [u32; 2],
+    pub pad: u32,
     /// The palette's colours, linear.
     pub palette: [Vec4; MOST_STOPS],
 }
@@ -98,6 +104,8 @@ pub struct Light {
     pub softness: f64,
     /// Step limit of a shadow ray.
     pub shadow_steps: u32,
+    /// The most steps of a path of light.
+    pub path_steps: u32,
     /// Unit vector up.
     pub world_up: DVec3,
     /// The lamp relative to the eye.
@@ -148,6 +156,7 @@ impl Light {
         Self {
             softness: look.light_size.to_radians().tan(),
             shadow_steps: look.shadow_steps.unwrap_or(auto),
+            path_steps: PATH_ROUNDS / (solid.twin().rounds() + 1),
             world_up,
             lamp_at: look.lamp_at.map_or(DVec3::ZERO, |at| at - plan.camera.eye),
             substance: (look.mode == LightMode::Path).then(|| Substance::of(&look)),
@@ -204,7 +213,8 @@ impl Light {
             emission_trap: look.emission_trap as u32,
             fog_rise: self.fog_rise as f32,
             fog_start: self.fog_start as f32,
-            pad: [0; 2],
+            path_steps: self.path_steps,
+            pad: 0,
             palette,
         }
     }

@@ -25,12 +25,19 @@ fn path_toward(lamp: &Lamp, pair: DVec2) -> DVec3 {
     (material_frame(lamp.axis) * across.extend(1.0)).normalize()
 }
 
-/// Follows a ray for `reach`. It is still moving if it reached its step limit.
-fn path_sight<S: Solid>(solid: &S, light: &Light, ray: &Beam, reach: f64) -> (Step, Hit) {
+/// Follows a ray for `reach`. It is still moving if it reached its step limit. The path has so many
+/// steps left.
+fn path_sight<S: Solid>(
+    (solid, light): (&S, &Light),
+    ray: &Beam,
+    reach: f64,
+    left: &mut u32,
+) -> (Step, Hit) {
     let work = &mut Counts::default();
     let mut walk = solid.begin(ray, 0.0, reach, work);
     let mut step = Step::Moving;
-    for _ in 0..light.shadow_steps {
+    for _ in 0..light.shadow_steps.min(*left) {
+        *left -= 1;
         step = solid.walk_step(ray, &mut walk, work);
         if step != Step::Moving {
             break;
@@ -61,7 +68,7 @@ pub fn shade<S: Solid>(
     };
     let (mut sum, mut through) = (DVec3::ZERO, DVec3::ONE);
     let (mut at, mut point, mut axis) = (*surface, ray.at(t), ray.axis);
-    let mut decided = true;
+    let (mut decided, mut left) = (true, light.path_steps);
     for bounce in 0..=look.bounces {
         let frame = material_frame(at.normal);
         let local = frame.transpose() * -axis;
@@ -87,7 +94,7 @@ pub fn shade<S: Solid>(
             if l.z <= 0.0 || strength == DVec3::ZERO {
                 continue;
             }
-            let (step, _) = path_sight(solid, light, &to(toward), lamp.far);
+            let (step, _) = path_sight((solid, light), &to(toward), lamp.far, &mut left);
             if step == Step::Out {
                 let reflected = substance.material_reflects(&material, v, l).0;
                 sum += through * reflected * (PI * strength);
@@ -110,7 +117,7 @@ pub fn shade<S: Solid>(
             through /= stays;
         }
         let next = to(frame * l);
-        let (step, hit) = path_sight(solid, light, &next, reach);
+        let (step, hit) = path_sight((solid, light), &next, reach, &mut left);
         if step == Step::Out {
             sum += through * light.sky_light(next.axis);
         }

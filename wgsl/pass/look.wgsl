@@ -41,7 +41,9 @@ struct LookUniform {
     /// them the eye is above the fog's level.
     fog_rise: f32,
     fog_start: f32,
-    pad: vec2<u32>,
+    /// The most steps of a path of light.
+    path_steps: u32,
+    pad: u32,
     palette: array<vec4<f32>, 8>,
 }
 

@@ -11,11 +11,13 @@ struct Sight {
     hit: Hit,
 }
 
-/// Follows a ray for `reach`.
-fn path_sight(ray: Beam, reach: f32) -> Sight {
+/// Follows a ray for `reach`. The path has so many steps left.
+fn path_sight(ray: Beam, reach: f32, left: ptr<function, u32>) -> Sight {
     var walk = begin(ray, 0.0, reach);
     var s = STATE_UNCONVERGED;
-    for (var i = 0u; i < look.shadow_steps; i++) {
+    let most = min(look.shadow_steps, *left);
+    for (var i = 0u; i < most; i++) {
+        *left -= 1u;
         let now = walk_step(ray, &walk);
         if now != STATE_MOVING {
             s = now;
@@ -45,6 +47,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
     var point = q;
     var axis = ray.axis;
     var decided = 1.0;
+    var left = look.path_steps;
     for (var bounce = 0u; bounce <= look.bounces; bounce++) {
         let frame = material_frame(at.normal);
         var v = -axis * frame;
@@ -69,7 +72,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
             if l.z <= 0.0 {
                 continue;
             }
-            let sight = path_sight(Beam(start, toward, 0.0, 0.0, grain, 0.0), lamp.far);
+            let sight = path_sight(Beam(start, toward, 0.0, 0.0, grain, 0.0), lamp.far, &left);
             if sight.state == STATE_SKY {
                 light += through * material_reflects(material, v, l).rgb * (PI * strength);
             }
@@ -91,7 +94,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
             through /= stays;
         }
         let next = Beam(start, frame * l, 0.0, 0.0, grain, 0.0);
-        let sight = path_sight(next, reach);
+        let sight = path_sight(next, reach, &left);
         if sight.state == STATE_SKY {
             light += through * sky_light(next.axis);
             break;
