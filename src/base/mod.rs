@@ -17,6 +17,7 @@ pub mod cone;
 pub mod filter;
 pub mod key;
 pub mod named;
+pub mod oklab;
 pub mod outcome;
 pub mod parallel;
 pub mod shader;

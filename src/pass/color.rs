@@ -7,7 +7,7 @@ use crate::base::outcome::State;
 use crate::base::view::{Beam, footprint};
 use crate::pass::look::Light;
 use crate::pass::shadow::{self, Shadow};
-use crate::pass::{fog, occlusion};
+use crate::pass::{fog, layers, occlusion};
 use crate::scene::{Hit, Solid, Surface};
 
 /// Radiance that leaves a surface towards the eye, and whether the shadow ray reached its end.
@@ -23,7 +23,7 @@ fn shade<S: Solid>(
     let albedo = if solid.is_colored() {
         surface.pigment
     } else {
-        light.pigment_color(surface.pigment)
+        layers::albedo(solid, light, q, surface.pigment)
     };
     let facing = n.dot(look.light);
     // A surface that faces away is dark: it needs no shadow ray.

@@ -7,10 +7,11 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
 
+use crate::base::oklab::{oklab, unoklab};
 use crate::base::srgb::linear;
 use crate::pass::LookFeature;
 use crate::plan::Plan;
-use crate::plan::look::{Look, MOST_STOPS, SHADOW_STEPS};
+use crate::plan::look::{Look, MOST_STOPS, PaletteSpace, SHADOW_STEPS};
 use crate::scene::{AnySolid, MOST_SHADOW_STEPS};
 
 /// The look as WGSL reads it.
@@ -49,9 +50,11 @@ pub struct LookUniform {
     pub palette_cycles: f32,
     /// 1 to paint unconverged pixels in magenta.
     pub flag: u32,
+    /// 1 if colours of palettes are in Oklab.
+    pub oklab: u32,
     /// Unused.
-    pub pad: [u32; 2],
-    /// The palette's colours, linear.
+    pub pad: u32,
+    /// The palette's colours, linear or in Oklab.
     pub palette: [Vec4; MOST_STOPS],
 }
 
@@ -74,12 +77,24 @@ impl Light {
     pub fn of(plan: &Plan, solid: &AnySolid) -> Self {
         let mut look = plan.look.clone();
         let colors = [&mut look.light_color, &mut look.sky_high, &mut look.sky_low];
-        for color in colors.into_iter().chain(&mut look.palette) {
+        for color in colors {
             *color = linear(*color);
         }
+        let over = [
+            &mut look.layers.layer2_palette,
+            &mut look.layers.layer3_palette,
+        ];
+        for palette in std::iter::once(&mut look.palette).chain(over) {
+            let stops = palette.len().clamp(1, MOST_STOPS);
+            palette.resize(stops, DVec3::ZERO);
+            for color in palette {
+                *color = match look.palette_space {
+                    PaletteSpace::Linear => linear(*color),
+                    PaletteSpace::Oklab => oklab(linear(*color)),
+                };
+            }
+        }
         let distance = (plan.camera.target - plan.camera.eye).length();
-        let stops = look.palette.len().clamp(1, MOST_STOPS);
-        look.palette.resize(stops, DVec3::ZERO);
         look.light = look.light.normalize();
         look.occlusion_reach *= distance;
         look.fog /= distance;
@@ -101,10 +116,6 @@ impl Light {
     /// The values of the WGSL struct.
     pub fn uniform(&self) -> LookUniform {
         let look = &self.look;
-        let mut palette = [Vec4::W; MOST_STOPS];
-        for (to, from) in palette.iter_mut().zip(&look.palette) {
-            *to = from.as_vec3().extend(1.0);
-        }
         LookUniform {
             light: look.light.as_vec3(),
             key: look.key as f32,
@@ -122,8 +133,9 @@ impl Light {
             stops: look.palette.len() as u32,
             palette_cycles: look.palette_cycles as f32,
             flag: u32::from(look.flag_unconverged),
-            pad: [0; 2],
-            palette,
+            oklab: u32::from(look.palette_space == PaletteSpace::Oklab),
+            pad: 0,
+            palette: colors(&look.palette),
         }
     }
 
@@ -137,21 +149,41 @@ impl Light {
 
     /// The palette at x: a triangle wave over evenly spaced colours.
     pub fn palette_at(&self, x: f64) -> DVec3 {
-        let palette = &self.look.palette;
+        self.color_at(&self.look.palette, phase(x * self.look.palette_cycles))
+    }
+
+    /// The linear colour at a place from 0 to 1 of evenly spaced colours.
+    pub fn color_at(&self, palette: &[DVec3], phase: f64) -> DVec3 {
         let last = palette.len() - 1;
-        let turns = x * self.look.palette_cycles;
-        let phase = (turns - 2.0 * (0.5 * turns).round()).abs().clamp(0.0, 1.0);
         let at = phase * last as f64;
         let i = (at as usize).min(last);
         let f = at - i as f64;
         let j = (i + 1).min(last);
-        palette[i].lerp(palette[j], f * f * (3.0 - 2.0 * f))
+        let mixed = palette[i].lerp(palette[j], f * f * (3.0 - 2.0 * f));
+        match self.look.palette_space {
+            PaletteSpace::Linear => mixed,
+            PaletteSpace::Oklab => unoklab(mixed),
+        }
     }
 
     /// Albedo of a pigment.
     pub fn pigment_color(&self, pigment: DVec3) -> DVec3 {
         self.palette_at(pigment.x) * (0.55 + 0.45 * pigment.y) * (0.85 + 0.3 * pigment.z)
     }
+}
+
+/// A triangle wave from 0 at 0 to 1 at 1, which repeats without a seam.
+pub fn phase(turns: f64) -> f64 {
+    (turns - 2.0 * (0.5 * turns).round()).abs().clamp(0.0, 1.0)
+}
+
+/// Colours as WGSL reads them.
+pub fn colors(palette: &[DVec3]) -> [Vec4; MOST_STOPS] {
+    let mut all = [Vec4::W; MOST_STOPS];
+    for (to, from) in all.iter_mut().zip(palette) {
+        *to = from.as_vec3().extend(1.0);
+    }
+    all
 }
 
 /// Radiance as a screen shows it, from 0 to 1 and still linear: a factor of exposure, then a

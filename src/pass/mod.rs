@@ -4,7 +4,7 @@
 //! - [`march`]: the cones of one level; [`trace`]: one ray per pixel
 //! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits; [`layout`]: where
 //!   their results are
-//! - [`color`]: light and colour, with [`look`], [`shadow`], [`occlusion`] and [`fog`]
+//! - [`color`]: light and colour, with [`look`], [`layers`], [`shadow`], [`occlusion`] and [`fog`]
 //! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone_map`], [`tone`]: from light to display values, and from these to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
@@ -16,6 +16,7 @@ pub mod color;
 mod explain;
 pub mod features;
 pub mod fog;
+pub mod layers;
 pub mod layout;
 pub mod look;
 pub mod march;
@@ -48,6 +49,7 @@ pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Pro
     let entry = match pass {
         Pass::Color => {
             modules.push(wgsl!("pass/look.wgsl"));
+            modules.extend(layers::modules(&plan.look.layers, solid));
             let features = LookFeature::ALL.iter();
             modules.extend(features.map(|f| f.module(f.is_on(&plan.look))));
             modules.push(wgsl!(

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::layers::Layers;
 use crate::base::key::{Fault, auto_count, number, switch, triple, triples, word};
 use crate::base::named::named_enum;
 use crate::scene::MOST_SHADOW_STEPS;
@@ -11,7 +12,7 @@ use crate::settings;
 /// pass close over long slopes of a fractal need more.
 pub const SHADOW_STEPS: u32 = 96;
 /// The largest number of colours in a palette.
-pub const MOST_STOPS: usize = 8;
+pub const MOST_STOPS: usize = 16;
 
 /// The temperature of daylight (D65) in kelvins, which leaves colours as they are.
 pub const DAYLIGHT: f64 = 6504.0;
@@ -31,6 +32,16 @@ named_enum! {
         Aces = "aces",
         /// None: what is brighter than white is clipped.
         None = "none",
+    }
+}
+
+named_enum! {
+    /// Where the colours of palettes blend.
+    pub enum PaletteSpace {
+        /// Linear light.
+        Linear = "linear",
+        /// Oklab.
+        Oklab = "oklab",
     }
 }
 
@@ -62,11 +73,14 @@ settings! {
         ], triples(MOST_STOPS, 0.0, 1.0), "colours of the surface, sRGB; the height picks one, or the orbit trap of a formula: how near the iterated point comes to given shapes";
         palette_cycles: f64 = 1.7, number(0.01, 100.0), "how many times the palette is passed through, in turns forwards and backwards";
         exposure: f64 = 0.0, number(-20.0, 20.0), "brightness in stops; each stop doubles the light" => Tone;
+        palette_space: PaletteSpace = PaletteSpace::Linear, word(&PaletteSpace::WORDS), "in which space the colours of palettes blend: as light, or in Oklab, where equal steps look equally large and blends keep their colour";
         tone: ToneMap = ToneMap::Filmic, word(&ToneMap::WORDS), "how light becomes display values: a filmic curve of each channel, AgX, AgX with more contrast, the neutral map that keeps palettes true, a fit of ACES, or none, which clips" => Tone;
         white: f64 = DAYLIGHT, number(1500.0, 15000.0), "temperature in kelvins of the light that appears white; a lower one makes the picture bluer" => Tone;
         saturation: f64 = 1.0, number(0.0, 4.0), "strength of the colours before the tone map, 0 for grey" => Tone;
         flag_unconverged: bool = false, switch(),
             "whether pixels are magenta if their ray or their shadow ray reached its step limit; the default is true for heightfields";
+        /// Traps and layers.
+        ..layers: Layers;
     }
 }
 

@@ -9,6 +9,7 @@ use conemarch::formula::Formula;
 use conemarch::pass::LookFeature;
 use conemarch::pass::pick;
 use conemarch::pass::turn::{self, StageKind};
+use conemarch::plan::layers::Trap;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
@@ -102,6 +103,11 @@ fn plans() -> Vec<Plan> {
                 all.push(one);
             }
         }
+    }
+    for formula in Formula::all() {
+        let mut layered = Plan::new(distance(formula, None));
+        layered.look.layers.layer2_trap = Trap::Point;
+        all.push(layered);
     }
     all
 }

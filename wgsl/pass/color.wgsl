@@ -11,7 +11,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32) -> vec4<f32> {
     let n = surface.normal;
     var albedo = surface.pigment;
     if !COLOR_IS_PIGMENT {
-        albedo = pigment_color(surface.pigment);
+        albedo = layers_albedo(q, surface.pigment);
     }
     let facing = dot(n, look.light);
     // A surface that faces away is dark: it needs no shadow ray.
