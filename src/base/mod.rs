@@ -21,6 +21,7 @@ pub mod filter;
 mod fisheye;
 pub mod key;
 pub mod named;
+pub mod oklab;
 mod orthographic;
 pub mod outcome;
 pub mod parallel;

@@ -8,6 +8,8 @@ use glam::DVec3;
 
 use crate::base::key::{Fault, Key};
 use crate::base::shader::Module;
+use crate::formula::traps::Traps;
+use crate::wgsl;
 
 /// A region that holds a shape: a box cut by a ball about the same centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,6 +152,19 @@ pub trait DistanceEstimate {
     /// Three orbit traps from 0 to 1, which pick the colour: how near the orbit of a point
     /// comes to three sets.
     fn trap(&self, p: DVec3, most: u32) -> DVec3;
+
+    /// The numbers of all traps ([`Traps::numbers`]): of a formula without orbits those of the
+    /// place itself.
+    fn traps(&self, p: DVec3, _most: u32) -> [f64; 7] {
+        let mut all = Traps::FAR;
+        all.add(p, 1.0);
+        all.numbers(1.0)
+    }
+
+    /// The WGSL module with the twin of [`Self::traps`].
+    fn traps_module(&self) -> Module {
+        wgsl!("formula/traps_plain.wgsl")
+    }
 
     /// See [`Evaluate::lipschitz`].
     fn lipschitz(&self) -> f64 {

@@ -6,6 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
 use crate::formula::rotation::Rotation;
+use crate::formula::traps::Traps;
 
 /// The parameters as WGSL reads them.
 #[repr(C)]
@@ -204,5 +205,26 @@ impl Folds {
             plane / (plane + 0.25 * size),
             sphere / (sphere + high),
         )
+    }
+
+    /// The numbers of all traps. Twin: `wgsl/formula/traps_folds.wgsl`.
+    pub fn traps(&self, p: DVec3, c: DVec3, most: u32) -> [f64; 7] {
+        let mut all = Traps::FAR;
+        let (mut z, mut n) = (p, 0);
+        while n < most && z.length_squared() <= self.bail2 {
+            let fold = self.fold(z);
+            // Later iterations only add noise to distances.
+            if n < 10 {
+                all.add(fold.b, self.radii[1]);
+            }
+            let over = z.abs().cmpgt(DVec3::splat(self.fold_limit)).bitmask();
+            all.folds += over.count_ones() + u32::from(fold.length < self.radii[1]);
+            z = self.next(&fold, c);
+            n += 1;
+        }
+        // An orbit that is far past its end has ended earlier.
+        let past = 0.5 * (z.length_squared() / self.bail2).max(1.0).ln() / self.scale.abs().ln();
+        all.iterations = f64::from(n) - past.min(1.0);
+        all.numbers(self.fold_limit)
     }
 }

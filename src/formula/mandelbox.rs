@@ -178,6 +178,15 @@ impl DistanceEstimate for Mandelbox {
         self.folds().trap(p, c, most)
     }
 
+    fn traps(&self, p: DVec3, most: u32) -> [f64; 7] {
+        let c = if self.julia { self.julia_constant } else { p };
+        self.folds().traps(p, c, most)
+    }
+
+    fn traps_module(&self) -> Module {
+        wgsl!("formula/traps_folds.wgsl")
+    }
+
     fn bounds(&self) -> Bounds {
         let (s, l) = (self.scale, self.fold_limit);
         let rotated = self.rotated().is_some();

@@ -1,7 +1,7 @@
 //! Formulas: shapes given by an estimate of the distance to them.
 //!
 //! - [`mandelbox`]: the Mandelbox, and its Julia sets; `folds`: one iteration; `orbit`, `julia`
-//!   and `scalar`: its estimates
+//!   and `scalar`: its estimates; `traps`: how near orbits come to shapes
 //! - [`balls`]: balls, boxes and a rod, for tests
 //! - [`rotation`]: a rotation between folds
 //! - `contract`: [`DistanceEstimate`], what a scene asks a formula
@@ -17,8 +17,10 @@ pub mod mandelbox;
 mod orbit;
 pub mod rotation;
 mod scalar;
+mod traps;
 
 pub use contract::{Bounds, DistanceEstimate, Evaluate, Evaluator, Reading};
+pub use traps::Traps;
 
 /// Makes the enum of all formulas from one list: module and type of each.
 macro_rules! formulas {

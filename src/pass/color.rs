@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::base::outcome::State;
 use crate::base::view::Beam;
 use crate::pass::look::Light;
-use crate::pass::{fog, path, quick};
+use crate::pass::{fog, layers, path, quick};
 use crate::scene::{Hit, Solid, Surface};
 
 /// A pixel's colour.
@@ -20,11 +20,11 @@ pub struct Shaded {
     pub decided: bool,
 }
 
-/// The share of light that a surface sends back.
-pub fn albedo_of<S: Solid>(solid: &S, light: &Light, surface: &Surface) -> DVec3 {
+/// The share of light that a surface sends back. `q` is relative to the eye.
+pub fn albedo_of<S: Solid>(solid: &S, light: &Light, surface: &Surface, q: DVec3) -> DVec3 {
     match solid.is_colored() {
         true => surface.pigment,
-        false => light.pigment_color(surface.pigment),
+        false => layers::albedo(solid, light, q, surface.pigment),
     }
 }
 

@@ -7,12 +7,13 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
 
+use crate::base::oklab::{oklab, unoklab};
 use crate::base::srgb::linear;
 use crate::pass::LookFeature;
 use crate::pass::lamp::Lamp;
 use crate::pass::material::{MaterialUniform, Substance};
 use crate::plan::Plan;
-use crate::plan::look::{LightMode, Look, MOST_STOPS, PATH_STEPS, SHADOW_STEPS};
+use crate::plan::look::{LightMode, Look, MOST_STOPS, PATH_STEPS, PaletteSpace, SHADOW_STEPS};
 use crate::scene::{AnySolid, MOST_SHADOW_STEPS};
 
 /// The most rounds of inner loops on a path of light. Mesa's software Vulkan silently ends all loops
@@ -77,9 +78,9 @@ pub struct LookUniform {
     pub fog_start: f32,
     /// The most steps of a path of light.
     pub path_steps: u32,
-    /// Unused.
-    pub pad: u32,
-    /// The palette's colours, linear.
+    /// 1 if colours of palettes are in Oklab.
+    pub oklab: u32,
+    /// The palette's colours, linear or in Oklab.
     pub palette: [Vec4; MOST_STOPS],
 }
 
@@ -129,12 +130,24 @@ impl Light {
             &mut look.sky_high,
             &mut look.sky_low,
         ];
-        for color in colors.into_iter().chain(&mut look.palette) {
+        for color in colors.into_iter() {
             *color = linear(*color);
         }
+        let over = [
+            &mut look.layers.layer2_palette,
+            &mut look.layers.layer3_palette,
+        ];
+        for palette in std::iter::once(&mut look.palette).chain(over) {
+            let stops = palette.len().clamp(1, MOST_STOPS);
+            palette.resize(stops, DVec3::ZERO);
+            for color in palette {
+                *color = match look.palette_space {
+                    PaletteSpace::Linear => linear(*color),
+                    PaletteSpace::Oklab => oklab(linear(*color)),
+                };
+            }
+        }
         let distance = (plan.camera.target - plan.camera.eye).length();
-        let stops = look.palette.len().clamp(1, MOST_STOPS);
-        look.palette.resize(stops, DVec3::ZERO);
         look.light = look.light.normalize();
         look.lamp_size *= distance;
         look.lamp *= distance * distance;
@@ -182,10 +195,6 @@ impl Light {
 
     fn uniform(&self) -> LookUniform {
         let look = &self.look;
-        let mut palette = [Vec4::W; MOST_STOPS];
-        for (to, from) in palette.iter_mut().zip(&look.palette) {
-            *to = from.as_vec3().extend(1.0);
-        }
         LookUniform {
             light: look.light.as_vec3(),
             key: look.key as f32,
@@ -214,8 +223,8 @@ impl Light {
             fog_rise: self.fog_rise as f32,
             fog_start: self.fog_start as f32,
             path_steps: self.path_steps,
-            pad: 0,
-            palette,
+            oklab: u32::from(look.palette_space == PaletteSpace::Oklab),
+            palette: colors(&look.palette),
         }
     }
 
@@ -247,21 +256,41 @@ impl Light {
 
     /// The palette at x: a triangle wave over evenly spaced colours.
     pub fn palette_at(&self, x: f64) -> DVec3 {
-        let palette = &self.look.palette;
+        self.color_at(&self.look.palette, phase(x * self.look.palette_cycles))
+    }
+
+    /// The linear colour at a place from 0 to 1 of evenly spaced colours.
+    pub fn color_at(&self, palette: &[DVec3], phase: f64) -> DVec3 {
         let last = palette.len() - 1;
-        let turns = x * self.look.palette_cycles;
-        let phase = (turns - 2.0 * (0.5 * turns).round()).abs().clamp(0.0, 1.0);
         let at = phase * last as f64;
         let i = (at as usize).min(last);
         let f = at - i as f64;
         let j = (i + 1).min(last);
-        palette[i].lerp(palette[j], f * f * (3.0 - 2.0 * f))
+        let mixed = palette[i].lerp(palette[j], f * f * (3.0 - 2.0 * f));
+        match self.look.palette_space {
+            PaletteSpace::Linear => mixed,
+            PaletteSpace::Oklab => unoklab(mixed),
+        }
     }
 
     /// Albedo of a pigment.
     pub fn pigment_color(&self, pigment: DVec3) -> DVec3 {
         self.palette_at(pigment.x) * (0.55 + 0.45 * pigment.y) * (0.85 + 0.3 * pigment.z)
     }
+}
+
+/// A triangle wave from 0 at 0 to 1 at 1, which repeats without a seam.
+pub fn phase(turns: f64) -> f64 {
+    (turns - 2.0 * (0.5 * turns).round()).abs().clamp(0.0, 1.0)
+}
+
+/// Colours as WGSL reads them.
+pub fn colors(palette: &[DVec3]) -> [Vec4; MOST_STOPS] {
+    let mut all = [Vec4::W; MOST_STOPS];
+    for (to, from) in all.iter_mut().zip(palette) {
+        *to = from.as_vec3().extend(1.0);
+    }
+    all
 }
 
 /// Radiance as a screen shows it, from 0 to 1 and still linear: a factor of exposure, then a

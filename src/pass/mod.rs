@@ -4,7 +4,7 @@
 //! - [`march`]: the cones of one level; [`trace`]: one ray per pixel
 //! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits; [`layout`]: where
 //!   their results are
-//! - [`color`]: light and colour, with [`look`] and [`fog`], which may thin out with the height
+//! - [`color`]: light and colour, with [`look`], [`layers`] and [`fog`], which may thin out with the height
 //!   ([`fog_height`]): by formulas, [`quick`] with [`shadow`] and [`occlusion`], or by paths,
 //!   [`path`] with [`material`]; [`lamp`] and [`emission`] for both
 //! - [`pick`]: what there is at a pixel or at a point
@@ -21,6 +21,7 @@ pub mod features;
 pub mod fog;
 pub mod fog_height;
 pub mod lamp;
+pub mod layers;
 pub mod layout;
 pub mod look;
 pub mod march;
@@ -57,6 +58,7 @@ pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Pro
     let entry = match pass {
         Pass::Color => {
             modules.push(wgsl!("pass/look.wgsl"));
+            modules.extend(layers::modules(&plan.look.layers, solid));
             modules.extend(features::modules(&plan.look));
             modules.push(wgsl!(
                 "pass/color.wgsl",

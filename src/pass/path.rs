@@ -74,7 +74,7 @@ pub fn shade<S: Solid>(
         let local = frame.transpose() * -axis;
         // A normal of a rough surface may face away.
         let v = local.truncate().extend(local.z.max(1e-3)).normalize();
-        let albedo = albedo_of(solid, light, &at).min(DVec3::ONE);
+        let albedo = albedo_of(solid, light, &at, point).min(DVec3::ONE);
         let material = substance.material_at(albedo, v);
         let to = |axis| Beam {
             origin: point + lift * at.normal,

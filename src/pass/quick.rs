@@ -22,7 +22,7 @@ pub fn shade<S: Solid>(
 ) -> (DVec3, bool) {
     let (q, grain) = (ray.at(t), footprint(ray, t));
     let (n, look) = (surface.normal, &light.look);
-    let albedo = albedo_of(solid, light, surface);
+    let albedo = albedo_of(solid, light, surface, q);
     let facing = n.dot(look.light);
     // A surface that faces away is dark: it needs no shadow ray.
     let sun = light.sun(solid.bounds_far());

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::layers::Layers;
 use crate::base::key::{
     Fault, auto_count, auto_triple, count, number, switch, triple, triples, word,
 };
@@ -15,7 +16,7 @@ pub const SHADOW_STEPS: u32 = 96;
 /// The same in mode path, whose rays go on where others end dark. They rarely need more than 200.
 pub const PATH_STEPS: u32 = 512;
 /// The largest number of colours in a palette.
-pub const MOST_STOPS: usize = 8;
+pub const MOST_STOPS: usize = 16;
 
 named_enum! {
     /// How light is found.
@@ -32,7 +33,7 @@ named_enum! {
 named_enum! {
     /// An orbit trap: what the iterated point comes near to.
     #[derive(Default)]
-    pub enum Trap {
+    pub enum EmissionTrap {
         /// The origin.
         Origin = "origin",
         /// The coordinate planes.
@@ -64,6 +65,16 @@ named_enum! {
     }
 }
 
+named_enum! {
+    /// Where the colours of palettes blend.
+    pub enum PaletteSpace {
+        /// Linear light.
+        Linear = "linear",
+        /// Oklab.
+        Oklab = "oklab",
+    }
+}
+
 settings! {
     /// How a picture looks. Colours are sRGB triples from 0 to 1.
     pub struct Look {
@@ -80,7 +91,7 @@ settings! {
         lamp_color: DVec3 = DVec3::new(1.0, 0.72, 0.42), triple(0.0, 1.0), "colour of the lamp, sRGB";
         lamp_size: f64 = 0.005, number(1e-4, 1.0), "radius of the lamp as a share of the distance from eye to target; a larger one makes softer shadows";
         emission: f64 = 0.0, number(0.0, 1e4), "light that the surface itself sends out where its trap is near, 0 for none" => Program;
-        emission_trap: Trap = Trap::Plane, word(&Trap::WORDS), "the orbit trap of a formula that glows; over a heightfield, origin is the lowest ground";
+        emission_trap: EmissionTrap = EmissionTrap::Plane, word(&EmissionTrap::WORDS), "the orbit trap of a formula that glows; over a heightfield, origin is the lowest ground";
         emission_width: f64 = 0.1, number(0.001, 1.0), "how near the trap the glow ends";
         emission_color: DVec3 = DVec3::new(1.0, 0.35, 0.08), triple(0.0, 1.0), "colour of the glow, sRGB";
         ground: f64 = 0.45, number(0.0, 1.0), "share of the light of the lower sky that reaches surfaces: the ground absorbs the rest";
@@ -109,11 +120,14 @@ settings! {
         ], triples(MOST_STOPS, 0.0, 1.0), "colours of the surface, sRGB; the height picks one, or the orbit trap of a formula: how near the iterated point comes to given shapes";
         palette_cycles: f64 = 1.7, number(0.01, 100.0), "how many times the palette is passed through, in turns forwards and backwards";
         exposure: f64 = 0.0, number(-20.0, 20.0), "brightness in stops; each stop doubles the light" => Tone;
+        palette_space: PaletteSpace = PaletteSpace::Linear, word(&PaletteSpace::WORDS), "in which space the colours of palettes blend: as light, or in Oklab, where equal steps look equally large and blends keep their colour";
         tone: ToneMap = ToneMap::Filmic, word(&ToneMap::WORDS), "how light becomes display values: a filmic curve of each channel, AgX, AgX with more contrast, the neutral map that keeps palettes true, a fit of ACES, or none, which clips" => Tone;
         white: f64 = DAYLIGHT, number(1500.0, 15000.0), "temperature in kelvins of the light that appears white; a lower one makes the picture bluer" => Tone;
         saturation: f64 = 1.0, number(0.0, 4.0), "strength of the colours before the tone map, 0 for grey" => Tone;
         flag_unconverged: bool = false, switch(),
             "whether pixels are magenta if their ray or their shadow ray reached its step limit; the default is true for heightfields";
+        /// Traps and layers.
+        ..layers: Layers;
     }
 }
 

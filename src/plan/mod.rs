@@ -4,13 +4,14 @@
 //! compared, written as a preset and tested without a GPU. It reads no file and makes no
 //! map: [`crate::scene::Assets`] do.
 //!
-//! - [`camera`], [`march`], [`look`]: the sections of a preset beside `[scene]`
+//! - [`camera`], [`march`], [`look`] with [`layers`]: the sections of a preset beside `[scene]`
 //! - [`film`]: the plan at a moment of its film
 //! - `cones`: whether cones pay; [`pyramid`]: the cone levels, and the blocks of a large image
 
 pub mod camera;
 mod cones;
 pub mod film;
+pub mod layers;
 pub mod look;
 pub mod march;
 pub mod pyramid;
@@ -141,6 +142,11 @@ impl Plan {
         self.camera.check()?;
         self.march.check()?;
         self.look.check(self.scene.most_shadow_steps())?;
+        Fault::unless(
+            !self.look.layers.are_on() || matches!(self.scene, Scene::Distance(_)),
+            "look.trap",
+            "only a formula has orbits that traps measure; over other scenes use trap = \"auto\" and no layers",
+        )?;
         let proves = !self.march.stepping().proven || self.scene.sharpest() == self.scene;
         Fault::unless(
             proves || !matches!(self.scene, Scene::Distance(_)),

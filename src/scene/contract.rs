@@ -69,6 +69,11 @@ pub trait Solid: Sync {
     /// Normal and pigment of a hit.
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface;
 
+    /// The numbers of all traps at a point (`formula::Traps`), if the scene has orbits.
+    fn traps(&self, _q: DVec3) -> Option<[f64; 7]> {
+        None
+    }
+
     /// The distance from the eye beyond which there is nothing.
     fn bounds_far(&self) -> f64;
 
@@ -82,6 +87,10 @@ pub trait Solid: Sync {
 pub trait Twin {
     /// The WGSL modules.
     fn modules(&self) -> Vec<Module>;
+    /// The WGSL modules of the twin of [`Solid::traps`]; none without orbits.
+    fn trap_modules(&self) -> Vec<Module> {
+        Vec::new()
+    }
     /// The bytes of each WGSL parameter variable.
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)>;
     /// The arrays that the shaders read beside the parameters.

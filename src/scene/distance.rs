@@ -192,6 +192,10 @@ impl Distance {
 }
 
 impl Twin for Distance {
+    fn trap_modules(&self) -> Vec<Module> {
+        vec![wgsl!("formula/traps.wgsl"), self.formula.traps_module()]
+    }
+
     fn marks_hits(&self) -> bool {
         false
     }
@@ -408,6 +412,10 @@ impl Solid for Distance {
             },
             pigment: self.formula.trap(self.eye + q, self.iterations),
         }
+    }
+
+    fn traps(&self, q: DVec3) -> Option<[f64; 7]> {
+        Some(self.formula.traps(self.eye + q, self.iterations))
     }
 
     fn bounds_far(&self) -> f64 {

@@ -10,6 +10,7 @@ use conemarch::formula::Formula;
 use conemarch::pass::LookFeature;
 use conemarch::pass::pick;
 use conemarch::pass::turn::{self, StageKind};
+use conemarch::plan::layers::Trap;
 use conemarch::plan::look::LightMode;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
@@ -118,6 +119,11 @@ fn plans() -> Vec<Plan> {
                 all.push(one);
             }
         }
+    }
+    for formula in Formula::all() {
+        let mut layered = Plan::new(distance(formula, None));
+        layered.look.layers.layer2_trap = Trap::Point;
+        all.push(layered);
     }
     all
 }

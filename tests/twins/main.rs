@@ -23,6 +23,7 @@ mod common {
     pub mod setups;
 }
 mod compare;
+mod layers;
 mod looks;
 mod oversteps;
 

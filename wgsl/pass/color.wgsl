@@ -5,12 +5,12 @@ override COLOR_KEEPS_NORMALS: bool;
 /// Whether pigments are linear colours.
 override COLOR_IS_PIGMENT: bool;
 
-/// The share of light that a surface sends back.
-fn albedo_of(surface: Surface) -> vec3<f32> {
+/// The share of light that a surface sends back. `q` is relative to the eye.
+fn albedo_of(surface: Surface, q: vec3<f32>) -> vec3<f32> {
     if COLOR_IS_PIGMENT {
         return surface.pigment;
     }
-    return pigment_color(surface.pigment);
+    return layers_albedo(q, surface.pigment);
 }
 
 /// The light of the surface itself. A linear colour is no trap.

@@ -43,8 +43,9 @@ struct LookUniform {
     fog_start: f32,
     /// The most steps of a path of light.
     path_steps: u32,
-    pad: u32,
-    palette: array<vec4<f32>, 8>,
+    /// 1 if colours of palettes are in Oklab.
+    oklab: u32,
+    palette: array<vec4<f32>, 16>,
 }
 
 /// A light as a point sees it: the direction to it, its distance, and the tangent of its angular
@@ -107,6 +108,27 @@ fn sky_light(axis: vec3<f32>) -> vec3<f32> {
     return c * look.fill;
 }
 
+/// Oklab to linear sRGB (Ottosson 2020). What a screen cannot show is cut to no light.
+const PALETTE_FROM_LAB = mat3x3<f32>(
+    1.0, 1.0, 1.0,
+    0.3963377774, -0.1055613458, -0.0894841775,
+    0.2158037573, -0.0638541728, -1.2914855480,
+);
+const PALETTE_FROM_CONES = mat3x3<f32>(
+    4.0767416621, -1.2684380046, -0.0041960863,
+    -3.3077115913, 2.6097574011, -0.7034186147,
+    0.2309699292, -0.3413193965, 1.7076147010,
+);
+
+/// The linear colour of one in the space of palettes.
+fn palette_linear(c: vec3<f32>) -> vec3<f32> {
+    if look.oklab == 0u {
+        return c;
+    }
+    let cones = PALETTE_FROM_LAB * c;
+    return max(PALETTE_FROM_CONES * (cones * cones * cones), vec3<f32>(0.0));
+}
+
 /// The palette at x. Its colours are evenly spaced from 0 to 1 and blended smoothly.
 fn palette_at(x: f32) -> vec3<f32> {
     let last = f32(look.stops - 1u);
@@ -119,7 +141,7 @@ fn palette_at(x: f32) -> vec3<f32> {
     // Not from the copy: an array with a variable index cannot be in registers.
     let one = look_parameters.look.palette[i].rgb;
     let two = look_parameters.look.palette[j].rgb;
-    return mix(one, two, f * f * (3.0 - 2.0 * f));
+    return palette_linear(mix(one, two, f * f * (3.0 - 2.0 * f)));
 }
 
 fn pigment_color(pigment: vec3<f32>) -> vec3<f32> {

@@ -53,7 +53,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
         var v = -axis * frame;
         // A normal of a rough surface may face away.
         v = normalize(vec3<f32>(v.xy, max(v.z, 1e-3)));
-        let material = material_at(min(albedo_of(at), vec3<f32>(1.0)), v);
+        let material = material_at(min(albedo_of(at, point), vec3<f32>(1.0)), v);
         let start = point + lift * at.normal;
         light += through * emission_of(at);
         for (var nth = 0u; nth < 2u; nth++) {

@@ -5,7 +5,7 @@
 /// else 1. `q` is the hit relative to the eye, `grain` half a pixel's width there.
 fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32, pixel: vec2<u32>) -> vec4<f32> {
     let n = surface.normal;
-    let albedo = albedo_of(surface);
+    let albedo = albedo_of(surface, q);
     let facing = dot(n, look.light);
     // A surface that faces away is dark: it needs no shadow ray.
     var light = Shadow(0.0, true);

@@ -22,6 +22,7 @@ use crate::heightfield::assets::Preparation;
 #[cfg(not(feature = "cli"))]
 use crate::heightfield::conemap::generate::cpu::generate;
 use crate::heightfield::tracer::settings::PrepareError;
+use crate::pass::layers;
 use crate::pass::layout::Layout;
 use crate::pass::look::Light;
 use crate::pass::prepare::prepare;
@@ -203,9 +204,14 @@ impl FrameRequest {
         let Self { plan, extras, .. } = self;
         let (scene, needs) = (draft.scene, draft.needs);
         let marched = marched(plan, &scene);
-        let look = bytes_of(&Light::of(plan, &scene).parameters()).to_vec();
+        let light = Light::of(plan, &scene);
+        let mut look = bytes_of(&light.parameters()).to_vec();
         let mut parameters = marched.clone();
         parameters.push(("look_parameters", look.clone()));
+        // They are there without layers too: a program with layers may follow.
+        let over = bytes_of(&layers::uniform(&light)).to_vec();
+        look.extend_from_slice(&over);
+        parameters.push(("layers_parameters", over));
         if needs.picture.is_some() {
             let tone = Tone::of(&plan.look);
             let steps = tone_steps(&tone);
