@@ -146,7 +146,8 @@ impl<'a> BigPicture<'a> {
         let mut progress = Reporter::start("rendering");
         for band in first..all {
             let mut watch = |now: &Progress| {
-                let share = (band as f64 + now.done) / all as f64;
+                // The rest of the time follows from what is rendered now.
+                let share = ((band - first) as f64 + now.done) / (all - first) as f64;
                 let detail = format!("band {} of {all}, {}", band + 1, now.pass);
                 progress.report(share, &detail)
             };

@@ -6,8 +6,8 @@ use crate::tools::rendered;
 #[test]
 fn help_and_version_name_everything() {
     let folder = Folder::new();
-    let verbs = "render animate presets devices completions bench conemap 130";
-    let options = "--output --size --set --device --layer --depth --quality --stats --at --explain NAME.depth.png 1e10 nearest";
+    let verbs = "render merge animate presets devices completions bench conemap 130";
+    let options = "--output --size --set --device --layer --depth --quality --stats --at --resume --tile FILE.png.part --explain NAME.depth.png 1e10 nearest";
     for (line, has) in [
         ("--help", verbs),
         ("--version", "conemarch"),
