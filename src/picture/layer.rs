@@ -56,6 +56,7 @@ impl Layer {
 pub struct Shades<'a> {
     layer: Layer,
     size: [u32; 2],
+    ppi: Option<u32>,
     shade: Box<dyn Fn(usize) -> DVec3 + Sync + 'a>,
 }
 
@@ -120,7 +121,18 @@ impl<'a> Shades<'a> {
             Layer::Error => Box::new(|_| UNCONVERGED),
         };
         let size = frame.size;
-        Self { layer, size, shade }
+        let ppi = plan.ppi;
+        Self {
+            layer,
+            size,
+            ppi,
+            shade,
+        }
+    }
+
+    /// Pixels per inch, if the plan says how many.
+    pub fn ppi(&self) -> Option<u32> {
+        self.ppi
     }
 
     /// The same with the errors that [`Layer::Error`] shows: of each pixel, in footprints.

@@ -40,6 +40,7 @@ pub fn write_png(
         depth,
         &numbers,
         shades.is_color(),
+        shades.ppi(),
         &texts,
     );
     written.map_err(|e| OutputError::encode("PNG", e))

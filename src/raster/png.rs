@@ -6,7 +6,8 @@
 use std::io::{BufRead, Seek, Write};
 
 use png::{
-    ColorType, Decoder, DecodingError, Encoder, EncodingError, SrgbRenderingIntent, Transformations,
+    ColorType, Decoder, DecodingError, Encoder, EncodingError, PixelDimensions,
+    SrgbRenderingIntent, Transformations, Unit,
 };
 
 use crate::raster::open::check_size;
@@ -138,7 +139,8 @@ fn broken(e: &DecodingError) -> String {
     }
 }
 
-/// Writes whole numbers with texts by their keywords. `is_light` says that they are sRGB.
+/// Writes whole numbers with texts by their keywords. `is_light` says that they are sRGB,
+/// and `ppi` how many there are to an inch.
 ///
 /// # Errors
 /// What the encoder or the writer said.
@@ -148,6 +150,7 @@ pub fn write(
     depth: BitDepth,
     numbers: &[u16],
     is_light: bool,
+    ppi: Option<u32>,
     texts: &[(&str, &str)],
 ) -> Result<(), EncodingError> {
     let mut encoder = Encoder::new(to, width, height);
@@ -161,6 +164,14 @@ pub fn write(
     if is_light {
         encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     }
+    encoder.set_pixel_dims(ppi.map(|ppi| {
+        let per_metre = (f64::from(ppi) / 0.0254).round() as u32;
+        PixelDimensions {
+            xppu: per_metre,
+            yppu: per_metre,
+            unit: Unit::Meter,
+        }
+    }));
     for (keyword, text) in texts {
         // More programs know tEXt than iTXt, but it has no other letters.
         if text.is_ascii() {
