@@ -200,6 +200,7 @@ fn head<'a>((plan, layer, depth): (&'a Plan, Layer, BitDepth), preset: &'a str) 
         size: plan.size,
         layer,
         depth,
+        ppi: plan.ppi,
         title: &plan.title,
         preset,
     }

@@ -89,6 +89,7 @@ pub fn run(args: &Merge) -> Result<()> {
         size: plan.size,
         layer: Layer::Color,
         depth: args.options.depth.unwrap_or_default(),
+        ppi: plan.ppi,
         title: &plan.title,
         preset: &text,
     };

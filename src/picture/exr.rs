@@ -4,8 +4,8 @@
 //! Channels: `R`, `G`, `B` linear, `A` 1; `Z` the distance along the view axis and `depth.Z`
 //! along the ray, [`FAR`] for sky, and the distance reached where a limit stopped the ray;
 //! `normal.X`..`Z` and `position.X`..`Z` in the world; `state.Y` 0 sky, 1 hit, 2 unconverged;
-//! `steps.Y` where evaluations were counted. Attributes: the preset, the camera, the program
-//! and the chromaticities of sRGB.
+//! `steps.Y` where evaluations were counted. Attributes: the preset, the camera, the program,
+//! pixels per inch and the chromaticities of sRGB.
 
 use std::io::{Seek, Write};
 
@@ -115,6 +115,7 @@ fn channels(frame: &Frame, plan: &Plan) -> Named {
 fn described(size: [u32; 2], list: Named, plan: &Plan, preset: &str) -> Channels {
     let mut image = image(size, list, [PNG_KEYWORD, preset]);
     image.layer_data.attributes.software_name = Some(SOFTWARE.into());
+    image.layer_data.attributes.horizontal_density = plan.ppi.map(|ppi| ppi as f32);
     image.attributes.chromaticities = Some(SRGB);
     // The maps of further attributes are written in no certain order: one in each.
     let other = &mut image.attributes.other;

@@ -67,6 +67,7 @@ pub struct Shades<'a> {
     layer: Layer,
     size: [u32; 2],
     origin: [u32; 2],
+    ppi: Option<u32>,
     shade: Box<dyn Fn(usize) -> DVec3 + Sync + 'a>,
 }
 
@@ -134,8 +135,14 @@ impl<'a> Shades<'a> {
             layer,
             size: frame.size,
             origin: frame.origin,
+            ppi: plan.ppi,
             shade,
         }
+    }
+
+    /// Pixels per inch, if the plan says how many.
+    pub fn ppi(&self) -> Option<u32> {
+        self.ppi
     }
 
     /// The same with the errors that [`Layer::Error`] shows: of each pixel, in footprints.

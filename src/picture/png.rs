@@ -22,6 +22,8 @@ pub struct PngHead<'a> {
     pub layer: Layer,
     /// Bits of a channel.
     pub depth: BitDepth,
+    /// Pixels per inch.
+    pub ppi: Option<u32>,
     /// The title of the plan.
     pub title: &'a str,
     /// The text of the plan that it was rendered from.
@@ -51,6 +53,7 @@ pub fn write_png(
         size: shades.size(),
         layer: shades.layer(),
         depth,
+        ppi: shades.ppi(),
         title,
         preset,
     };
@@ -84,6 +87,7 @@ pub fn write_png_rows<E: From<OutputError>>(
         depth: head.depth,
         channels: head.layer.channels(),
         is_light: head.layer == Layer::Color,
+        ppi: head.ppi,
         texts: &texts,
     };
     // The encoder's errors and those of the parts go the same way.

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use image::codecs::jpeg::JpegEncoder;
+use image::codecs::jpeg::{JpegEncoder, PixelDensity};
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
@@ -14,7 +14,11 @@ use crate::picture::layer::Shades;
 /// # Errors
 /// The disk is full, or a side is too long for the format.
 pub fn write_jpeg(to: &mut dyn Write, shades: &Shades<'_>, quality: u8) -> Result<(), OutputError> {
-    write(JpegEncoder::new_with_quality(to, quality), shades, "JPEG")
+    let mut encoder = JpegEncoder::new_with_quality(to, quality);
+    if let Some(ppi) = shades.ppi().and_then(|ppi| u16::try_from(ppi).ok()) {
+        encoder.set_pixel_density(PixelDensity::dpi(ppi));
+    }
+    write(encoder, shades, "JPEG")
 }
 
 /// Writes a layer as WebP without loss.

@@ -62,6 +62,8 @@ pub struct Plan {
     pub samples: u32,
     /// The height in pixels of the picture whose details are shown, if it is higher than this one.
     pub reference: Option<u32>,
+    /// Pixels per inch of paper, which files tell printers.
+    pub ppi: Option<u32>,
     /// When the frames of a film are.
     pub time: Timing,
     /// What changes in the film.
@@ -89,6 +91,7 @@ impl Plan {
             size: [1280, 720],
             samples: 1,
             reference: None,
+            ppi: None,
             time: Timing::default(),
             tracks: Vec::new(),
             window: None,
@@ -123,6 +126,7 @@ impl Plan {
                 "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
                 "samples" = count(&mut self.samples, 1, MOST_PIXEL_SAMPLES), "rays through each pixel, whose colours are averaged: 1 is quick and has jagged edges, 16 is smooth, 256 is for print" => March;
                 "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower one has the same details, made small by its samples; auto is the picture's own height" => March;
+                "ppi" = auto_count(&mut self.ppi, 1, 10_000), "pixels per inch on paper, which PNG, JPEG and EXR tell printers; auto tells none" => Nothing;
             ],
             "time" => self.time.keys(),
             _ => return None,

@@ -6,7 +6,8 @@
 use std::io::{BufRead, Seek, Write};
 
 use png::{
-    ColorType, Decoder, DecodingError, Encoder, EncodingError, SrgbRenderingIntent, Transformations,
+    ColorType, Decoder, DecodingError, Encoder, EncodingError, PixelDimensions,
+    SrgbRenderingIntent, Transformations, Unit,
 };
 
 use crate::raster::open::check_size;
@@ -149,6 +150,8 @@ pub struct Head<'a> {
     pub channels: usize,
     /// Whether the numbers are sRGB.
     pub is_light: bool,
+    /// How many pixels there are to an inch.
+    pub ppi: Option<u32>,
     /// Texts by their keywords.
     pub texts: &'a [(&'a str, &'a str)],
 }
@@ -179,6 +182,14 @@ pub fn write_rows<E: From<EncodingError>>(
     if head.is_light {
         encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     }
+    encoder.set_pixel_dims(head.ppi.map(|ppi| {
+        let per_metre = (f64::from(ppi) / 0.0254).round() as u32;
+        PixelDimensions {
+            xppu: per_metre,
+            yppu: per_metre,
+            unit: Unit::Meter,
+        }
+    }));
     for (keyword, text) in head.texts {
         // More programs know tEXt than iTXt, but it has no other letters.
         if text.is_ascii() {
@@ -222,6 +233,7 @@ pub fn write(
         depth,
         channels: numbers.len() / places.max(1),
         is_light,
+        ppi: None,
         texts,
     };
     write_rows(to, &head, [Ok(bytes(depth, numbers))])

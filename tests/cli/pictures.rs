@@ -67,6 +67,32 @@ fn a_png_tells_its_title_program_and_preset_in_chunks_that_all_programs_read() {
     folder.done("render l.png --explain");
 }
 
+#[test]
+fn files_tell_their_pixels_per_inch() {
+    let folder = Folder::new();
+    assert!(picture(&folder, "").0.pixel_dims.is_none());
+    let set = "--set image.ppi=300";
+    let there = picture(&folder, set).0.pixel_dims.expect("a pHYs chunk");
+    // 300 to 25.4 mm.
+    assert_eq!(
+        (there.xppu, there.yppu, there.unit),
+        (11811, 11811, png::Unit::Meter)
+    );
+    rendered(&folder, "mandelbox", &format!("{set} -o a.jpg"));
+    // JFIF: the unit is inches, and then two densities.
+    assert_eq!(folder.bytes("a.jpg")[13..18], [1, 1, 44, 1, 44]);
+    rendered(&folder, "mandelbox", &format!("{set} -o a.exr"));
+    let density = exr_layer(&folder.0.join("a.exr"))
+        .attributes
+        .horizontal_density;
+    assert_eq!(density, Some(300.0));
+    folder.fails(
+        "render mandelbox --set image.ppi=0",
+        2,
+        "image.ppi|1 to 10000",
+    );
+}
+
 /// A picture of another program, with chunks behind the pixels and much else.
 fn foreign(fill: impl FnOnce(&mut png::Writer<&mut Vec<u8>>)) -> Vec<u8> {
     let mut bytes = Vec::new();
