@@ -41,7 +41,7 @@ pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, FileError> 
         let numbers = numbers(file, &format).map_err(fail)?;
         let label = [(KEYWORD, text.as_str())];
         let size = file.map.size;
-        let written = png::write(&mut bytes, size, format.bits, &numbers, false, None, &label);
+        let written = png::write(&mut bytes, size, format.bits, &numbers, false, &label);
         written.map_err(|e| e.to_string())
     };
     written.map_err(|e| fail(format!("could not be encoded: {e}")))?;
