@@ -350,14 +350,16 @@ mod tests {
         );
         for kelvins in [1500.0, 2856.0, 5000.0, 10_000.0, 15_000.0] {
             // The light itself, from its chromaticity.
-            let shift = DVec2::new(0.197_83, 0.312_21) - black_body(DAYLIGHT);
+            let d65 = TO_XYZ * DVec3::ONE;
+            let d65 = DVec2::new(4.0 * d65.x, 6.0 * d65.y) / d65.dot(DVec3::new(1.0, 15.0, 3.0));
+            let shift = d65 - black_body(DAYLIGHT);
             let [u, v] = (black_body(kelvins) + shift).to_array();
             let (x, y) = (
                 3.0 * u / (2.0 * u - 8.0 * v + 4.0),
                 2.0 * v / (2.0 * u - 8.0 * v + 4.0),
             );
             let light = TO_XYZ.inverse() * DVec3::new(x / y, 1.0, (1.0 - x - y) / y);
-            // D65 has five digits here, and candlelight has next to no blue.
+            // Candlelight has next to no blue.
             let white = white_balance(kelvins) * light;
             assert!(
                 (white - DVec3::ONE).abs().max_element() < 2e-3,

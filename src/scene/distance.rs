@@ -3,9 +3,8 @@
 //! Cones advance by the cone step, rays by sphere tracing with relaxation (docs/method.md, 2).
 //! Steps, hits and normals all use one field: the larger of the estimate and the distance to
 //! the bounds. So the bounds do not cut the visible surface open.
-//! A step keeps clear of a share of the hit threshold, the *shell*. Without it, a long step
-//! could jump over a thin part of the surface that short steps would hit.
-//! Twin: `wgsl/scene/distance.wgsl`.
+//! A step keeps clear of a share of the hit threshold, the *shell*, or a long step could jump over
+//! a thin part of the surface. Twin: `wgsl/scene/distance.wgsl`.
 
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3};
@@ -29,13 +28,11 @@ const DISTANCE_TRIAL: f64 = 1.5;
 const DISTANCE_LEAST: f64 = 0.1;
 /// Weight of the newest slope in the automatic relaxation.
 const DISTANCE_SMOOTHING: f64 = 0.3;
-/// Where a clipped ray starts, in hit thresholds from the bounds. At 1 the first sample
-/// lies on the threshold, and rounding decides whether it is a hit. At less, a grazing ray
-/// starts behind the place where it reaches the threshold: on `bench-graze` 2.8 % of the pixels
-/// do at 0.9, and 0.2 % at 0.99.
+/// Where a clipped ray starts, in hit thresholds from the bounds. At 1, rounding decides whether the
+/// first sample is a hit. At less, a grazing ray starts behind the threshold: 2.8 % of the pixels of
+/// `bench-graze` do at 0.9, and 0.2 % at 0.99.
 const DISTANCE_WITHIN: f64 = 0.99;
-/// A gradient, as a sum of four differences, that is shorter than this has no direction. The
-/// shader uses the same limit.
+/// A gradient, as a sum of four differences, that is shorter than this has no direction.
 const DISTANCE_FLAT: f64 = 1e-20;
 /// The longest automatic step, in radii of the last ball.
 const DISTANCE_MOST_RELAXED: f64 = 3.0;
@@ -405,10 +402,9 @@ impl Solid for Distance {
         let g: DVec3 = corners.iter().map(|&c| c * self.value(q + h * c)).sum();
         Surface {
             // A point without a gradient faces the viewer.
-            normal: if g.length() > DISTANCE_FLAT {
-                g.normalize()
-            } else {
-                -ray.axis
+            normal: match g.length() > DISTANCE_FLAT {
+                true => g.normalize(),
+                false => -ray.axis,
             },
             pigment: self.formula.trap(self.eye + q, self.iterations),
         }

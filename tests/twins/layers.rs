@@ -23,7 +23,7 @@ fn layered(plan: &Plan) -> Probe {
     let modules = layers::modules(&plan.look.layers, &solid(plan));
     all.modules.extend(modules);
     let light = light(plan);
-    let look = bytes_of(&light.uniform()).to_vec();
+    let look = bytes_of(&light.parameters()).to_vec();
     let over = bytes_of(&layers::uniform(&light)).to_vec();
     all.parameters.push(("look_parameters", look));
     all.parameters.push(("layers_parameters", over));
