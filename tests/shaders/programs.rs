@@ -84,8 +84,8 @@ fn scenes() -> Vec<Scene> {
     all
 }
 
-/// All plans: presets and scenes, in every mode, and with each feature of the look. The
-/// modes and the looks of a heightfield are tried apart.
+/// All plans: presets and scenes, in every mode, and with each feature of the look. Modes and looks
+/// are tried apart.
 fn plans() -> Vec<Plan> {
     let presets = BUILTIN.iter().map(|(name, _)| preset(name, &[]));
     let projected = Projection::WORDS.iter().map(|(_, projection)| {
@@ -102,8 +102,7 @@ fn plans() -> Vec<Plan> {
             let none = [0, (1 << LookFeature::ALL.len()) - 1];
             let alone = (0..LookFeature::ALL.len()).flat_map(|at| none.map(|of| of ^ (1 << at)));
             for look in none.into_iter().chain(alone) {
-                let apart = matches!(plan.scene, Scene::Heightfield(_));
-                if apart && look > 0 && *mode != plan.march.mode {
+                if look > 0 && *mode != plan.march.mode {
                     continue;
                 }
                 let mut one = plan.clone();

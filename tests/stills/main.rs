@@ -181,9 +181,12 @@ fn the_two_executors_agree_on_every_feature_of_the_look() {
     for feature in LookFeature::ALL {
         switch(&mut bare, *feature, false);
     }
-    let without = on_cpu(&bare, Extras::default());
     for feature in LookFeature::ALL {
         let mut plan = bare.clone();
+        // There must be fog that can thin out.
+        let needs_fog = *feature == LookFeature::FogHeight;
+        switch(&mut plan, LookFeature::Fog, needs_fog);
+        let without = on_cpu(&plan, Extras::default());
         switch(&mut plan, *feature, true);
         let reference = on_cpu(&plan, Extras::default());
         let changes = shades(&plan, &reference, &without);
