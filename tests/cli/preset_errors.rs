@@ -62,7 +62,7 @@ const ERRORS: &str = r#"
 [scene]|kind = "distance"|formula = "mandelbx" => p.toml:3: scene.formula = "mandelbx": must be one of
 [scene]|kind = "slab"|kind = "slab" => p.toml:3: this is not TOML: duplicate key
 [scene => p.toml:1: this is not TOML:
-[scene]|kind = "slab"||[camera]|fov = 400 => p.toml:5: camera.fov = 400: must be a number from 1 to 170
+[scene]|kind = "slab"||[camera]|fov = 400 => p.toml:5: camera.fov = 400: must be a number from 1 to 360
 [scene]|kind = "slab"|[camera]|Fow = 40 => p.toml:4: camera.Fow = 40: unknown key, perhaps `fov`; [camera] has eye, target, up, fov
 [scene]|kind = "slab"|[camer]|fov = 40 => p.toml:3: unknown section `camer`, perhaps `camera`
 [scene]|kind = "slab"|half = [|0.5|] => p.toml:3: scene.half = [ 0.5 ]: must be a number from
@@ -88,7 +88,7 @@ track = 3|[scene]|kind = "slab" => p.toml:1: a track is written [[track]]
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 40, "bent"]] => p.toml:3: track.camera.fov = [[0, 40, "bent"]]: between "bent": must be one of "step", "linear", "smooth", "ramp"
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[2, 40], [1, 50]] => p.toml:3: track.camera.fov = [[2, 40], [1, 50]]: the times must ascend
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 40], [11, 50]] => p.toml:3: track.camera.fov = [[0, 40], [11, 50]]: the time 11 is not within 0 and time.length, 10
-[scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 400]] => p.toml:3: track.camera.fov = [[0, 400]]: [400.0]: must be a number from 1 to 170
+[scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 400]] => p.toml:3: track.camera.fov = [[0, 400]]: [400.0]: must be a number from 1 to 360
 [scene]|kind = "slab"|[[track]]|key = "march.mode"|keys = [[0, 1]] => p.toml:3: track.march.mode = [[0, 1]]: [1.0]: this key is no number
 [scene]|kind = "slab"|[[track]]|key = "time.fps"|keys = [[0, 25]] => p.toml:3: track.time.fps = [[0, 25]]: time and image stay the same
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 40]]|[[track]]|key = "camera.fov"|keys = [[0, 40]] => p.toml:6: track.camera.fov = [[0, 40]]: a second track of this key
