@@ -125,7 +125,6 @@ fn paths_are_the_same_in_blocks_and_slices() {
     let cutting = Cutting {
         block: 32,
         chunk: 5,
-        ..Cutting::default()
     };
     assert!(whole == bits(&render_cut(&plan, EVERYTHING, cutting)));
 }
