@@ -91,21 +91,21 @@ impl Kept {
         Self::new(path, file, owner, line.len() as u64, lengths)
     }
 
-    /// Takes in the bands of a file, which begin at `start`.
-    fn new(path: PathBuf, file: File, owner: Owner, start: u64, lengths: &[usize]) -> Result<Self> {
-        let mut kept = Self {
-            path,
-            file,
-            owner,
-            starts: vec![start],
-            tallies: Vec::new(),
-            all: lengths.len(),
-        };
-        kept.tell();
-        let unreadable = |e| unreadable(&kept.path, &e);
-        kept.file.seek(SeekFrom::Start(start)).map_err(unreadable)?;
-        let mut from = BufReader::new(&kept.file);
+    /// Takes in the bands of a file, which begin at `start`. Until they are known, nothing removes
+    /// the file.
+    fn new(
+        path: PathBuf,
+        mut file: File,
+        owner: Owner,
+        start: u64,
+        lengths: &[usize],
+    ) -> Result<Self> {
+        let (mut starts, mut tallies) = (vec![start], Vec::new());
+        let unreadable = |e| unreadable(&path, &e);
+        file.seek(SeekFrom::Start(start)).map_err(unreadable)?;
+        let mut from = BufReader::new(&file);
         for (band, length) in lengths.iter().enumerate() {
+            interrupt::check()?;
             let mut record = Vec::new();
             let bytes = (length + TALLY + HASH) as u64;
             let read = (&mut from).take(bytes).read_to_end(&mut record);
@@ -113,12 +113,20 @@ impl Kept {
             // The last band may be torn.
             let whole = record.len() as u64 == bytes;
             let (content, hash) = record.split_at(record.len().saturating_sub(HASH));
-            if !whole || kept.owner.hash(band, content) != *hash {
+            if !whole || owner.hash(band, content) != *hash {
                 break;
             }
-            kept.tallies.push(read_tally(&content[*length..]));
-            kept.starts.push(kept.starts[band] + bytes);
+            tallies.push(read_tally(&content[*length..]));
+            starts.push(starts[band] + bytes);
         }
+        let kept = Self {
+            path,
+            file,
+            owner,
+            starts,
+            tallies,
+            all: lengths.len(),
+        };
         kept.cut();
         kept.tell();
         Ok(kept)

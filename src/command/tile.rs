@@ -73,6 +73,15 @@ pub fn fingerprint(plan: &Plan, assets: &Assets, more: &str) -> String {
         hash.update(part);
     }
     hash.update(plan.scene.contents(assets));
+    // The cones of a file decide the steps of a ray.
+    let named = plan.scene.heightfield().map(|settings| settings.files());
+    let maps = named
+        .into_iter()
+        .flatten()
+        .filter(|(key, _)| *key == "scene.map");
+    for (_, path) in maps {
+        hash.update(std::fs::read(path).unwrap_or_default());
+    }
     hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
 }
 

@@ -49,7 +49,9 @@ pub fn color<S: Solid>(
         Some(of) => path::shade((solid, light, of), (pixel, before), ray, hit.t, &surface),
     };
     c = fog::fog(light, c, ray, hit.t);
-    if light.look.flag_unconverged && (state == State::Unconverged || !decided) {
+    // One of many paths says little of its pixel.
+    let dark = light.substance.is_none() && !decided;
+    if light.look.flag_unconverged && (state == State::Unconverged || dark) {
         c = DVec3::new(1.0, 0.0, 1.0);
     }
     Shaded {

@@ -24,7 +24,7 @@ pub fn lamp_from(light: &Light, q: DVec3) -> Option<Lamp> {
     // Not inside it.
     let far = way.length().max(look.lamp_size);
     light.has(LookFeature::Lamp).then_some(Lamp {
-        axis: way / far,
+        axis: way.normalize_or(light.world_up),
         far,
         softness: look.lamp_size / far,
     })

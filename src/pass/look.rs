@@ -169,7 +169,11 @@ impl Light {
         Self {
             softness: look.light_size.to_radians().tan(),
             shadow_steps: look.shadow_steps.unwrap_or(auto),
-            path_steps: PATH_ROUNDS / (solid.twin().rounds() + 1),
+            // Over a heightfield the rays' own limits are enough: few steps have many rounds.
+            path_steps: match solid.twin().most_steps() {
+                Some(most) => 64 * most,
+                None => PATH_ROUNDS / (solid.twin().rounds() + 1),
+            },
             world_up,
             lamp_at: look.lamp_at.map_or(DVec3::ZERO, |at| at - plan.camera.eye),
             substance: (look.mode == LightMode::Path).then(|| Substance::of(&look)),
@@ -303,7 +307,8 @@ pub fn colors(palette: &[DVec3]) -> [Vec4; MOST_STOPS] {
 /// assert_eq!(tone(1.0, DVec3::splat(1e9)), DVec3::ONE);
 /// ```
 pub fn tone(exposure: f64, c: DVec3) -> DVec3 {
-    let x = c.max(DVec3::ZERO) * exposure;
+    // Brighter light is white, and its square would overflow.
+    let x = (c.max(DVec3::ZERO) * exposure).min(DVec3::splat(1e6));
     let one = x * (x * 2.51 + 0.03) / (x * (x * 2.43 + 0.59) + 0.14);
     one.clamp(DVec3::ZERO, DVec3::ONE)
 }

@@ -25,7 +25,7 @@ fn path_toward(lamp: &Lamp, pair: DVec2) -> DVec3 {
     (material_frame(lamp.axis) * across.extend(1.0)).normalize()
 }
 
-/// Follows a ray for `reach`. It is still moving if it reached its step limit. The path has so many
+/// Follows a ray for `reach`. It is neither a hit nor out if it reached a step limit. The path has so many
 /// steps left.
 fn path_sight<S: Solid>(
     (solid, light): (&S, &Light),
@@ -99,7 +99,7 @@ pub fn shade<S: Solid>(
                 let reflected = substance.material_reflects(&material, v, l).0;
                 sum += through * reflected * (PI * strength);
             }
-            decided &= step != Step::Moving;
+            decided &= matches!(step, Step::Hit | Step::Out);
         }
         let choice = random_pair(seed, before, 4 * bounce + 2);
         let pair = random_pair(seed, before, 4 * bounce + 3);
@@ -121,7 +121,7 @@ pub fn shade<S: Solid>(
         if step == Step::Out {
             sum += through * light.sky_light(next.axis);
         }
-        decided &= step != Step::Moving;
+        decided &= matches!(step, Step::Hit | Step::Out);
         if step != Step::Hit || bounce == look.bounces {
             break;
         }

@@ -89,7 +89,7 @@ impl Tone {
     /// ```
     pub fn shown(&self, c: DVec3) -> DVec3 {
         if !self.mixes {
-            return self.channels(c * self.exposure);
+            return self.channels((c * self.exposure).min(DVec3::splat(MOST_LIGHT)));
         }
         let most = DVec3::splat(MOST_LIGHT);
         // Light that is no number is black.

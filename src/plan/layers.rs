@@ -82,6 +82,14 @@ settings! {
 impl Layers {
     /// Whether a trap is asked for.
     pub fn are_on(&self) -> bool {
-        [self.trap, self.layer2_trap, self.layer3_trap] != [Trap::Auto; 3]
+        self.first_on().is_some()
+    }
+
+    /// The first key that asks for a trap.
+    pub fn first_on(&self) -> Option<&'static str> {
+        let traps = [self.trap, self.layer2_trap, self.layer3_trap].into_iter();
+        let keys = ["look.trap", "look.layer2_trap", "look.layer3_trap"];
+        let mut on = traps.zip(keys).filter(|(trap, _)| *trap != Trap::Auto);
+        on.next().map(|(_, key)| key)
     }
 }

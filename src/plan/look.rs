@@ -95,11 +95,11 @@ settings! {
         emission_width: f64 = 0.1, number(0.001, 1.0), "how near the trap the glow ends";
         emission_color: DVec3 = DVec3::new(1.0, 0.35, 0.08), triple(0.0, 1.0), "colour of the glow, sRGB";
         ground: f64 = 0.45, number(0.0, 1.0), "share of the light of the lower sky that reaches surfaces: the ground absorbs the rest";
-        shadow: bool = true, switch(), "whether the light casts shadows" => Program;
+        shadow: bool = true, switch(), "in mode quick, whether the light casts shadows" => Program;
         light_size: f64 = 2.0, number(0.05, 45.0), "angular radius of the light in degrees; a larger one makes softer shadows";
         shadow_steps: Option<u32> = None, auto_count(1, MOST_SHADOW_STEPS),
             "step limit of a ray from a hit to the light, in mode path also of one to another surface; auto is 96 for a formula, or 512 in mode path, and over a heightfield as many as a ray can need, up to 2048; a formula allows at most 512";
-        occlusion: f64 = 1.0, number(0.0, 2.0), "strength of ambient occlusion, which darkens hollows; 0 for none" => Program;
+        occlusion: f64 = 1.0, number(0.0, 2.0), "in mode quick, strength of ambient occlusion, which darkens hollows; 0 for none" => Program;
         occlusion_reach: f64 = 0.05, number(1e-4, 1.0),
             "how far ambient occlusion looks for neighbours, as a share of the distance from eye to target";
         fog: f64 = 0.0, number(0.0, 20.0),

@@ -148,7 +148,7 @@ impl Plan {
         self.look.check(self.scene.most_shadow_steps())?;
         Fault::unless(
             !self.look.layers.are_on() || matches!(self.scene, Scene::Distance(_)),
-            "look.trap",
+            self.look.layers.first_on().unwrap_or("look.trap"),
             "only a formula has orbits that traps measure; over other scenes use trap = \"auto\" and no layers",
         )?;
         let proves = !self.march.stepping().proven || self.scene.sharpest() == self.scene;

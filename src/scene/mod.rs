@@ -113,7 +113,7 @@ impl Scene {
     }
 
     /// The settings of a heightfield, the only kind that names files and needs assets.
-    fn heightfield(&self) -> Option<&HeightfieldSettings> {
+    pub fn heightfield(&self) -> Option<&HeightfieldSettings> {
         match self {
             Self::Heightfield(settings) => Some(settings),
             _ => None,

@@ -55,7 +55,7 @@ fn color(
         c = fog(shaded.rgb, ray, hit.t);
         decided = shaded.w;
         n = at.normal;
-        if look.flag == 1u && (s == STATE_UNCONVERGED || decided == 0.0) {
+        if look.flag == 1u && (s == STATE_UNCONVERGED || (LIGHT_IS_FLAGGED && decided == 0.0)) {
             c = vec3<f32>(1.0, 0.0, 1.0);
         }
     }

@@ -9,8 +9,9 @@ fn lamp_from(q: vec3<f32>) -> Lamp {
     }
     let way = look.lamp_at - q;
     // Not inside it.
-    let far = max(length(way), look.lamp_size);
-    return Lamp(way / far, far, look.lamp_size / far);
+    let off = length(way);
+    let far = max(off, look.lamp_size);
+    return Lamp(select(way / off, look.world_up, off < 1e-20), far, look.lamp_size / far);
 }
 
 /// Radiance of a white wall that faces the lamp at a distance.

@@ -2,6 +2,9 @@
 // chooses, from surface to surface. The mean over the samples is the light that a picture without
 // such noise would have (Kajiya, The rendering equation, 1986).
 
+/// One of many paths says little of its pixel.
+const LIGHT_IS_FLAGGED = false;
+
 /// Bounces after which a path may end by chance.
 const PATH_SURE = 2u;
 

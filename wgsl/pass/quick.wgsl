@@ -1,6 +1,9 @@
 // Light by formulas: key light with a soft shadow, and light from the sky and from the ground with
 // occlusion. `path.wgsl` takes its place where light is followed by rays.
 
+/// Whether pixels are flagged whose rays of light reached their step limit.
+const LIGHT_IS_FLAGGED = true;
+
 /// Radiance that leaves a hit towards the eye, and 0 if the shadow ray reached its step limit,
 /// else 1. `q` is the hit relative to the eye, `grain` half a pixel's width there.
 fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32, pixel: vec2<u32>) -> vec4<f32> {
