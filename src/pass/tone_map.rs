@@ -85,7 +85,7 @@ impl Tone {
     /// # use glam::DVec3;
     /// let tone = Tone::of(&Look::default());
     /// assert_eq!(tone.shown(DVec3::ZERO), DVec3::ZERO);
-    /// assert_eq!(tone.shown(DVec3::splat(1e9)), DVec3::ONE);
+    /// assert!(tone.shown(DVec3::splat(1e9)).abs_diff_eq(DVec3::ONE, 1e-12));
     /// ```
     pub fn shown(&self, c: DVec3) -> DVec3 {
         if !self.mixes {
