@@ -149,7 +149,8 @@ pub fn programs_of(plan: &Plan, solid: &AnySolid) -> Vec<Program> {
 
 /// The programs between the passes.
 fn between_passes() -> Vec<Program> {
-    let plan = preset("mandelbox", &["image.samples=16", "image.until=0.01"]);
+    let mut plan = preset("mandelbox", &[]);
+    (plan.samples, plan.until) = (16, 0.01);
     let solid = solid(&plan);
     let kinds = StageKind::all(&plan.passes(Extras::default()), true, true).into_iter();
     let between = kinds.filter(|kind| !matches!(kind, StageKind::Pass(_)));
