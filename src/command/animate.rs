@@ -160,6 +160,11 @@ pub fn run(args: &Animate) -> Result<()> {
                 video.display()
             )));
         }
+        if Layer::Color.has_alpha(&film) {
+            return Err(usage(
+                "--video has no alpha, and image.background is transparent; leave --video out, or set image.background=sky",
+            ));
+        }
         find_ffmpeg()?;
         Sink::prepare(video)?;
     }
@@ -207,7 +212,7 @@ fn render(
         return Ok(());
     };
     let extras = Extras::default();
-    let per_pixel = Format::Png.bytes_per_pixel(Layer::Color, extras);
+    let per_pixel = Format::Png.bytes_per_pixel(Layer::Color, plan, extras);
     memory::check(&plan.resolved(extras), per_pixel, assets)?;
     // A folder that cannot be written is found before the first frame.
     Sink::prepare(&pattern.name(*first))?;

@@ -199,6 +199,7 @@ fn head<'a>((plan, layer, depth): (&'a Plan, Layer, BitDepth), preset: &'a str) 
     PngHead {
         size: plan.size,
         layer,
+        alpha: layer.has_alpha(plan),
         depth,
         ppi: plan.ppi,
         title: &plan.title,

@@ -17,7 +17,7 @@ use crate::picture::frame::Frame;
 use crate::picture::{Layer, Named, PngHead, Shades, write_exr_channels, write_png_rows};
 use crate::plan::Plan;
 use crate::preset::{self, PNG_KEYWORD};
-use crate::raster::exr::{PartHead, all_channels, light, part_head};
+use crate::raster::exr::{PartHead, all_channels, channel, light, part_head};
 use crate::raster::open::{self, Stream, open};
 
 /// What `merge` takes.
@@ -57,7 +57,7 @@ pub fn run(args: &Merge) -> Result<()> {
         .map(|path| Part::open(path))
         .collect::<Result<_>>()?;
     let plan = one_plan(&parts)?;
-    let format = Format::of(&args.output, &args.options, plan.size)?;
+    let format = Format::of(&args.output, &args.options, &plan)?;
     let inputs: Vec<_> = args
         .parts
         .iter()
@@ -76,6 +76,7 @@ pub fn run(args: &Merge) -> Result<()> {
         _ => Some(plan.size[1]),
     };
     let bytes = if format == Format::Exr { 135 } else { 40 };
+    let bytes = bytes + if Layer::Color.has_alpha(&plan) { 8 } else { 0 };
     memory::check_pixels([plan.size[0], most.unwrap_or(1)], bytes)?;
     let mut sink = Sink::prepare(&args.output)?;
     let mut progress = Reporter::start("joining the parts");
@@ -88,6 +89,7 @@ pub fn run(args: &Merge) -> Result<()> {
     let head = PngHead {
         size: plan.size,
         layer: Layer::Color,
+        alpha: Layer::Color.has_alpha(&plan),
         depth: args.options.depth.unwrap_or_default(),
         ppi: plan.ppi,
         title: &plan.title,
@@ -125,7 +127,9 @@ pub fn run(args: &Merge) -> Result<()> {
             };
             for (nth, row) in rows.iter().enumerate() {
                 tell(nth)?;
-                whole.radiance.extend(light_of(row, &plan)?.radiance);
+                let row = light_of(row, &plan)?;
+                whole.radiance.extend(row.radiance);
+                whole.alpha.extend(row.alpha);
             }
             let content = format.encode(&args.options, &plan, &whole, Vec::new())?;
             match sink {
@@ -298,23 +302,34 @@ fn hole([x, y]: [u32; 2]) -> anyhow::Error {
     ))
 }
 
-/// The light of a row of parts.
+/// The light of a row of parts, and its alpha if there is any.
 fn light_of(row: &[Part], plan: &Plan) -> Result<Frame> {
     let [first, ..] = row else {
         return Ok(Frame::default());
     };
     let (width, height) = (plan.size[0], first.head.size[1]);
-    let mut radiance = vec![[0.0; 3]; width as usize * height as usize];
+    let pixels = width as usize * height as usize;
+    let mut radiance = vec![[0.0; 3]; pixels];
+    let mut alpha = match Layer::Color.has_alpha(plan) {
+        true => vec![0.0; pixels],
+        false => Vec::new(),
+    };
     for part in row {
         interrupt::check()?;
         let read = stream(&part.path).and_then(light);
         let values = read.map_err(|why| part.fault(&why))?;
         part.place(&values, &mut radiance, width, part.head.origin[1]);
+        if !alpha.is_empty() {
+            let read = stream(&part.path).and_then(|from| channel(from, "A"));
+            let values = read.map_err(|why| part.fault(&why))?;
+            part.place(&values, &mut alpha, width, part.head.origin[1]);
+        }
     }
     Ok(Frame {
         size: [width, height],
         origin: [0, first.head.origin[1]],
         radiance,
+        alpha,
         ..Frame::default()
     })
 }

@@ -67,8 +67,9 @@ impl Format {
     /// The format that the name of the output asks for, if the other options fit it.
     ///
     /// # Errors
-    /// The extension is unknown, or an option or the size does not fit the format.
-    pub fn of(output: &Path, args: &Options, size: [u32; 2]) -> Result<Self> {
+    /// The extension is unknown, or an option, the size or the background does not fit the format.
+    pub fn of(output: &Path, args: &Options, plan: &Plan) -> Result<Self> {
+        let size = plan.size;
         let extension = ending(output);
         let known = FORMATS.iter().find(|(known, _)| *known == extension);
         let format = match known {
@@ -90,6 +91,8 @@ impl Format {
             "JPEG and WebP have 8 bits per channel; leave --depth out, or write a .png"
         } else if !is(Self::Jpeg) && args.quality.is_some() {
             "only JPEG has a quality; leave --quality out, or write a .jpg"
+        } else if is(Self::Jpeg) && args.layer.has_alpha(plan) {
+            "a JPEG has no alpha, and image.background is transparent; write a PNG, WebP or EXR, or set image.background=sky"
         } else if is(Self::WebP) && size.iter().any(|n| *n > 16_383) {
             "a WebP has at most 16383 pixels along each side; write a .png"
         } else if is(Self::Jpeg) && size.iter().any(|n| *n > 65_535) {
@@ -101,7 +104,7 @@ impl Format {
     }
 
     /// Most memory that a render takes at once, per pixel.
-    pub fn bytes_per_pixel(self, layer: Layer, extras: Extras) -> u64 {
+    pub fn bytes_per_pixel(self, layer: Layer, plan: &Plan, extras: Extras) -> u64 {
         // Peaks of 8 million pixels, rounded up. Both executors take about as much: the CPU
         // 51 bytes for colours and 102 for an EXR, which holds its channels beside the frame,
         // and a software device 54 and 132. The truth is a second frame, on the CPU.
@@ -111,7 +114,8 @@ impl Format {
             Self::Exr => 135,
             _ => 60 + with(extras.normals, 15) + truth,
         };
-        picture + with(extras.count, 25)
+        // An f32, and a channel that is encoded.
+        picture + with(extras.count, 25) + with(plan.is_transparent(extras), 8)
     }
 
     /// The picture as the bytes of a file. `errors` are those of the layer that shows them.

@@ -43,7 +43,8 @@ pub struct Render {
     /// layer and settings is replaced, or one that is older than a preset's file.
     ///
     /// A PNG carries its preset and can be rendered again; JPEG and WebP carry none. WebP is
-    /// without loss. An EXR has the channels R, G, B (linear), A (1), Z (along the view
+    /// without loss. An EXR has the channels R, G, B (linear), A (1, or the share of hits where
+    /// image.background is transparent), Z (along the view
     /// axis), depth.Z (along the ray), normal.X/Y/Z, position.X/Y/Z, state.Y (0 sky, 1 hit,
     /// 2 unconverged), samples.Y with --until, and steps.Y with --stats. Both depths are 1e10 for sky. Its
     /// attributes hold the preset and the camera.
@@ -141,7 +142,7 @@ pub fn run(args: &Render) -> Result<()> {
         None => default_name(args, &plan, own_size)?,
     };
     let options = args.options();
-    let format = Format::of(&output, &options, plan.size)?;
+    let format = Format::of(&output, &options, &plan)?;
     if let Some(tile) = args.tile {
         if format != Format::Exr {
             return Err(usage(
@@ -159,7 +160,7 @@ pub fn run(args: &Render) -> Result<()> {
     let preset = preset::file(&args.preset).map(|file| ("the preset", file));
     spared(&outputs[1..], preset.as_slice())?;
     let extras = extras(args, format);
-    let per_pixel = format.bytes_per_pixel(args.layer, extras);
+    let per_pixel = format.bytes_per_pixel(args.layer, &plan, extras);
     let mut largest = plan.resolved(extras).into_owned();
     largest.window = plan.window.or(bands.map(|bands| bands.block(0)));
     memory::check(&largest, per_pixel, &assets)?;

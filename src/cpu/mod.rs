@@ -150,12 +150,7 @@ impl Task for Render<'_> {
                 *figures.iterations.get_or_insert(0) += work.1;
             }
         }
-        let counts = run.frame.samples.iter().copied();
-        let counts = counts.chain(std::iter::repeat(plan.samples));
-        for (sum, count) in run.frame.radiance.iter_mut().zip(counts) {
-            let of_all = 1.0 / count as f32;
-            *sum = sum.map(|light| light * of_all);
-        }
+        run.frame.average(plan.samples);
         run.frame.undecided = run.undecided.iter().filter(|u| **u).count();
         Ok(run.frame)
     }
@@ -282,6 +277,7 @@ impl<S: Solid> Run<'_, S> {
         let (solid, hits) = (self.solid, &self.hits);
         let size = self.frame.size;
         let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
+        let alpha = &mut self.frame.alpha;
         let (states, undecided) = (&self.frame.state, &mut self.undecided);
         undecided.resize(states.len(), false);
         let (counts, before, origin) = (self.counts, self.before, self.frame.origin);
@@ -309,8 +305,13 @@ impl<S: Solid> Run<'_, S> {
             if is_on(ended, i) {
                 return;
             }
+            let is_hit = states[i] != State::Sky as u8;
+            let adds = counts && (is_hit || alpha.is_empty());
             for (sum, light) in radiance[i].iter_mut().zip(pixel.radiance.to_array()) {
-                *sum += if counts { light as f32 } else { 0.0 };
+                *sum += if adds { light as f32 } else { 0.0 };
+            }
+            if let Some(hits) = alpha.get_mut(i) {
+                *hits += f32::from(u8::from(adds));
             }
             undecided[i] |= !pixel.decided;
         })?;

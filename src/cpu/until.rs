@@ -1,7 +1,7 @@
 //! Ends the samples of tiles whose error is small.
 
 use crate::pass::tone_map::Tone;
-use crate::pass::until::{bound, is_kept, squared};
+use crate::pass::until::{bound, is_kept, squared, squared_alpha};
 use crate::picture::frame::Frame;
 use crate::plan::{Plan, UNTIL_TILE};
 
@@ -12,6 +12,8 @@ pub(super) struct Judge {
     samples: u32,
     /// The sums of the light when they were looked at last.
     halves: Vec<[f32; 3]>,
+    /// The hits then, if the background is transparent.
+    hits: Vec<f32>,
 }
 
 impl Judge {
@@ -22,6 +24,7 @@ impl Judge {
             until: plan.until,
             samples: plan.samples,
             halves: vec![[0.0; 3]; frame.samples.len()],
+            hits: frame.alpha.clone(),
         })
     }
 
@@ -55,12 +58,17 @@ impl Judge {
                     rows.clone()
                         .flat_map(|y| columns.clone().map(move |x| y * width + x))
                 };
-                let error = |i| squared(&self.tone, self.halves[i], frame.radiance[i], samples);
+                let error = |i| {
+                    let hits = self.hits.get(i).zip(frame.alpha.get(i));
+                    squared(&self.tone, self.halves[i], frame.radiance[i], samples)
+                        + hits.map_or(0.0, |(half, all)| squared_alpha(*half, *all, samples))
+                };
                 if bound >= 0.0 && pixels().map(error).sum::<f64>() < bound * numbers as f64 {
                     pixels().for_each(|i| frame.samples[i] = samples);
                 }
             }
         }
         self.halves.clone_from(&frame.radiance);
+        self.hits.clone_from(&frame.alpha);
     }
 }

@@ -179,7 +179,15 @@ impl Parts {
                 .map(|[r, g, b, _]| [*r, *g, *b])
                 .collect::<Vec<_>>()
         };
-        frame.undecided += light.iter().filter(|p| p[3] == 0.0).count();
+        // One more than the hits, below zero if a shadow is a guess: see `background.wgsl`.
+        let count = |i: usize| counts.get(i).copied().unwrap_or(samples);
+        let share = |(i, p): (usize, &[f32; 4])| (p[3].abs() - 1.0) * (1.0 / count(i) as f32);
+        let alpha: Vec<f32> = match frame.alpha.is_empty() {
+            true => Vec::new(),
+            false => light.iter().enumerate().map(share).collect(),
+        };
+        frame.undecided += light.iter().filter(|p| p[3] <= 0.0).count();
+        whole.copy(&alpha, &mut frame.alpha);
         whole.copy(&rgb(light), &mut frame.radiance);
         whole.copy(&rgb(normals), &mut frame.normal);
         whole.copy(&counts, &mut frame.samples);

@@ -58,7 +58,8 @@ pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Pro
     });
     let entry = match pass {
         Pass::Color => {
-            modules.extend([turn::until(plan), wgsl!("pass/look.wgsl")]);
+            modules.extend([turn::until(plan), turn::background(plan, extras)]);
+            modules.push(wgsl!("pass/look.wgsl"));
             modules.extend(layers::modules(&plan.look.layers, solid));
             modules.extend(features::modules(&plan.look));
             modules.push(wgsl!(

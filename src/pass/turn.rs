@@ -204,7 +204,8 @@ impl StageKind {
             Self::Pass(pass) => program(plan, solid, pass, extras),
             Self::Census => over_cells("census", &[wgsl!("pass/census.wgsl")]),
             Self::Judge => {
-                let own = [tone(), vec![wgsl!("pass/judge.wgsl")]];
+                let own = [background(plan, extras), wgsl!("pass/judge.wgsl")];
+                let own = [tone(), own.into()];
                 over_cells("judge", &own.concat())
             }
             Self::Develop => {
@@ -227,6 +228,14 @@ pub(super) fn until(plan: &Plan) -> Module {
     match plan.is_adaptive() {
         true => wgsl!("pass/until.wgsl"),
         false => wgsl!("pass/until_off.wgsl"),
+    }
+}
+
+/// The module that tells what is behind the hits.
+pub(super) fn background(plan: &Plan, extras: Extras) -> Module {
+    match plan.is_transparent(extras) {
+        true => wgsl!("pass/background.wgsl"),
+        false => wgsl!("pass/background_off.wgsl"),
     }
 }
 

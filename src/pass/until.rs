@@ -44,3 +44,10 @@ pub fn squared(tone: &Tone, half: [f32; 3], all: [f32; 3], samples: u32) -> f64 
     let off = pairs.map(|(a, b)| (f64::from(a) - f64::from(b)).powi(2));
     0.25 * off.sum::<f64>()
 }
+
+/// The squared error of a pixel's alpha in levels. `half` is the number of hits among the first half
+/// of the samples, `all` that among all.
+pub fn squared_alpha(half: f32, all: f32, samples: u32) -> f64 {
+    let share = f64::from(2.0 * half - all) * 2.0 / f64::from(samples);
+    0.25 * (share * f64::from(MOST_LEVEL)).powi(2)
+}

@@ -1,7 +1,8 @@
 //! OpenEXR: one part with everything that a frame knows, in f32. The same frame gives the
 //! same bytes.
 //!
-//! Channels: `R`, `G`, `B` linear, `A` 1; `Z` the distance along the view axis and `depth.Z`
+//! Channels: `R`, `G`, `B` linear, `A` 1, or over a transparent background the share of the samples
+//! that hit, with colours that are multiplied by it; `Z` the distance along the view axis and `depth.Z`
 //! along the ray, [`FAR`] for sky, and the distance reached where a limit stopped the ray;
 //! `normal.X`..`Z` and `position.X`..`Z` in the world; `state.Y` 0 sky, 1 hit, 2 unconverged;
 //! `samples.Y` where `image.until` may end some tiles before others; `steps.Y` where evaluations were counted. Attributes: the preset, the camera, the program,
@@ -94,7 +95,13 @@ fn channels(frame: &Frame, plan: &Plan) -> Named {
         channel(&format!("position.{xyz}"), one(&position, i));
     }
     drop(position);
-    channel("A", vec![1.0; frame.depth.len()]);
+    channel(
+        "A",
+        match frame.alpha.is_empty() {
+            true => vec![1.0; frame.depth.len()],
+            false => frame.alpha.clone(),
+        },
+    );
     let forward = (plan.camera.target - plan.camera.eye).normalize();
     let depths = frame.depth.iter().enumerate();
     let planar = depths.map(|(i, t)| {

@@ -102,8 +102,11 @@ pub struct Frame {
     pub size: [u32; 2],
     /// The first pixel in the whole image: that of the plan's window.
     pub origin: [u32; 2],
-    /// Linear radiance: red, green, blue.
+    /// Linear radiance: red, green, blue. If the background is transparent, that of the hits alone,
+    /// times their share in the samples.
     pub radiance: Vec<[f32; 3]>,
+    /// The share of each pixel's samples that hit, if the background is transparent.
+    pub alpha: Vec<f32>,
     /// Distance from the eye along the ray: infinite for sky, and as far as the ray came for
     /// unconverged pixels.
     pub depth: Vec<f32>,
@@ -142,6 +145,7 @@ impl Frame {
             depth: vec![f32::INFINITY; area],
             state: vec![State::Unconverged as u8; area],
             radiance: vec![[0.0; 3]; layer(!extras.depth_only, area)],
+            alpha: vec![0.0; layer(plan.is_transparent(extras), area)],
             normal: vec![[0.0; 3]; layer(extras.normals, area)],
             samples: vec![plan.samples; layer(plan.is_adaptive() && !extras.depth_only, area)],
             work: vec![Counts::default(); layer(extras.count, area)],
@@ -162,6 +166,18 @@ impl Frame {
             }
         }
         frame
+    }
+
+    /// Makes means of the sums over the samples of each pixel, of which there are so many unless its
+    /// tile ended before.
+    pub(crate) fn average(&mut self, samples: u32) {
+        let shares = |i: usize| 1.0 / self.samples.get(i).copied().unwrap_or(samples) as f32;
+        for (i, sum) in self.radiance.iter_mut().enumerate() {
+            *sum = sum.map(|light| light * shares(i));
+        }
+        for (i, hits) in self.alpha.iter_mut().enumerate() {
+            *hits *= shares(i);
+        }
     }
 
     /// Adds up the time of march and trace, and inserts the figures of the prepared maps, with

@@ -11,7 +11,7 @@ use crate::base::parallel::for_each_part;
 use crate::pass::tone::{byte, level};
 use crate::pass::tone_map::Tone;
 use crate::picture::frame::{Frame, in_image};
-use crate::plan::{Extras, Plan};
+use crate::plan::{Background, Extras, Plan};
 use crate::raster::png::{self, BitDepth};
 
 named_enum! {
@@ -43,13 +43,18 @@ named_enum! {
 }
 
 impl Layer {
-    /// Numbers per pixel: one is enough for a depth.
+    /// Numbers per pixel, without alpha: one is enough for a depth.
     pub fn channels(self) -> usize {
         if matches!(self, Self::Depth | Self::Samples) {
             1
         } else {
             3
         }
+    }
+
+    /// Whether files of the layer have alpha: colours over a transparent background.
+    pub fn has_alpha(self, plan: &Plan) -> bool {
+        self == Self::Color && plan.background == Background::Transparent
     }
 
     /// Whether a part of a picture can be shown without the rest.
@@ -78,6 +83,8 @@ pub struct Shades<'a> {
     size: [u32; 2],
     origin: [u32; 2],
     ppi: Option<u32>,
+    /// The share of hits in each pixel; empty without alpha.
+    alpha: &'a [f32],
     shade: Box<dyn Fn(usize) -> DVec3 + Sync + 'a>,
 }
 
@@ -110,7 +117,10 @@ impl<'a> Shades<'a> {
         let shade: Box<dyn Fn(usize) -> DVec3 + Sync + 'a> = match layer {
             Layer::Color => {
                 let tone = Tone::of(&plan.look);
-                Box::new(move |i| tone.shown(vector(frame.radiance[i])))
+                // The light of the hits is straight: not multiplied by their share.
+                let share = |i: usize| frame.alpha.get(i).map_or(1.0, |a| f64::from(*a));
+                let least = f64::MIN_POSITIVE;
+                Box::new(move |i| tone.shown(vector(frame.radiance[i]) / share(i).max(least)))
             }
             Layer::Depth => {
                 let depth = |t: &f32| DVec3::splat(f64::from(*t));
@@ -152,6 +162,10 @@ impl<'a> Shades<'a> {
             size: frame.size,
             origin: frame.origin,
             ppi: plan.ppi,
+            alpha: match layer {
+                Layer::Color => &frame.alpha,
+                _ => &[],
+            },
             shade,
         }
     }
@@ -184,6 +198,11 @@ impl<'a> Shades<'a> {
         self.layer.channels() == 1
     }
 
+    /// Whether alpha follows the numbers of the layer.
+    pub fn has_alpha(&self) -> bool {
+        !self.alpha.is_empty()
+    }
+
     /// The layer.
     pub fn layer(&self) -> Layer {
         self.layer
@@ -194,7 +213,8 @@ impl<'a> Shades<'a> {
         self.layer == Layer::Color
     }
 
-    /// All pixels in 8 bits: red, green and blue, or one number where the layer is grey.
+    /// All pixels in 8 bits: red, green, blue and perhaps alpha, or one number where the layer is
+    /// grey.
     pub fn bytes(&self) -> Vec<u8> {
         let samples = self.samples(BitDepth::Eight.most());
         samples.into_iter().map(|s| s.to_le_bytes()[0]).collect()
@@ -205,12 +225,14 @@ impl<'a> Shades<'a> {
         png::bytes(depth, &self.samples(depth.most()))
     }
 
-    /// All pixels as whole numbers up to `most`, rows over threads: three per pixel,
+    /// All pixels as whole numbers up to `most`, rows over threads: three per pixel, four with alpha,
     /// one where the layer is grey. Colours of 8 bits are dithered.
     pub(crate) fn samples(&self, most: u16) -> Vec<u16> {
-        let channels = self.layer.channels();
+        let channels = self.layer.channels() + usize::from(self.has_alpha());
         let is_dithered = self.is_color() && most == BitDepth::Eight.most();
         let [width, height] = self.size.map(|n| n as usize);
+        // The cast saturates, and turns NaN into black.
+        let whole = |value: f64| (f64::from(most) * value.clamp(0.0, 1.0) + 0.5) as u16;
         let mut out = vec![0; width * height * channels];
         for_each_part(&mut out, (width * channels).max(1), |y, row| {
             for (x, pixel) in row.chunks_mut(channels).enumerate() {
@@ -221,9 +243,11 @@ impl<'a> Shades<'a> {
                             let pixel = in_image(self.origin, [x as u32, y as u32]);
                             byte(level(value), pixel).into()
                         }
-                        // The cast saturates, and turns NaN into black.
-                        false => (f64::from(most) * value.clamp(0.0, 1.0) + 0.5) as u16,
+                        false => whole(value),
                     };
+                }
+                if let (Some(to), Some(share)) = (pixel.get_mut(3), self.alpha.get(y * width + x)) {
+                    *to = whole(f64::from(*share));
                 }
             }
         });

@@ -20,6 +20,8 @@ pub struct PngHead<'a> {
     pub size: [u32; 2],
     /// The layer.
     pub layer: Layer,
+    /// Whether alpha follows the numbers of the layer.
+    pub alpha: bool,
     /// Bits of a channel.
     pub depth: BitDepth,
     /// Pixels per inch.
@@ -31,10 +33,15 @@ pub struct PngHead<'a> {
 }
 
 impl PngHead<'_> {
+    /// Numbers of a pixel.
+    fn channels(&self) -> usize {
+        self.layer.channels() + usize::from(self.alpha)
+    }
+
     /// Bytes of a row of pixels.
     pub fn row_bytes(&self) -> usize {
         let wide = usize::from(self.depth == BitDepth::Sixteen);
-        (self.size[0] as usize * self.layer.channels()) << wide
+        (self.size[0] as usize * self.channels()) << wide
     }
 }
 
@@ -52,6 +59,7 @@ pub fn write_png(
     let head = PngHead {
         size: shades.size(),
         layer: shades.layer(),
+        alpha: shades.has_alpha(),
         depth,
         ppi: shades.ppi(),
         title,
@@ -85,7 +93,7 @@ pub fn write_png_rows<E: From<OutputError>>(
     let of_file = file::Head {
         size: head.size,
         depth: head.depth,
-        channels: head.layer.channels(),
+        channels: head.channels(),
         is_light: head.layer == Layer::Color,
         ppi: head.ppi,
         texts: &texts,

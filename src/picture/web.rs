@@ -12,7 +12,7 @@ use crate::picture::layer::Shades;
 /// Writes a layer as JPEG; the quality is from 1 to 100.
 ///
 /// # Errors
-/// The disk is full, or a side is too long for the format.
+/// The disk is full, a side is too long for the format, or the layer has alpha.
 pub fn write_jpeg(to: &mut dyn Write, shades: &Shades<'_>, quality: u8) -> Result<(), OutputError> {
     let mut encoder = JpegEncoder::new_with_quality(to, quality);
     if let Some(ppi) = shades.ppi().and_then(|ppi| u16::try_from(ppi).ok()) {
@@ -35,9 +35,10 @@ fn write(
     format: &'static str,
 ) -> Result<(), OutputError> {
     let [width, height] = shades.size();
-    let color = match shades.is_grey() {
-        true => ExtendedColorType::L8,
-        false => ExtendedColorType::Rgb8,
+    let color = match (shades.is_grey(), shades.has_alpha()) {
+        (true, _) => ExtendedColorType::L8,
+        (_, false) => ExtendedColorType::Rgb8,
+        (_, true) => ExtendedColorType::Rgba8,
     };
     let written = encoder.write_image(&shades.bytes(), width, height, color);
     written.map_err(|e| OutputError::encode(format, e))

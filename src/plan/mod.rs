@@ -21,7 +21,8 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use crate::base::filter::RADIUS;
-use crate::base::key::{Fault, Key, Redo, auto_count, count, number, size, text};
+use crate::base::key::{Fault, Key, Redo, auto_count, count, number, size, text, word};
+use crate::base::named::named_enum;
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::keys;
@@ -49,6 +50,18 @@ pub const UNTIL_TILE: u32 = WINDOW_STEP;
 /// The fewest samples of a tile that ends before others: two halves of four.
 pub const UNTIL_LEAST: u32 = 8;
 
+named_enum! {
+    /// What is behind the hits.
+    #[derive(Default)]
+    pub enum Background {
+        /// The sky.
+        #[default]
+        Sky = "sky",
+        /// Nothing: files have alpha.
+        Transparent = "transparent",
+    }
+}
+
 /// Everything that decides a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -71,6 +84,8 @@ pub struct Plan {
     pub until: f64,
     /// The height in pixels of the picture whose details are shown, if it is higher than this one.
     pub reference: Option<u32>,
+    /// What is behind the hits in files. A picture that is shown while it is made has the sky.
+    pub background: Background,
     /// Pixels per inch of paper, which files tell printers.
     pub ppi: Option<u32>,
     /// When the frames of a film are.
@@ -101,6 +116,7 @@ impl Plan {
             samples: 1,
             until: 0.0,
             reference: None,
+            background: Background::Sky,
             ppi: None,
             time: Timing::default(),
             tracks: Vec::new(),
@@ -137,6 +153,7 @@ impl Plan {
                 "samples" = count(&mut self.samples, 1, MOST_PIXEL_SAMPLES), "rays through each pixel, whose colours are averaged: 1 is quick and has jagged edges, 16 is smooth, 256 is for print" => March;
                 "until" = number(&mut self.until, 0.0, 1.0), "error of the shown picture, from black 0 to white 1, below which a tile of 64 x 64 pixels gets no more samples: 0 for all samples everywhere, 0.004 for one level of 8 bits" => March;
                 "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower one has the same details, made small by its samples; auto is the picture's own height" => March;
+                "background" = word(&mut self.background, &Background::WORDS), "what files have behind the hits: sky, or transparent for alpha, the share of a pixel's samples that hit, in PNG, WebP and EXR; fog still fades toward the sky's colour, and the window shows the sky" => Nothing;
                 "ppi" = auto_count(&mut self.ppi, 1, 10_000), "pixels per inch on paper, which PNG, JPEG and EXR tell printers; auto tells none" => Nothing;
             ],
             "time" => self.time.keys(),
@@ -199,6 +216,11 @@ impl Plan {
     /// Whether tiles may end before they have all samples.
     pub fn is_adaptive(&self) -> bool {
         self.until > 0.0 && self.samples > UNTIL_LEAST
+    }
+
+    /// Whether a frame has alpha in place of the sky.
+    pub fn is_transparent(&self, extras: Extras) -> bool {
+        self.background == Background::Transparent && !extras.depth_only && !extras.shown
     }
 
     /// The cone levels, coarsest first; none in modes without cones.

@@ -8,6 +8,7 @@
     reason = "tests are read by their names, and one that panics has failed"
 )]
 
+mod alpha;
 mod bad_input;
 mod bands;
 mod bench;

@@ -159,13 +159,13 @@ fn jpeg_and_webp_show_the_picture() {
     assert_eq!(depth.color(), image::ColorType::L8);
 }
 
-fn exr_layer(path: &Path) -> Layer<AnyChannels<FlatSamples>> {
+pub fn exr_layer(path: &Path) -> Layer<AnyChannels<FlatSamples>> {
     exr::prelude::read_first_flat_layer_from_file(path)
         .expect("an EXR")
         .layer_data
 }
 
-fn values(layer: &Layer<AnyChannels<FlatSamples>>, name: &str) -> Vec<f32> {
+pub fn values(layer: &Layer<AnyChannels<FlatSamples>>, name: &str) -> Vec<f32> {
     let mut list = layer.channel_data.list.iter();
     let channel = list.find(|c| c.name.to_string() == name).expect(name);
     channel.sample_data.values_as_f32().collect()

@@ -2,7 +2,7 @@
 //! another.
 
 use conemarch::pass::LookFeature;
-use conemarch::plan::{Extras, Pass, Plan};
+use conemarch::plan::{Background, Extras, Pass, Plan};
 
 use super::common::plans::{explain, mandelbox_of, preset, program, solid, switch};
 use super::has;
@@ -48,6 +48,16 @@ fn features_that_are_off_are_not_joined() {
             // A stand-in has nothing in it that a reader could want to know.
             assert_joins(&text, false, feature.module(false).path);
         }
+    }
+}
+
+#[test]
+fn a_background_is_joined_only_if_it_is_transparent() {
+    for (background, on) in [(Background::Sky, false), (Background::Transparent, true)] {
+        let mut plan = preset("mandelbox", &[]);
+        plan.background = background;
+        let text = explain(&plan, Extras::default());
+        assert_joins(&text, on, "wgsl/pass/background.wgsl");
     }
 }
 

@@ -13,7 +13,7 @@ use conemarch::pass::turn::{self, StageKind};
 use conemarch::plan::layers::Trap;
 use conemarch::plan::look::LightMode;
 use conemarch::plan::march::Mode;
-use conemarch::plan::{Extras, Plan};
+use conemarch::plan::{Background, Extras, Plan};
 use conemarch::preset::BUILTIN;
 use conemarch::scene::{AnySolid, Assets, Scene};
 use rayon::prelude::*;
@@ -119,6 +119,9 @@ fn plans() -> Vec<Plan> {
             }
         }
     }
+    let mut clear = preset("mandelbox", &[]);
+    clear.background = Background::Transparent;
+    all.push(clear);
     for formula in Formula::all() {
         let mut layered = Plan::new(distance(formula, None));
         layered.look.layers.layer2_trap = Trap::Point;
@@ -151,10 +154,16 @@ pub fn programs_of(plan: &Plan, solid: &AnySolid) -> Vec<Program> {
 fn between_passes() -> Vec<Program> {
     let mut plan = preset("mandelbox", &[]);
     (plan.samples, plan.until) = (16, 0.01);
+    let mut clear = plan.clone();
+    clear.background = Background::Transparent;
     let solid = solid(&plan);
     let kinds = StageKind::all(&plan.passes(Extras::default()), true, true).into_iter();
     let between = kinds.filter(|kind| !matches!(kind, StageKind::Pass(_)));
-    let programs = between.map(|kind| kind.program(&plan, &solid, Extras::default()));
+    let programs = between.flat_map(|kind| {
+        let plans = [&plan, &clear].into_iter();
+        plans.map(move |plan| (plan, kind))
+    });
+    let programs = programs.map(|(plan, kind)| kind.program(plan, &solid, Extras::default()));
     programs.chain([turn::arrange()]).collect()
 }
 

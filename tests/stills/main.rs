@@ -17,6 +17,7 @@ mod common {
     pub mod plans;
     pub mod random;
 }
+mod background;
 mod device;
 mod live;
 mod paths;

@@ -21,7 +21,7 @@ fn plan(until: f64) -> Plan {
 }
 
 /// Samples of each tile. All its pixels have as many.
-fn tiles(frame: &Frame) -> Vec<u32> {
+pub fn tiles(frame: &Frame) -> Vec<u32> {
     let [width, height] = frame.size;
     let step = UNTIL_TILE as usize;
     let mut all = Vec::new();

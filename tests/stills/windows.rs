@@ -4,7 +4,7 @@ use conemarch::picture::frame::Frame;
 use conemarch::picture::{BitDepth, Layer, Shades};
 use conemarch::plan::look::LightMode;
 use conemarch::plan::pyramid::Block;
-use conemarch::plan::{Plan, WINDOW_STEP};
+use conemarch::plan::{Background, Plan, WINDOW_STEP};
 
 use super::common::plans::{preset, sized};
 use super::work::bits;
@@ -22,6 +22,9 @@ fn cropped(frame: &Frame, window: Block) -> Frame {
     let (width, Block { origin, size }) = (frame.size[0], window);
     (part.size, part.origin) = (size, origin);
     part.radiance = cut(&frame.radiance, width, origin, size);
+    if !frame.alpha.is_empty() {
+        part.alpha = cut(&frame.alpha, width, origin, size);
+    }
     part.depth = cut(&frame.depth, width, origin, size);
     part.state = cut(&frame.state, width, origin, size);
     part.normal = cut(&frame.normal, width, origin, size);
@@ -48,7 +51,10 @@ fn a_window_is_a_part_of_the_picture_bit_for_bit() {
     (wide.march.coarsest, wide.samples) = (Some(WINDOW_STEP), 2);
     let mut followed = sized("mandelbox-lantern", size);
     (followed.look.mode, followed.look.bounces) = (LightMode::Path, 1);
+    let mut clear = wide.clone();
+    clear.background = Background::Transparent;
     let plans = [
+        clear,
         wide,
         preset("mandelbox-miniature", &lens),
         sized("terrain", size),

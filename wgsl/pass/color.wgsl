@@ -44,11 +44,12 @@ fn color(
     }
     let ray = view_ray_from(turn.stage.origin + cell, turn.stage.place, turn.stage.lens);
     let s = cell_state(turn.stage.state + index);
-    var c = sky(ray.axis);
+    var c = background(sky(ray.axis));
     var decided = 1.0;
     var n = vec3<f32>(0.0);
     // A pixel under a sky cell was never written: it is sky.
-    if s == STATE_HIT || s == STATE_UNCONVERGED {
+    let is_hit = s == STATE_HIT || s == STATE_UNCONVERGED;
+    if is_hit {
         var hit = Hit(cell_front(index), 0u, vec2<f32>(0.0));
         if HIT_CARRIES_MARK {
             let mark = cell_mark(index);
@@ -69,16 +70,18 @@ fn color(
             c = vec3<f32>(1.0, 0.0, 1.0);
         }
     }
+    var note = background_note(decided, is_hit);
     if turn.stage.before > 0u {
         let sum = cell_pixel(index);
-        c = sum.rgb + select(vec3<f32>(0.0), c, turn.stage.weight > 0.0 && ended == 0.0);
-        decided = min(decided, sum.a);
+        let counts = turn.stage.weight > 0.0 && ended == 0.0;
+        c = sum.rgb + select(vec3<f32>(0.0), c, counts);
+        note = background_join(sum.a, note, counts);
     }
     var scale = turn.stage.scale;
     if ended > 0.0 {
         scale = 1.0 / ended;
     }
-    cell_store_pixel(index, vec4<f32>(c * scale, decided));
+    cell_store_pixel(index, vec4<f32>(c * scale, note));
     if COLOR_KEEPS_NORMALS {
         let area = turn.stage.cells.x * turn.stage.cells.y;
         cell_store_pixel(area + index, vec4<f32>(n, 0.0));

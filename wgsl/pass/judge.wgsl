@@ -2,7 +2,7 @@
 // 64 x 64 pixels, and each of its invocations a column of it.
 //
 // Of each pixel, four words are kept: the sum of the light when it was judged last, and the number of
-// samples once it has ended.
+// samples once it has ended. Before, this is the number of hits then, below zero, if hits are counted.
 
 /// Squared errors of the columns, in levels, and their pixels.
 var<workgroup> judged: array<vec2<f32>, 64>;
@@ -12,14 +12,18 @@ fn judge_at(cell: vec2<u32>) -> u32 {
     return turn.stage.halves + 4u * queue_index(cell);
 }
 
-/// The squared error of a pixel, summed over its channels.
+/// The squared error of a pixel, summed over its channels. Alpha is one if hits are counted.
 fn judge_pixel(cell: vec2<u32>, share: f32) -> f32 {
     let at = judge_at(cell);
     let kept = vec3<u32>(cells.words[at], cells.words[at + 1u], cells.words[at + 2u]);
     let half = bitcast<vec3<f32>>(kept);
-    let rest = cell_pixel(queue_index(cell)).rgb - half;
+    let all = cell_pixel(queue_index(cell));
+    let rest = all.rgb - half;
     let off = vec3<f32>(tone_levels(half * share)) - vec3<f32>(tone_levels(rest * share));
-    return 0.25 * dot(off, off);
+    // Twice the hits of the first half, which are kept below zero, less those of all.
+    let hits = 2.0 * bitcast<f32>(cells.words[at + 3u]) + background_hits(all.a);
+    let alpha = f32(TONE_MOST_LEVEL) * share * hits;
+    return 0.25 * (dot(off, off) + alpha * alpha);
 }
 
 @compute @workgroup_size(64)
@@ -55,10 +59,12 @@ fn judge(
     let ends = turn.stage.until >= 0.0 && all.x < turn.stage.until * all.y;
     for (var y = corner.y; y < end; y++) {
         let at = judge_at(vec2<u32>(x, y));
-        let light = bitcast<vec3<u32>>(cell_pixel(queue_index(vec2<u32>(x, y))).rgb);
+        let kept = cell_pixel(queue_index(vec2<u32>(x, y)));
+        let light = bitcast<vec3<u32>>(kept.rgb);
+        let going = 0.0 - background_hits(kept.a);
         cells.words[at] = light.x;
         cells.words[at + 1u] = light.y;
         cells.words[at + 2u] = light.z;
-        cells.words[at + 3u] = bitcast<u32>(select(0.0, samples, ends));
+        cells.words[at + 3u] = bitcast<u32>(select(going, samples, ends));
     }
 }
