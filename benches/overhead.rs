@@ -18,6 +18,7 @@ use conemarch::preset;
 use conemarch::scene::Assets;
 use one_sample::one_sample;
 use serde_json::Value;
+use tempfile::TempDir;
 
 #[path = "common/markdown.rs"]
 mod markdown;
@@ -39,10 +40,11 @@ fn main() -> Result<()> {
     let args = std::env::args().skip(1).filter(|a| a != "--bench");
     let args: Vec<String> = args.collect();
     ensure!(args.len() >= 2, "give the old and the new program");
+    let presets = old_presets(&args[0])?;
     let text = [
-        small(&args)?,
-        large(&args)?,
-        processes(&args)?,
+        small(&args, presets.path())?,
+        large(&args, presets.path())?,
+        processes(&args, presets.path())?,
         frames()?,
         cancels()?,
     ]
@@ -57,9 +59,22 @@ fn main() -> Result<()> {
     Ok(())
 }
 
+/// Files of the old build's presets. Both builds render these, as today's may differ.
+fn old_presets(program: &str) -> Result<TempDir> {
+    let folder = tempfile::tempdir()?;
+    for (name, _) in preset::BUILTIN {
+        let said = Command::new(program).args(["presets", name]).output()?;
+        // Newer ones are unknown to it.
+        if said.status.success() {
+            std::fs::write(folder.path().join(name).with_extension("toml"), said.stdout)?;
+        }
+    }
+    Ok(folder)
+}
+
 /// March and trace of a preset by both builds in turns: milliseconds on the clock, and those of
 /// the device.
-fn measured(args: &[String], preset: &str, size: &str) -> Result<[[f64; 2]; 2]> {
+fn measured(args: &[String], preset: &Path, size: &str) -> Result<[[f64; 2]; 2]> {
     let mut all = [vec![], vec![]];
     for _ in 0..RUNS {
         for (runs, program) in all.iter_mut().zip(args) {
@@ -86,11 +101,11 @@ struct Times {
     colored: f64,
 }
 
-fn run(program: &str, preset: &str, size: &str, settings: &[&str]) -> Result<Times> {
+fn run(program: &str, preset: &Path, size: &str, settings: &[&str]) -> Result<Times> {
     let file = std::env::temp_dir().join(format!("overhead-{}.json", std::process::id()));
     let picture = file.with_extension("png");
     let mut command = Command::new(program);
-    command.args(["render", preset, "--size", size]);
+    command.arg("render").arg(preset).args(["--size", size]);
     command.args(one_sample(program)?);
     command
         .args(settings)
@@ -99,7 +114,11 @@ fn run(program: &str, preset: &str, size: &str, settings: &[&str]) -> Result<Tim
         .arg("-o")
         .arg(&picture);
     let status = command.stderr(Stdio::null()).status()?;
-    ensure!(status.success(), "{program} cannot render {preset}");
+    ensure!(
+        status.success(),
+        "{program} cannot render {}",
+        preset.display()
+    );
     let stats: Value = serde_json::from_str(&std::fs::read_to_string(&file)?)?;
     std::fs::remove_file(file)?;
     std::fs::remove_file(picture)?;
@@ -119,10 +138,11 @@ fn run(program: &str, preset: &str, size: &str, settings: &[&str]) -> Result<Tim
 }
 
 /// The overhead at a size at which kernels take little.
-fn small(args: &[String]) -> Result<String> {
+fn small(args: &[String], presets: &Path) -> Result<String> {
     let mut rows = Vec::new();
     for preset in LIVE {
-        let [old, new] = measured(args, preset, "64x36")?.map(|[wall, device]| wall - device);
+        let file = presets.join(preset).with_extension("toml");
+        let [old, new] = measured(args, &file, "64x36")?.map(|[wall, device]| wall - device);
         rows.push(format!("{preset} | {old:.2} | {new:.2} | {:.2}", new / old));
     }
     Ok(markdown::table(
@@ -133,7 +153,7 @@ fn small(args: &[String]) -> Result<String> {
 }
 
 /// March and trace, and whole frames, at 1280 x 720.
-fn large(args: &[String]) -> Result<String> {
+fn large(args: &[String], presets: &Path) -> Result<String> {
     let runs = [
         (&args[0], &[][..]),
         (&args[1], &["--set", "march.coarsest=1"][..]),
@@ -142,10 +162,14 @@ fn large(args: &[String]) -> Result<String> {
     let mut rows = Vec::new();
     let mut ratios = Vec::new();
     for (preset, _) in preset::BUILTIN {
+        let file = presets.join(preset).with_extension("toml");
+        if !file.exists() {
+            continue;
+        }
         let mut all = [vec![], vec![], vec![]];
         for _ in 0..RUNS {
             for (times, (program, settings)) in all.iter_mut().zip(runs) {
-                times.push(run(program, preset, "1280x720", settings)?);
+                times.push(run(program, &file, "1280x720", settings)?);
             }
         }
         let median = |of: usize, figure: fn(&Times) -> f64| {
@@ -178,16 +202,18 @@ fn large(args: &[String]) -> Result<String> {
 }
 
 /// From nothing to a file: whole processes.
-fn processes(args: &[String]) -> Result<String> {
+fn processes(args: &[String], presets: &Path) -> Result<String> {
     let mut rows = Vec::new();
     for preset in LIVE {
+        let file = presets.join(preset).with_extension("toml");
         let mut all = [vec![], vec![]];
         for _ in 0..2 * RUNS {
             for (runs, program) in all.iter_mut().zip(args) {
                 let plain = one_sample(program)?;
                 let start = Instant::now();
                 let mut command = Command::new(program);
-                command.args(["render", preset, "--size", "64x36", "-o", "-"]);
+                command.arg("render").arg(&file);
+                command.args(["--size", "64x36", "-o", "-"]);
                 command.args(&plain);
                 let output = command.stdin(Stdio::null()).output()?;
                 ensure!(output.status.success(), "{program} cannot render {preset}");
