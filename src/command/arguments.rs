@@ -32,6 +32,16 @@ pub fn pixel_samples() -> impl TypedValueParser<Value = u32> {
     clap::value_parser!(u32).range(1..=i64::from(MOST_PIXEL_SAMPLES))
 }
 
+/// Reads the error at which a tile has enough samples.
+///
+/// # Errors
+/// It is no number from 0 to 1.
+pub fn noise(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let within = number.filter(|n| (0.0..=1.0).contains(n));
+    within.ok_or_else(|| "must be a number from 0 to 1, like 0.004".into())
+}
+
 /// Reads how many bits a channel of a PNG has.
 pub fn bits() -> impl TypedValueParser<Value = BitDepth> {
     words([(BitDepth::Eight, "8", ""), (BitDepth::Sixteen, "16", "")])

@@ -187,6 +187,9 @@ pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<Pa
     if let Some(samples) = args.samples {
         file.push(format!("-samples={samples}"));
     }
+    if let Some(noise) = args.until {
+        file.push(format!("-until={noise}"));
+    }
     if args.layer != Layer::Color {
         file.push(format!(".{}", args.layer.name()));
     }

@@ -6,7 +6,7 @@ use anyhow::{Result, anyhow};
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint};
 
-use crate::command::arguments::{pixel_samples, size, words};
+use crate::command::arguments::{noise, pixel_samples, size, words};
 use crate::command::bands::{Bands, BigPicture};
 use crate::command::bench::common::of_how_many;
 use crate::command::bench::runner::{Runner, TIMED};
@@ -39,13 +39,13 @@ pub struct Render {
     ///
     /// Without -o the picture goes to the current folder as NAME.png, with --set as
     /// NAME-camera.fov=60.png, with another --size as NAME-640x360.png, with --samples as
-    /// NAME-samples=16.png, and with another --layer as NAME.depth.png. Only a picture of the same
+    /// NAME-samples=16.png, with --until likewise, and with another --layer as NAME.depth.png. Only a picture of the same
     /// layer and settings is replaced, or one that is older than a preset's file.
     ///
     /// A PNG carries its preset and can be rendered again; JPEG and WebP carry none. WebP is
     /// without loss. An EXR has the channels R, G, B (linear), A (1), Z (along the view
     /// axis), depth.Z (along the ray), normal.X/Y/Z, position.X/Y/Z, state.Y (0 sky, 1 hit,
-    /// 2 unconverged), and steps.Y with --stats. Both depths are 1e10 for sky. Its
+    /// 2 unconverged), samples.Y with --until, and steps.Y with --stats. Both depths are 1e10 for sky. Its
     /// attributes hold the preset and the camera.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
@@ -57,6 +57,13 @@ pub struct Render {
     /// Rays through each pixel, in place of the preset's: 1 is quick, 16 is smooth
     #[arg(long, value_name = "N", value_parser = pixel_samples())]
     pub(crate) samples: Option<u32>,
+
+    /// Error of the picture, 0 to 1, below which a tile gets no more samples, in place of the preset's
+    ///
+    /// Tiles of 64 x 64 pixels end alone, at 8, 16, 32 and so on samples, and have at most --samples.
+    /// 0.004 is one level of 8 bits; 0 takes all samples everywhere.
+    #[arg(long, value_name = "NOISE", value_parser = noise, allow_negative_numbers = true)]
+    pub(crate) until: Option<f64>,
 
     /// Set one value of the preset; may be given again
     ///
@@ -128,6 +135,7 @@ pub fn run(args: &Render) -> Result<()> {
     let own_size = plan.size;
     plan.size = args.size.unwrap_or(own_size);
     plan.samples = args.samples.unwrap_or(plan.samples);
+    plan.until = args.until.unwrap_or(plan.until);
     let output = match &args.output {
         Some(path) => path.clone(),
         None => default_name(args, &plan, own_size)?,

@@ -3,6 +3,9 @@
 //! It renders where a machine has no adapter, it makes the truths, and the GPU is compared
 //! with it.
 
+mod sample;
+mod until;
+
 use rayon::prelude::*;
 
 use crate::base::clock::clock;
@@ -19,6 +22,8 @@ use crate::picture::frame::{Frame, in_image};
 use crate::plan::pyramid::Level;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::{Assets, Hit, Solid, Task};
+pub use sample::sample;
+use until::Judge;
 
 /// Cells between two calls of the watch: some tens of milliseconds on two cores.
 const BAND_CELLS: usize = 1 << 15;
@@ -93,10 +98,13 @@ impl Task for Render<'_> {
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let Self { plan, extras, .. } = self;
         let passes = plan.passes(extras);
+        let frame = Frame::blank(plan, extras);
         let mut run = Run {
             solid,
             view: plan.view(),
-            frame: Frame::blank(plan, extras),
+            judge: Judge::of(plan, &frame),
+            frame,
+            ended: Vec::new(),
             parents: None,
             hits: Vec::new(),
             sample: 0,
@@ -131,6 +139,10 @@ impl Task for Render<'_> {
                 // Done before all others.
                 Pass::Prepare(_) => continue,
             };
+            if let Some(judge) = run.judge.as_mut().filter(|_| pass == Pass::Color) {
+                judge.judge(&mut run.frame, run.before + 1);
+                run.ended = judge.ended(&run.frame);
+            }
             let figures = &mut run.frame.passes[at];
             figures.wall_ms += clock() - start;
             if extras.count && pass.marches() {
@@ -138,8 +150,10 @@ impl Task for Render<'_> {
                 *figures.iterations.get_or_insert(0) += work.1;
             }
         }
-        let of_all = 1.0 / plan.samples as f32;
-        for sum in &mut run.frame.radiance {
+        let counts = run.frame.samples.iter().copied();
+        let counts = counts.chain(std::iter::repeat(plan.samples));
+        for (sum, count) in run.frame.radiance.iter_mut().zip(counts) {
+            let of_all = 1.0 / count as f32;
             *sum = sum.map(|light| light * of_all);
         }
         run.frame.undecided = run.undecided.iter().filter(|u| **u).count();
@@ -152,6 +166,10 @@ struct Run<'a, S> {
     solid: &'a S,
     view: View,
     frame: Frame,
+    /// Ends tiles, if they may.
+    judge: Option<Judge>,
+    /// Pixels whose samples have ended.
+    ended: Vec<bool>,
     parents: Option<Proofs>,
     /// What the rays hit, for the colour pass.
     hits: Vec<Hit>,
@@ -220,21 +238,30 @@ impl<S: Solid> Run<'_, S> {
 
     fn trace(&mut self, limit: u32, bands: &mut Bands) -> Result<Sum, FrameError> {
         let (solid, parents) = (self.solid, self.parents.as_ref());
-        let ray = self.rays();
-        let one = |pixel| {
+        let (ray, width) = (self.rays(), self.frame.size[0] as usize);
+        let (frame, hits) = (&mut self.frame, &mut self.hits);
+        let (ended, is_centre) = (&self.ended, self.sample == 0);
+        let one = |pixel: [u32; 2]| {
+            // The centre has a ray anyway: its depth stays.
+            let at = pixel[1] as usize * width + pixel[0] as usize;
+            if is_on(ended, at) && !is_centre {
+                return None;
+            }
             let parent = parent_of(parents, pixel);
             let mut work = Counts::default();
             if parent.ended == Ended::Sky {
-                return (Hit::default(), State::Sky, work);
+                return Some((Hit::default(), State::Sky, work));
             }
             let (hit, state) = trace::trace(solid, &ray(pixel), parent.front, limit, &mut work);
-            (hit, state, work)
+            Some((hit, state, work))
         };
         let mut sum = (0, 0);
-        let (frame, hits) = (&mut self.frame, &mut self.hits);
         // As the colours, they are kept only if somebody asks for colours.
         hits.resize(frame.radiance.len(), Hit::default());
-        bands.over(frame.size, one, |i, (hit, state, work)| {
+        bands.over(frame.size, one, |i, traced| {
+            let Some((hit, state, work)) = traced else {
+                return;
+            };
             add(&mut sum, work);
             frame.state[i] = state as u8;
             frame.depth[i] = match state {
@@ -258,26 +285,42 @@ impl<S: Solid> Run<'_, S> {
         let (states, undecided) = (&self.frame.state, &mut self.undecided);
         undecided.resize(states.len(), false);
         let (counts, before, origin) = (self.counts, self.before, self.frame.origin);
+        let (ended, is_centre) = (&self.ended, self.sample == 0);
         let one = |pixel: [u32; 2]| {
             let at = pixel[1] as usize * size[0] as usize + pixel[0] as usize;
+            // The normal is that of the centre.
+            if is_on(ended, at) && !is_centre {
+                return None;
+            }
             let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
-            color::color(
+            Some(color::color(
                 (solid, light),
                 (in_image(origin, pixel), before),
                 &ray(pixel),
                 &hits[at],
                 state,
-            )
+            ))
         };
         bands.over(size, one, |i, pixel| {
+            let Some(pixel) = pixel else {
+                return;
+            };
+            set(normals, i, pixel.normal.as_vec3().to_array());
+            if is_on(ended, i) {
+                return;
+            }
             for (sum, light) in radiance[i].iter_mut().zip(pixel.radiance.to_array()) {
                 *sum += if counts { light as f32 } else { 0.0 };
             }
-            set(normals, i, pixel.normal.as_vec3().to_array());
             undecided[i] |= !pixel.decided;
         })?;
         Ok((0, 0))
     }
+}
+
+/// Whether a pixel is among those that have ended; none are if the list is empty.
+fn is_on(list: &[bool], at: usize) -> bool {
+    list.get(at).copied().unwrap_or(false)
 }
 
 /// Sets a value of a layer if the layer is kept.
@@ -343,52 +386,6 @@ impl Bands<'_> {
             }
         }
         Ok(())
-    }
-}
-
-/// Renders some pixels of a plan alone: each goes through the cones above it.
-///
-/// # Errors
-/// A named file cannot be read or does not fit.
-pub fn sample(
-    plan: &Plan,
-    assets: &Assets,
-    pixels: &[[u32; 2]],
-) -> Result<Vec<(Hit, State)>, FrameError> {
-    let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
-    let sample = Sample {
-        view: plan.view(),
-        limit: plan.ray_steps(&solid),
-        levels: plan.levels(),
-        pixels,
-    };
-    Ok(solid.run(sample))
-}
-
-struct Sample<'a> {
-    view: View,
-    limit: u32,
-    levels: Vec<Level>,
-    pixels: &'a [[u32; 2]],
-}
-
-impl Task for Sample<'_> {
-    type Output = Vec<(Hit, State)>;
-
-    fn run<S: Solid>(self, solid: &S) -> Self::Output {
-        let one = |pixel: &[u32; 2]| {
-            let (mut front, work) = (0.0, &mut Counts::default());
-            for level in &self.levels {
-                let cell = pixel.map(|p| p / level.divisor);
-                let proof = Proof::of((solid, &self.view), cell, *level, front, work);
-                if proof.ended == Ended::Sky {
-                    return (Hit::default(), State::Sky);
-                }
-                front = proof.front;
-            }
-            trace::trace(solid, &self.view.view_ray(*pixel), front, self.limit, work)
-        };
-        self.pixels.par_iter().map(one).collect()
     }
 }
 

@@ -93,7 +93,7 @@ impl Parts {
         device: &Device,
         from: &Staging,
         (layout, generation): (&Layout, u32),
-        passes: &[Pass],
+        (passes, samples): (&[Pass], u32),
         frame: &mut Frame,
     ) -> Result<(), DeviceError> {
         if self.bytes() == 0 {
@@ -164,7 +164,16 @@ impl Parts {
             place.copy(&codes, &mut layer.state);
         }
         let pixels: Vec<[f32; 4]> = from.read(device, starts[5], self.pixels.words as usize / 4)?;
-        let (light, normals) = pixels.split_at(pixels.len().min(codes.len()));
+        let mut planes = pixels.chunks(codes.len().max(1));
+        let mut plane = |kept: bool| match kept {
+            true => planes.next().unwrap_or_default(),
+            false => &[],
+        };
+        let light = plane(!frame.radiance.is_empty());
+        let normals = plane(!frame.normal.is_empty());
+        let halves = plane(!frame.samples.is_empty());
+        let count = |p: &[f32; 4]| if p[3] > 0.0 { p[3] as u32 } else { samples };
+        let counts: Vec<u32> = halves.iter().map(count).collect();
         let rgb = |p: &[[f32; 4]]| {
             p.iter()
                 .map(|[r, g, b, _]| [*r, *g, *b])
@@ -173,6 +182,7 @@ impl Parts {
         frame.undecided += light.iter().filter(|p| p[3] == 0.0).count();
         whole.copy(&rgb(light), &mut frame.radiance);
         whole.copy(&rgb(normals), &mut frame.normal);
+        whole.copy(&counts, &mut frame.samples);
         Ok(())
     }
 }

@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 
 use crate::pass::turn::{MOST_STAGES, Stage, StageKind};
-use crate::plan::Pass;
 use crate::plan::pyramid::Block;
+use crate::plan::{Pass, UNTIL_TILE};
 
 /// The head of the buffer of cells. Their values and the lists follow it.
 #[repr(C)]
@@ -38,7 +38,8 @@ pub struct Layout {
     coarsest: u32,
     counted: bool,
     marked: bool,
-    /// Values of four numbers per pixel: the light, and the normals if they are kept.
+    /// Values of four numbers per pixel: the light, the normals if they are kept, and the halves if
+    /// tiles are judged.
     pixel_layers: u32,
     /// Words reserved for states.
     states: u32,
@@ -120,6 +121,11 @@ impl Layout {
         self.mark() + if self.marked { 3 * self.count(1) } else { 0 }
     }
 
+    /// Where the last values of the pixels start: the halves, if tiles are judged.
+    fn halves(&self) -> u32 {
+        self.light() + 4 * self.pixel_layers.saturating_sub(1) * self.count(1)
+    }
+
     /// Where the lists start: two queues and two lists of parents.
     pub fn lists(&self) -> u32 {
         self.light() + 4 * self.pixel_layers * self.count(1)
@@ -172,6 +178,8 @@ impl Layout {
             tally: self.tally(divisor),
             mark: self.mark(),
             light: self.light(),
+            halves: self.halves(),
+            until: -1.0,
             place: [0.5; 2],
             lens: [-1.0; 2],
             weight: 1.0,
@@ -192,6 +200,10 @@ impl Layout {
             StageKind::Pass(Pass::Trace) => Stage {
                 limit: ray_steps,
                 ..self.under_parents(at(1))
+            },
+            StageKind::Judge => Stage {
+                tiles: self.cells(UNTIL_TILE).iter().product(),
+                ..at(1)
             },
             StageKind::Sketch(level) => at(level.divisor),
             StageKind::Pass(_) | StageKind::Develop => at(1),

@@ -37,6 +37,7 @@ pub mod tone;
 pub mod tone_map;
 pub mod trace;
 pub mod turn;
+pub mod until;
 
 use crate::base::shader::Program;
 use crate::plan::{Extras, Pass, Plan};
@@ -57,7 +58,7 @@ pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Pro
     });
     let entry = match pass {
         Pass::Color => {
-            modules.push(wgsl!("pass/look.wgsl"));
+            modules.extend([turn::until(plan), wgsl!("pass/look.wgsl")]);
             modules.extend(layers::modules(&plan.look.layers, solid));
             modules.extend(features::modules(&plan.look));
             modules.push(wgsl!(
@@ -68,7 +69,7 @@ pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Pro
             "color"
         }
         Pass::Trace => {
-            modules.push(wgsl!("pass/trace.wgsl"));
+            modules.extend([turn::until(plan), wgsl!("pass/trace.wgsl")]);
             "trace"
         }
         Pass::March(_) | Pass::Prepare(_) => {

@@ -70,6 +70,11 @@ pub struct Stage {
     pub weight: f32,
     /// A factor on the sum of the light.
     pub scale: f32,
+    /// Where the halves start that `wgsl/pass/judge.wgsl` keeps, four words to a pixel.
+    pub halves: u32,
+    /// A tile ends if its squared error is below this, in levels of the tone; below 0 if it may not
+    /// end yet.
+    pub until: f32,
 }
 
 /// What the next dispatch does. Only the device writes it.
@@ -155,6 +160,8 @@ pub enum StageKind {
     Pass(Pass),
     /// Shows the fronts of a cone level in the picture.
     Sketch(Level),
+    /// Ends the samples of tiles whose error is small.
+    Judge,
     /// Shows the colours in the picture.
     Develop,
     /// Counts the cells that were left out.
@@ -162,15 +169,17 @@ pub enum StageKind {
 }
 
 impl StageKind {
-    /// The stages of a block, in order; some only if the picture is shown while it is made.
-    pub fn all(passes: &[Pass], shown: bool) -> Vec<Self> {
+    /// The stages of a block, in order; some only if the picture is shown while it is
+    /// made, or if tiles are judged.
+    pub fn all(passes: &[Pass], shown: bool, judged: bool) -> Vec<Self> {
         let of_pass = |pass: &Pass| {
             let after = match pass {
                 Pass::March(level) => Some(Self::Sketch(*level)),
                 Pass::Color => Some(Self::Develop),
                 _ => None,
             };
-            [Some(Self::Pass(*pass)), after.filter(|_| shown)]
+            let judge = (judged && *pass == Pass::Color).then_some(Self::Judge);
+            [Some(Self::Pass(*pass)), judge, after.filter(|_| shown)]
         };
         let passes = passes.iter().flat_map(of_pass).flatten();
         passes.chain([Self::Census]).collect()
@@ -194,8 +203,12 @@ impl StageKind {
         match self {
             Self::Pass(pass) => program(plan, solid, pass, extras),
             Self::Census => over_cells("census", &[wgsl!("pass/census.wgsl")]),
+            Self::Judge => {
+                let own = [tone(), vec![wgsl!("pass/judge.wgsl")]];
+                over_cells("judge", &own.concat())
+            }
             Self::Develop => {
-                let own = [tone(), vec![wgsl!("pass/develop.wgsl")]];
+                let own = [tone(), vec![until(plan), wgsl!("pass/develop.wgsl")]];
                 over_cells("develop", &own.concat())
             }
             Self::Sketch(_) => {
@@ -206,6 +219,14 @@ impl StageKind {
                 over_cells("sketch", &all)
             }
         }
+    }
+}
+
+/// The module that tells which pixels have ended.
+pub(super) fn until(plan: &Plan) -> Module {
+    match plan.is_adaptive() {
+        true => wgsl!("pass/until.wgsl"),
+        false => wgsl!("pass/until_off.wgsl"),
     }
 }
 

@@ -4,7 +4,7 @@
 //! Channels: `R`, `G`, `B` linear, `A` 1; `Z` the distance along the view axis and `depth.Z`
 //! along the ray, [`FAR`] for sky, and the distance reached where a limit stopped the ray;
 //! `normal.X`..`Z` and `position.X`..`Z` in the world; `state.Y` 0 sky, 1 hit, 2 unconverged;
-//! `steps.Y` where evaluations were counted. Attributes: the preset, the camera, the program,
+//! `samples.Y` where `image.until` may end some tiles before others; `steps.Y` where evaluations were counted. Attributes: the preset, the camera, the program,
 //! pixels per inch and the chromaticities of sRGB.
 
 use std::io::{Seek, Write};
@@ -105,6 +105,12 @@ fn channels(frame: &Frame, plan: &Plan) -> Named {
     channel("depth.Z", frame.depth.iter().copied().map(finite).collect());
     let states = frame.state.iter().map(|s| f32::from(*s));
     channel("state.Y", states.collect());
+    if !frame.samples.is_empty() {
+        channel(
+            "samples.Y",
+            frame.samples.iter().map(|n| *n as f32).collect(),
+        );
+    }
     if !frame.work.is_empty() {
         channel("steps.Y", frame.steps());
     }

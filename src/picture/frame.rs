@@ -113,6 +113,8 @@ pub struct Frame {
     pub undecided: usize,
     /// Unit normals in the world; zero for sky.
     pub normal: Vec<[f32; 3]>,
+    /// Samples of each pixel, if tiles may end before others.
+    pub samples: Vec<u32>,
     /// Work of each pixel's ray, if it was counted.
     pub work: Vec<Counts>,
     /// Cone levels, coarsest first.
@@ -141,6 +143,7 @@ impl Frame {
             state: vec![State::Unconverged as u8; area],
             radiance: vec![[0.0; 3]; layer(!extras.depth_only, area)],
             normal: vec![[0.0; 3]; layer(extras.normals, area)],
+            samples: vec![plan.samples; layer(plan.is_adaptive() && !extras.depth_only, area)],
             work: vec![Counts::default(); layer(extras.count, area)],
             ..Self::default()
         };

@@ -33,6 +33,9 @@ named_enum! {
         Steps = "steps" => "evaluations: violet none, yellow the 99th percentile and above",
         /// What each pixel is.
         State = "state" => "sky dark blue, hit light grey, unconverged magenta",
+        /// Samples of each pixel.
+        Samples = "samples" =>
+            "share of image.samples that a pixel has, as grey: black none, white all; less where image.until ends a tile",
         /// Errors of the depth.
         Error = "error" =>
             "error of the depth against the truth, a slow reference that is rendered too, in footprints (half a pixel's width): grey 0, red 8 too deep or no hit, blue 8 too near",
@@ -42,12 +45,19 @@ named_enum! {
 impl Layer {
     /// Numbers per pixel: one is enough for a depth.
     pub fn channels(self) -> usize {
-        if self == Self::Depth { 1 } else { 3 }
+        if matches!(self, Self::Depth | Self::Samples) {
+            1
+        } else {
+            3
+        }
     }
 
     /// Whether a part of a picture can be shown without the rest.
     pub fn is_local(self) -> bool {
-        matches!(self, Self::Color | Self::Normal | Self::State)
+        matches!(
+            self,
+            Self::Color | Self::Normal | Self::State | Self::Samples
+        )
     }
 
     /// What a render must keep for the layer.
@@ -55,8 +65,8 @@ impl Layer {
         Extras {
             count: self == Self::Steps,
             normals: self == Self::Normal,
-            // The colour pass makes colours and normals.
-            depth_only: !matches!(self, Self::Color | Self::Normal),
+            // The colour pass makes colours and normals, and counts samples.
+            depth_only: !matches!(self, Self::Color | Self::Normal | Self::Samples),
             ..Extras::default()
         }
     }
@@ -129,6 +139,12 @@ impl<'a> Shades<'a> {
                 Some(State::Hit) => HIT,
                 _ => UNCONVERGED,
             }),
+            Layer::Samples => {
+                let all = f64::from(plan.samples);
+                // Without a list, every pixel has all.
+                let count = |i: usize| frame.samples.get(i).map(|n| f64::from(*n));
+                Box::new(move |i| DVec3::splat(count(i).map_or(1.0, |n| n / all)))
+            }
             Layer::Error => Box::new(|_| UNCONVERGED),
         };
         Self {

@@ -21,7 +21,7 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use crate::base::filter::RADIUS;
-use crate::base::key::{Fault, Key, Redo, auto_count, count, size, text};
+use crate::base::key::{Fault, Key, Redo, auto_count, count, number, size, text};
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::keys;
@@ -43,6 +43,12 @@ pub const MOST_PIXEL_SAMPLES: u32 = 65_536;
 /// Windows begin at multiples of this many pixels: the widest cell of any cone level.
 pub const WINDOW_STEP: u32 = 64;
 
+/// The edge in pixels of the tiles that end alone, see [`Plan::until`].
+pub const UNTIL_TILE: u32 = WINDOW_STEP;
+
+/// The fewest samples of a tile that ends before others: two halves of four.
+pub const UNTIL_LEAST: u32 = 8;
+
 /// Everything that decides a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -60,6 +66,9 @@ pub struct Plan {
     pub size: [u32; 2],
     /// Samples of each pixel, from 1 to [`MOST_PIXEL_SAMPLES`].
     pub samples: u32,
+    /// The error of the shown picture, 0 to 1, below which a tile of [`UNTIL_TILE`] pixels gets no
+    /// more samples; 0 for all samples everywhere.
+    pub until: f64,
     /// The height in pixels of the picture whose details are shown, if it is higher than this one.
     pub reference: Option<u32>,
     /// Pixels per inch of paper, which files tell printers.
@@ -90,6 +99,7 @@ impl Plan {
             look,
             size: [1280, 720],
             samples: 1,
+            until: 0.0,
             reference: None,
             ppi: None,
             time: Timing::default(),
@@ -125,6 +135,7 @@ impl Plan {
             "image" => keys![
                 "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
                 "samples" = count(&mut self.samples, 1, MOST_PIXEL_SAMPLES), "rays through each pixel, whose colours are averaged: 1 is quick and has jagged edges, 16 is smooth, 256 is for print" => March;
+                "until" = number(&mut self.until, 0.0, 1.0), "error of the shown picture, from black 0 to white 1, below which a tile of 64 x 64 pixels gets no more samples: 0 for all samples everywhere, 0.004 for one level of 8 bits" => March;
                 "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower one has the same details, made small by its samples; auto is the picture's own height" => March;
                 "ppi" = auto_count(&mut self.ppi, 1, 10_000), "pixels per inch on paper, which PNG, JPEG and EXR tell printers; auto tells none" => Nothing;
             ],
@@ -183,6 +194,11 @@ impl Plan {
     /// How often each pixel has a ray. Through a lens, its centre has one more, for the depth.
     pub fn visits(&self) -> u32 {
         self.samples + u32::from(self.view().lens.is_some())
+    }
+
+    /// Whether tiles may end before they have all samples.
+    pub fn is_adaptive(&self) -> bool {
+        self.until > 0.0 && self.samples > UNTIL_LEAST
     }
 
     /// The cone levels, coarsest first; none in modes without cones.

@@ -20,6 +20,11 @@ const OPTIONS: &str = r#"
 -o - --stats - ; 2 ; --stats
 -o a.png --stats a.png ; 2 ; --stats
 -o a.png --stats ./a.png ; 2 ; --stats
+--until nan ; 2 ; --until|a number from 0 to 1
+--until -0.1 ; 2 ; --until|a number from 0 to 1
+--until 2 ; 2 ; --until|a number from 0 to 1
+--samples 1000000000 ; 2 ; --samples|65536
+--set image.until=-1 ; 2 ; image.until=-1: must be a number from 0 to 1
 -o no/a.png ; 1 ; no/a.png|no folder `no`
 --stats no/s.json ; 1 ; no/s.json|no folder `no`
 -o empty.toml/a.png ; 1 ; empty.toml/a.png

@@ -149,9 +149,10 @@ pub fn programs_of(plan: &Plan, solid: &AnySolid) -> Vec<Program> {
 
 /// The programs between the passes.
 fn between_passes() -> Vec<Program> {
-    let plan = preset("mandelbox", &[]);
+    let mut plan = preset("mandelbox", &[]);
+    (plan.samples, plan.until) = (16, 0.01);
     let solid = solid(&plan);
-    let kinds = StageKind::all(&plan.passes(Extras::default()), true).into_iter();
+    let kinds = StageKind::all(&plan.passes(Extras::default()), true, true).into_iter();
     let between = kinds.filter(|kind| !matches!(kind, StageKind::Pass(_)));
     let programs = between.map(|kind| kind.program(&plan, &solid, Extras::default()));
     programs.chain([turn::arrange()]).collect()

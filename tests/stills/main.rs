@@ -22,6 +22,7 @@ mod live;
 mod paths;
 mod samples;
 mod tone;
+mod until;
 mod windows;
 mod work;
 

@@ -34,6 +34,14 @@ fn color(
     }
     let cell = queue_cell(packed);
     let index = queue_index(cell);
+    let ended = until_ended(index);
+    if turn.stage.before == 0u {
+        until_begin(index);
+    }
+    // The normal is that of the centre.
+    if ended > 0.0 && turn.stage.lens.x >= 0.0 {
+        return;
+    }
     let ray = view_ray_from(turn.stage.origin + cell, turn.stage.place, turn.stage.lens);
     let s = cell_state(turn.stage.state + index);
     var c = sky(ray.axis);
@@ -48,23 +56,29 @@ fn color(
             hit.uv = vec2<f32>(mark.u, mark.v);
         }
         let at = surface(ray, hit);
-        // An unconverged ray is lit where it stopped, mostly close to a surface.
-        let grain = footprint(ray, hit.t);
-        let pixel = turn.stage.origin + cell;
-        let shaded = shade(ray, ray.origin + hit.t * ray.axis, at, grain, pixel);
-        c = fog(shaded.rgb, ray, hit.t);
-        decided = shaded.w;
         n = at.normal;
+        if ended == 0.0 {
+            // An unconverged ray is lit where it stopped, mostly close to a surface.
+            let grain = footprint(ray, hit.t);
+            let pixel = turn.stage.origin + cell;
+            let shaded = shade(ray, ray.origin + hit.t * ray.axis, at, grain, pixel);
+            c = fog(shaded.rgb, ray, hit.t);
+            decided = shaded.w;
+        }
         if look.flag == 1u && (s == STATE_UNCONVERGED || (LIGHT_IS_FLAGGED && decided == 0.0)) {
             c = vec3<f32>(1.0, 0.0, 1.0);
         }
     }
     if turn.stage.before > 0u {
         let sum = cell_pixel(index);
-        c = sum.rgb + select(vec3<f32>(0.0), c, turn.stage.weight > 0.0);
+        c = sum.rgb + select(vec3<f32>(0.0), c, turn.stage.weight > 0.0 && ended == 0.0);
         decided = min(decided, sum.a);
     }
-    cell_store_pixel(index, vec4<f32>(c * turn.stage.scale, decided));
+    var scale = turn.stage.scale;
+    if ended > 0.0 {
+        scale = 1.0 / ended;
+    }
+    cell_store_pixel(index, vec4<f32>(c * scale, decided));
     if COLOR_KEEPS_NORMALS {
         let area = turn.stage.cells.x * turn.stage.cells.y;
         cell_store_pixel(area + index, vec4<f32>(n, 0.0));

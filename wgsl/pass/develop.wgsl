@@ -12,5 +12,11 @@ fn develop(
     }
     let cell = queue_cell(packed);
     let index = queue_index(cell);
-    tone_store(turn.stage.origin + cell, cell_pixel(index).rgb * turn.stage.scale);
+    var scale = turn.stage.scale;
+    let ended = until_ended(index);
+    // After the last sample, the sum is a mean already.
+    if ended > 0.0 && scale < 1.0 {
+        scale = 1.0 / ended;
+    }
+    tone_store(turn.stage.origin + cell, cell_pixel(index).rgb * scale);
 }

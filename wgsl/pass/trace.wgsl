@@ -21,6 +21,10 @@ fn trace(
     // Buffers belong to a block, rays to the whole image: so blocks do not change a picture.
     let local = queue_cell(packed);
     let index = queue_index(local);
+    // The centre has a ray anyway: its depth stays.
+    if turn.stage.lens.x >= 0.0 && until_ended(index) > 0.0 {
+        return;
+    }
     let ray = view_ray_from(turn.stage.origin + local, turn.stage.place, turn.stage.lens);
     var walk: Walk;
     if turn.done > 0u {

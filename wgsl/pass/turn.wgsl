@@ -55,6 +55,10 @@ struct Stage {
     /// Factors on the light of the sample, and on the sum of all.
     weight: f32,
     scale: f32,
+    /// Where the halves start that `judge.wgsl` keeps, four words to a pixel.
+    halves: u32,
+    /// A tile ends if its squared error is below this, in levels; below 0 if it may not end yet.
+    until: f32,
 }
 
 /// What the next dispatch does. Only `arrange` writes it.

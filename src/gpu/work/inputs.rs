@@ -31,7 +31,7 @@ use crate::pass::tone::tone_steps;
 use crate::pass::tone_map::Tone;
 use crate::pass::turn::{self, StageKind};
 use crate::picture::frame::{Frame, Traffic};
-use crate::plan::{Extras, Pass, Plan};
+use crate::plan::{Extras, Pass, Plan, UNTIL_TILE};
 use crate::scene::{AnySolid, Assets};
 
 /// The largest step limit of a dispatch. With a block of a million pixels it stays far below
@@ -161,18 +161,23 @@ impl FrameRequest {
         let Self { plan, extras, .. } = self;
         let scene = plan.scene.solid(&plan.viewpoint(), &self.assets)?;
         let coarsest = plan.coarsest();
-        let blocks = plan.pixels().cut(self.cutting.edge(), coarsest);
+        // Tiles that end alone lie within a block.
+        let step = match plan.is_adaptive() {
+            true => coarsest.max(UNTIL_TILE),
+            false => coarsest,
+        };
+        let blocks = plan.pixels().cut(self.cutting.edge(), step);
         let marked = scene.twin().marks_hits();
         let layers = match (extras.depth_only, extras.normals) {
             (true, _) => 0,
-            (false, normals) => 1 + u32::from(normals),
+            (false, normals) => 1 + u32::from(normals) + u32::from(plan.is_adaptive()),
         };
         let blocks = Layout::of_blocks(&blocks, coarsest, extras.count, marked, layers);
         let limits = self.shared.device.device.limits();
         let largest = limits.max_texture_dimension_2d;
         let fits = plan.window.is_none() && plan.size.iter().all(|n| *n <= largest);
         let shown = extras.shown && fits;
-        let kinds = StageKind::all(&plan.passes(*extras), shown);
+        let kinds = StageKind::all(&plan.passes(*extras), shown, plan.is_adaptive());
         let text = |program| with_texts(self.sources.as_ref(), program);
         let held = self.held.as_ref().filter(|_| extras.reuse);
         let program = |(stage, kind): (usize, &StageKind)| {
@@ -212,7 +217,7 @@ impl FrameRequest {
         let over = bytes_of(&layers::uniform(&light)).to_vec();
         look.extend_from_slice(&over);
         parameters.push(("layers_parameters", over));
-        if needs.picture.is_some() {
+        if needs.picture.is_some() || plan.is_adaptive() {
             let tone = Tone::of(&plan.look);
             let steps = tone_steps(&tone);
             parameters.push(("tone_steps", cast_slice(&steps).to_vec()));
@@ -260,6 +265,7 @@ impl FrameRequest {
                 first_stages,
                 samples: plan.samples,
                 visits: plan.visits(),
+                until: plan.until,
                 kinds: draft.kinds,
                 colors_at: colors,
                 made: Made {

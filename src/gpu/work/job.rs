@@ -9,6 +9,7 @@ use crate::gpu::target::{Needs, Parameters, Target};
 use crate::heightfield::assets::Preparation;
 use crate::pass::layout::Layout;
 use crate::pass::turn::{Stage, StageKind};
+use crate::pass::until::{bound, is_kept};
 use crate::plan::{Extras, Pass};
 
 /// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
@@ -75,6 +76,8 @@ pub(in crate::gpu) struct Job {
     /// Samples of each pixel, and how often a block is visited for them.
     pub samples: u32,
     pub visits: u32,
+    /// The error at which tiles end; 0 if they do not.
+    pub until: f64,
     /// The step limits of the first dispatch of a stage and of the largest.
     pub steps: [u32; 2],
     pub extras: Extras,
@@ -114,6 +117,7 @@ impl Job {
             StageKind::Sketch(_) => before > 0 || (self.firsts > 0 && index < self.first_stages),
             StageKind::Pass(Pass::March(_)) => before > 0,
             StageKind::Census => self.completes(visit).is_none(),
+            StageKind::Judge => !is_kept(before + 1, self.samples),
             _ => false,
         }
     }
@@ -136,6 +140,9 @@ impl Job {
             if !is_last {
                 stage.lens = lens_share(sample).as_vec2().to_array();
             }
+        }
+        if self.kinds[index] == StageKind::Judge {
+            stage.until = bound(self.until, before + 1) as f32;
         }
         // Behind a lens, the centre counts for the depth alone.
         stage.weight = f32::from(u8::from(before < self.samples));

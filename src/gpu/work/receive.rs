@@ -177,7 +177,7 @@ impl Run {
             device,
             staging,
             (layout, generation),
-            &self.job.made.passes,
+            (&self.job.made.passes, self.job.samples),
             &mut self.frame,
         )?;
         self.collected += 1;
