@@ -35,6 +35,9 @@ const RUNS: usize = 3;
 /// Presets whose second frame is looked at.
 const LIVE: [&str; 3] = ["mandelbox", "mandelbox-gate", "terrain"];
 
+/// Presets name all values. The shell and the coarsest level are those of today's defaults.
+const SHELL: [&str; 2] = ["--set", "march.shell=0.2"];
+
 fn main() -> Result<()> {
     // Cargo adds `--bench` to what it is given.
     let args = std::env::args().skip(1).filter(|a| a != "--bench");
@@ -156,8 +159,14 @@ fn small(args: &[String], presets: &Path) -> Result<String> {
 fn large(args: &[String], presets: &Path) -> Result<String> {
     let runs = [
         (&args[0], &[][..]),
-        (&args[1], &["--set", "march.coarsest=1"][..]),
-        (&args[1], &[][..]),
+        (
+            &args[1],
+            &["--set", "march.coarsest=1", SHELL[0], SHELL[1]][..],
+        ),
+        (
+            &args[1],
+            &["--set", "march.coarsest=auto", SHELL[0], SHELL[1]][..],
+        ),
     ];
     let mut rows = Vec::new();
     let mut ratios = Vec::new();

@@ -32,9 +32,11 @@ use conemarch::base::outcome::State;
 use conemarch::base::projection::Projection;
 use conemarch::base::srgb::srgb;
 use conemarch::measure::compare::{DepthError, Report, quantile};
+use conemarch::measure::flip::flip;
 use conemarch::measure::truth::truth;
 use conemarch::pass::LookFeature;
 use conemarch::pass::look::tone;
+use conemarch::pass::tone_map::Tone;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
@@ -51,12 +53,13 @@ const BENCHMARKS: [&str; 5] = [
     "bench-thin",
 ];
 
-/// Two frames of a plan side by side: depth, and the shown picture in steps of 1/255,
-/// median and 95 %.
+/// Two frames of a plan side by side: depth, the shown picture in steps of 1/255, median and
+/// 95 %, and what an eye sees of it.
 #[derive(Debug)]
 struct Apart {
     report: Report,
     shade: [f64; 2],
+    flip: f64,
 }
 
 /// How far apart the shown pixels of two frames are, in steps of 1/255.
@@ -78,7 +81,15 @@ fn apart(plan: &Plan, frame: &Frame, reference: &Frame) -> Apart {
     Apart {
         report: compared(frame, reference, plan),
         shade: median_and_most(shades(plan, frame, reference)),
+        flip: flip(frame.size, &shown(plan, reference), &shown(plan, frame)),
     }
+}
+
+/// The pixels of a file.
+fn shown(plan: &Plan, frame: &Frame) -> Vec<DVec3> {
+    let tone = Tone::of(&plan.look);
+    let light = frame.radiance.iter().map(|c| c.map(f64::from));
+    light.map(|c| tone.shown(DVec3::from_array(c))).collect()
 }
 
 /// Share of pixels that may be a hit on one side only. f32 decides otherwise than f64
@@ -93,6 +104,8 @@ const SHADE: f64 = 0.25;
 /// Steps of 1/255 in 95 of 100 pixels: under what an eye sees; measured up to 0.7. The
 /// rest are edges of shadows and folds, where a rounding decides.
 const SHADE_MOST: f64 = 2.0;
+/// The mean FLIP difference.
+const FLIP: f64 = 0.03;
 
 /// Which bounds two frames break.
 fn faults(apart: &Apart) -> Vec<&'static str> {
@@ -101,6 +114,7 @@ fn faults(apart: &Apart) -> Vec<&'static str> {
         ("depth", apart.report.depth_error.median, DEPTH),
         ("shade", apart.shade[0], SHADE),
         ("most shades", apart.shade[1], SHADE_MOST),
+        ("flip", apart.flip, FLIP),
     ];
     // A NaN breaks every bound.
     let broken = bounds
@@ -116,6 +130,7 @@ fn the_two_executors_agree_on_every_preset() {
         let frame = render(&plan, Extras::default());
         let reference = on_cpu(&plan, Extras::default());
         let apart = apart(&plan, &frame, &reference);
+        println!("{name}: {:.4}", apart.flip);
         assert_eq!(faults(&apart), [""; 0], "{name}: {apart:?}");
         // A picture, and not an empty one that agrees with another.
         let [_, hit, unconverged] = frame.census();
