@@ -165,8 +165,10 @@ fn lamps_agree() {
             pairs.add("size", a[nth][3], lamp.softness);
         }
     });
-    let mut bare = Probe::default();
-    bare.modules = vec![conemarch::wgsl!("pass/lamp.wgsl"), probe!("lamps")];
+    let bare = Probe {
+        modules: vec![conemarch::wgsl!("pass/lamp.wgsl"), probe!("lamps")],
+        ..Probe::default()
+    };
     let probe = |change| with_look(bare.clone(), &changed(&plan, change));
     let moved = [
         ("first", probe(|p| p.look.lamp *= MOVED)),
