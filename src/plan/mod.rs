@@ -4,13 +4,14 @@
 //! compared, written as a preset and tested without a GPU. It reads no file and makes no
 //! map: [`crate::scene::Assets`] do.
 //!
-//! - [`camera`], [`march`], [`look`] with [`layers`]: the sections of a preset beside `[scene]`
+//! - [`camera`], [`march`], [`look`] with [`layers`] and [`lamps`]: the sections of a preset beside `[scene]`
 //! - [`film`]: the plan at a moment of its film
 //! - `cones`: whether cones pay; [`pyramid`]: the cone levels, and the blocks of a large image
 
 pub mod camera;
 mod cones;
 pub mod film;
+pub mod lamps;
 pub mod layers;
 pub mod look;
 pub mod march;

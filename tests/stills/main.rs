@@ -18,6 +18,7 @@ mod common {
     pub mod random;
 }
 mod device;
+mod lamps;
 mod live;
 mod paths;
 mod samples;
