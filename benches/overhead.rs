@@ -35,9 +35,6 @@ const RUNS: usize = 3;
 /// Presets whose second frame is looked at.
 const LIVE: [&str; 3] = ["mandelbox", "mandelbox-gate", "terrain"];
 
-/// Presets name all values. The shell and the coarsest level are those of today's defaults.
-const SHELL: [&str; 2] = ["--set", "march.shell=0.2"];
-
 fn main() -> Result<()> {
     // Cargo adds `--bench` to what it is given.
     let args = std::env::args().skip(1).filter(|a| a != "--bench");
@@ -155,19 +152,11 @@ fn small(args: &[String], presets: &Path) -> Result<String> {
     ))
 }
 
-/// March and trace, and whole frames, at 1280 x 720.
+/// March and trace, and whole frames, at 1280 x 720: with the old estimate and the old settings,
+/// and with those of today.
 fn large(args: &[String], presets: &Path) -> Result<String> {
-    let runs = [
-        (&args[0], &[][..]),
-        (
-            &args[1],
-            &["--set", "march.coarsest=1", SHELL[0], SHELL[1]][..],
-        ),
-        (
-            &args[1],
-            &["--set", "march.coarsest=auto", SHELL[0], SHELL[1]][..],
-        ),
-    ];
+    let scalar = ["--set", "scene.estimate=scalar"];
+    let today = ["--set", "march.coarsest=auto", "--set", "march.shell=0.2"];
     let mut rows = Vec::new();
     let mut ratios = Vec::new();
     for (preset, _) in preset::BUILTIN {
@@ -175,6 +164,14 @@ fn large(args: &[String], presets: &Path) -> Result<String> {
         if !file.exists() {
             continue;
         }
+        // Heightfields have no estimate.
+        let has_formula = std::fs::read_to_string(&file)?.contains("formula");
+        let same = scalar.get(..if has_formula { 2 } else { 0 });
+        let runs = [
+            (&args[0], &[][..]),
+            (&args[1], same.unwrap_or_default()),
+            (&args[1], &today[..]),
+        ];
         let mut all = [vec![], vec![], vec![]];
         for _ in 0..RUNS {
             for (times, (program, settings)) in all.iter_mut().zip(runs) {
@@ -186,12 +183,18 @@ fn large(args: &[String], presets: &Path) -> Result<String> {
             times.sort_by(f64::total_cmp);
             times[RUNS / 2]
         };
-        let [old, alone, new] = [0, 1, 2].map(|of| median(of, |t| t.marched));
-        let [whole_old, whole] = [0, 2].map(|of| median(of, |t| t.marched + t.colored));
-        let own = [new / old, new / alone, whole / whole_old];
+        let [old, same, new] = [0, 1, 2].map(|of| median(of, |t| t.marched));
+        let [whole_old, whole_same, whole] =
+            [0, 1, 2].map(|of| median(of, |t| t.marched + t.colored));
+        let own = [
+            same / old,
+            new / old,
+            whole_same / whole_old,
+            whole / whole_old,
+        ];
+        let [a, b, c, d] = own;
         rows.push(format!(
-            "{preset} | {old:.0} | {alone:.0} | {new:.0} | {:.2} | {:.2} | {whole_old:.0} | {whole:.0} | {:.2}",
-            own[0], own[1], own[2]
+            "{preset} | {old:.0} | {same:.0} | {new:.0} | {a:.2} | {b:.2} | {whole_old:.0} | {whole_same:.0} | {whole:.0} | {c:.2} | {d:.2}",
         ));
         ratios.push(own);
     }
@@ -199,12 +202,12 @@ fn large(args: &[String], presets: &Path) -> Result<String> {
         let logs: f64 = ratios.iter().map(|own| own[of].ln()).sum();
         (logs / ratios.len() as f64).exp()
     };
-    let [before, alone, whole] = [0, 1, 2].map(mean);
+    let [a, b, c, d] = [0, 1, 2, 3].map(mean);
     rows.push(format!(
-        "geometric mean | | | | {before:.2} | {alone:.2} | | | {whole:.2}"
+        "geometric mean | | | | {a:.2} | {b:.2} | | | | {c:.2} | {d:.2}"
     ));
     Ok(markdown::table(
-        "march and trace, 1280 x 720 | before, ms | rays alone now | now | now / before | now / rays alone | whole frame before | now | now / before",
+        "march and trace, 1280 x 720 | before, ms | same estimate | now | same / before | now / before | whole frame before | same estimate | now | same / before | now / before",
         "lr",
         rows,
     ))
