@@ -18,6 +18,7 @@ use conemarch::preset;
 use conemarch::scene::Assets;
 use one_sample::one_sample;
 use serde_json::Value;
+use tempfile::TempDir;
 
 #[path = "common/markdown.rs"]
 mod markdown;
@@ -39,10 +40,11 @@ fn main() -> Result<()> {
     let args = std::env::args().skip(1).filter(|a| a != "--bench");
     let args: Vec<String> = args.collect();
     ensure!(args.len() >= 2, "give the old and the new program");
+    let presets = old_presets(&args[0])?;
     let text = [
-        small(&args)?,
-        large(&args)?,
-        processes(&args)?,
+        small(&args, presets.path())?,
+        large(&args, presets.path())?,
+        processes(&args, presets.path())?,
         frames()?,
         cancels()?,
     ]
@@ -57,9 +59,22 @@ fn main() -> Result<()> {
     Ok(())
 }
 
+/// Files of the old build's presets. Both builds render these, as today's may differ.
+fn old_presets(program: &str) -> Result<TempDir> {
+    let folder = tempfile::tempdir()?;
+    for (name, _) in preset::BUILTIN {
+        let said = Command::new(program).args(["presets", name]).output()?;
+        // Newer ones are unknown to it.
+        if said.status.success() {
+            std::fs::write(folder.path().join(name).with_extension("toml"), said.stdout)?;
+        }
+    }
+    Ok(folder)
+}
+
 /// March and trace of a preset by both builds in turns: milliseconds on the clock, and those of
 /// the device.
-fn measured(args: &[String], preset: &str, size: &str) -> Result<[[f64; 2]; 2]> {
+fn measured(args: &[String], preset: &Path, size: &str) -> Result<[[f64; 2]; 2]> {
     let mut all = [vec![], vec![]];
     for _ in 0..RUNS {
         for (runs, program) in all.iter_mut().zip(args) {
@@ -86,11 +101,11 @@ struct Times {
     colored: f64,
 }
 
-fn run(program: &str, preset: &str, size: &str, settings: &[&str]) -> Result<Times> {
+fn run(program: &str, preset: &Path, size: &str, settings: &[&str]) -> Result<Times> {
     let file = std::env::temp_dir().join(format!("overhead-{}.json", std::process::id()));
     let picture = file.with_extension("png");
     let mut command = Command::new(program);
-    command.args(["render", preset, "--size", size]);
+    command.arg("render").arg(preset).args(["--size", size]);
     command.args(one_sample(program)?);
     command
         .args(settings)
@@ -99,7 +114,11 @@ fn run(program: &str, preset: &str, size: &str, settings: &[&str]) -> Result<Tim
         .arg("-o")
         .arg(&picture);
     let status = command.stderr(Stdio::null()).status()?;
-    ensure!(status.success(), "{program} cannot render {preset}");
+    ensure!(
+        status.success(),
+        "{program} cannot render {}",
+        preset.display()
+    );
     let stats: Value = serde_json::from_str(&std::fs::read_to_string(&file)?)?;
     std::fs::remove_file(file)?;
     std::fs::remove_file(picture)?;
@@ -119,10 +138,11 @@ fn run(program: &str, preset: &str, size: &str, settings: &[&str]) -> Result<Tim
 }
 
 /// The overhead at a size at which kernels take little.
-fn small(args: &[String]) -> Result<String> {
+fn small(args: &[String], presets: &Path) -> Result<String> {
     let mut rows = Vec::new();
     for preset in LIVE {
-        let [old, new] = measured(args, preset, "64x36")?.map(|[wall, device]| wall - device);
+        let file = presets.join(preset).with_extension("toml");
+        let [old, new] = measured(args, &file, "64x36")?.map(|[wall, device]| wall - device);
         rows.push(format!("{preset} | {old:.2} | {new:.2} | {:.2}", new / old));
     }
     Ok(markdown::table(
@@ -132,20 +152,30 @@ fn small(args: &[String]) -> Result<String> {
     ))
 }
 
-/// March and trace, and whole frames, at 1280 x 720.
-fn large(args: &[String]) -> Result<String> {
-    let runs = [
-        (&args[0], &[][..]),
-        (&args[1], &["--set", "march.coarsest=1"][..]),
-        (&args[1], &[][..]),
-    ];
+/// March and trace, and whole frames, at 1280 x 720: with the old estimate and the old settings,
+/// and with those of today.
+fn large(args: &[String], presets: &Path) -> Result<String> {
+    let scalar = ["--set", "scene.estimate=scalar"];
+    let today = ["--set", "march.coarsest=auto", "--set", "march.shell=0.2"];
     let mut rows = Vec::new();
     let mut ratios = Vec::new();
     for (preset, _) in preset::BUILTIN {
+        let file = presets.join(preset).with_extension("toml");
+        if !file.exists() {
+            continue;
+        }
+        // Heightfields have no estimate.
+        let has_formula = std::fs::read_to_string(&file)?.contains("formula");
+        let same = scalar.get(..if has_formula { 2 } else { 0 });
+        let runs = [
+            (&args[0], &[][..]),
+            (&args[1], same.unwrap_or_default()),
+            (&args[1], &today[..]),
+        ];
         let mut all = [vec![], vec![], vec![]];
         for _ in 0..RUNS {
             for (times, (program, settings)) in all.iter_mut().zip(runs) {
-                times.push(run(program, preset, "1280x720", settings)?);
+                times.push(run(program, &file, "1280x720", settings)?);
             }
         }
         let median = |of: usize, figure: fn(&Times) -> f64| {
@@ -153,12 +183,18 @@ fn large(args: &[String]) -> Result<String> {
             times.sort_by(f64::total_cmp);
             times[RUNS / 2]
         };
-        let [old, alone, new] = [0, 1, 2].map(|of| median(of, |t| t.marched));
-        let [whole_old, whole] = [0, 2].map(|of| median(of, |t| t.marched + t.colored));
-        let own = [new / old, new / alone, whole / whole_old];
+        let [old, same, new] = [0, 1, 2].map(|of| median(of, |t| t.marched));
+        let [whole_old, whole_same, whole] =
+            [0, 1, 2].map(|of| median(of, |t| t.marched + t.colored));
+        let own = [
+            same / old,
+            new / old,
+            whole_same / whole_old,
+            whole / whole_old,
+        ];
+        let [a, b, c, d] = own;
         rows.push(format!(
-            "{preset} | {old:.0} | {alone:.0} | {new:.0} | {:.2} | {:.2} | {whole_old:.0} | {whole:.0} | {:.2}",
-            own[0], own[1], own[2]
+            "{preset} | {old:.0} | {same:.0} | {new:.0} | {a:.2} | {b:.2} | {whole_old:.0} | {whole_same:.0} | {whole:.0} | {c:.2} | {d:.2}",
         ));
         ratios.push(own);
     }
@@ -166,28 +202,30 @@ fn large(args: &[String]) -> Result<String> {
         let logs: f64 = ratios.iter().map(|own| own[of].ln()).sum();
         (logs / ratios.len() as f64).exp()
     };
-    let [before, alone, whole] = [0, 1, 2].map(mean);
+    let [a, b, c, d] = [0, 1, 2, 3].map(mean);
     rows.push(format!(
-        "geometric mean | | | | {before:.2} | {alone:.2} | | | {whole:.2}"
+        "geometric mean | | | | {a:.2} | {b:.2} | | | | {c:.2} | {d:.2}"
     ));
     Ok(markdown::table(
-        "march and trace, 1280 x 720 | before, ms | rays alone now | now | now / before | now / rays alone | whole frame before | now | now / before",
+        "march and trace, 1280 x 720 | before, ms | same estimate | now | same / before | now / before | whole frame before | same estimate | now | same / before | now / before",
         "lr",
         rows,
     ))
 }
 
 /// From nothing to a file: whole processes.
-fn processes(args: &[String]) -> Result<String> {
+fn processes(args: &[String], presets: &Path) -> Result<String> {
     let mut rows = Vec::new();
     for preset in LIVE {
+        let file = presets.join(preset).with_extension("toml");
         let mut all = [vec![], vec![]];
         for _ in 0..2 * RUNS {
             for (runs, program) in all.iter_mut().zip(args) {
                 let plain = one_sample(program)?;
                 let start = Instant::now();
                 let mut command = Command::new(program);
-                command.args(["render", preset, "--size", "64x36", "-o", "-"]);
+                command.arg("render").arg(&file);
+                command.args(["--size", "64x36", "-o", "-"]);
                 command.args(&plain);
                 let output = command.stdin(Stdio::null()).output()?;
                 ensure!(output.status.success(), "{program} cannot render {preset}");

@@ -404,6 +404,8 @@ fn cones_are_left_out_where_a_ray_needs_few_steps() {
         ] {
             assert_eq!(levels(name, &[size]), cones, "{name}, {size}");
         }
+        // Over heightfields the size alone decides.
+        assert_eq!(levels("terrain", &["image.size=[160, 90]"]), 0);
         // A mode that is about cones keeps them.
         assert_eq!(levels("bench-far", &[size, "march.mode=proven"]), 0);
         assert_eq!(levels("bench-far", &[size, "march.mode=calibrated"]), 4);

@@ -183,9 +183,13 @@ impl Kept {
         }
     }
 
-    /// Removes the file, once the picture is whole.
+    /// Removes the file, once the picture is whole. If the picture cannot be brought to the disk,
+    /// the bands stay.
     pub fn remove(mut self) {
-        self.tallies.clear();
+        let picture = self.path.with_extension("");
+        if File::open(picture).and_then(|file| file.sync_all()).is_ok() {
+            self.tallies.clear();
+        }
     }
 
     fn says(&self) -> Option<String> {

@@ -45,9 +45,9 @@ features![
     /// Ambient occlusion.
     Occlusion: wgsl!("pass/occlusion.wgsl").neutral(), wgsl!("pass/occlusion_off.wgsl"),
         |look| look.occlusion > 0.0;
-    /// Light of the lamp.
+    /// Light of lamps.
     Lamp: wgsl!("pass/lamp.wgsl").neutral(), wgsl!("pass/lamp_off.wgsl"),
-        |look| look.lamp > 0.0;
+        |look| look.lit_lamps().next().is_some();
     /// Light of the surface itself.
     Emission: wgsl!("pass/emission.wgsl").neutral(), wgsl!("pass/emission_off.wgsl"),
         |look| look.emission > 0.0;

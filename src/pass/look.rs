@@ -10,9 +10,10 @@ use glam::{DVec3, Vec3, Vec4};
 use crate::base::oklab::{oklab, unoklab};
 use crate::base::srgb::linear;
 use crate::pass::LookFeature;
-use crate::pass::lamp::Lamp;
+use crate::pass::lamp::{Lamp, LampSource, LampUniform};
 use crate::pass::material::{MaterialUniform, Substance};
 use crate::plan::Plan;
+use crate::plan::lamps::MOST_LAMPS;
 use crate::plan::look::{LightMode, Look, MOST_STOPS, PATH_STEPS, PaletteSpace, SHADOW_STEPS};
 use crate::scene::{AnySolid, MOST_SHADOW_STEPS};
 
@@ -60,14 +61,12 @@ pub struct LookUniform {
     pub ground: f32,
     /// How often light goes from surface to surface before the last one, if it is followed.
     pub bounces: u32,
-    /// The lamp relative to the eye.
-    pub lamp_at: Vec3,
-    /// Its radius.
-    pub lamp_size: f32,
-    /// Its colour times its strength at distance 1.
-    pub lamp: Vec3,
+    /// Number of lamps.
+    pub lamps: u32,
     /// How near the trap the glow ends.
     pub emission_width: f32,
+    /// Unused.
+    pub unused: [u32; 2],
     /// Colour times strength of the glow.
     pub emission: Vec3,
     /// The trap that glows, from 0 to 2.
@@ -92,14 +91,15 @@ pub struct LookParameters {
     pub look: LookUniform,
     /// What surfaces are made of; zeros where light is found by formulas.
     pub material: MaterialUniform,
+    /// The lamps, and zeros after the last one.
+    pub lamps: [LampUniform; MOST_LAMPS],
 }
 
 /// A [`Look`] in the numbers that passes use.
 #[derive(Clone, Debug)]
 pub struct Light {
     /// The look with linear colours, a light direction of length 1, and lengths in the world:
-    /// `occlusion_reach` and `lamp_size` are some, `fog` is per unit of length, and the lamp's
-    /// strength is that at distance 1.
+    /// `occlusion_reach` is one, and `fog` is per unit of length.
     pub look: Look,
     /// Tangent of the light's angular radius.
     pub softness: f64,
@@ -109,8 +109,8 @@ pub struct Light {
     pub path_steps: u32,
     /// Unit vector up.
     pub world_up: DVec3,
-    /// The lamp relative to the eye.
-    pub lamp_at: DVec3,
+    /// The lamps that shine, at most [`MOST_LAMPS`].
+    pub lamps: Vec<LampSource>,
     /// What surfaces are made of, if light is followed from one to another.
     pub substance: Option<Substance>,
     /// Scale heights of the fog per unit of length; 0 for fog of one density.
@@ -125,7 +125,6 @@ impl Light {
         let mut look = plan.look.clone();
         let colors = [
             &mut look.light_color,
-            &mut look.lamp_color,
             &mut look.emission_color,
             &mut look.sky_high,
             &mut look.sky_low,
@@ -149,8 +148,6 @@ impl Light {
         }
         let distance = (plan.camera.target - plan.camera.eye).length();
         look.light = look.light.normalize();
-        look.lamp_size *= distance;
-        look.lamp *= distance * distance;
         look.occlusion_reach *= distance;
         look.fog /= distance;
         let least = match look.mode {
@@ -175,7 +172,7 @@ impl Light {
                 None => PATH_ROUNDS / (solid.twin().rounds() + 1),
             },
             world_up,
-            lamp_at: look.lamp_at.map_or(DVec3::ZERO, |at| at - plan.camera.eye),
+            lamps: LampSource::all(plan),
             substance: (look.mode == LightMode::Path).then(|| Substance::of(&look)),
             fog_rise,
             fog_start: fog_rise * above,
@@ -218,10 +215,9 @@ impl Light {
             flag: u32::from(look.flag_unconverged),
             ground: look.ground as f32,
             bounces: look.bounces,
-            lamp_at: self.lamp_at.as_vec3(),
-            lamp_size: look.lamp_size as f32,
-            lamp: (look.lamp * look.lamp_color).as_vec3(),
+            lamps: self.lamps.len() as u32,
             emission_width: look.emission_width as f32,
+            unused: [0; 2],
             emission: (look.emission * look.emission_color).as_vec3(),
             emission_trap: look.emission_trap as u32,
             fog_rise: self.fog_rise as f32,
@@ -235,9 +231,14 @@ impl Light {
     /// The values of the WGSL parameters.
     pub fn parameters(&self) -> LookParameters {
         let material = self.substance.as_ref().map(Substance::uniform);
+        let mut lamps = [LampUniform::zeroed(); MOST_LAMPS];
+        for (to, lamp) in lamps.iter_mut().zip(&self.lamps) {
+            *to = lamp.uniform();
+        }
         LookParameters {
             look: self.uniform(),
             material: material.unwrap_or(Zeroable::zeroed()),
+            lamps,
         }
     }
 

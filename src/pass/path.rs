@@ -1,4 +1,4 @@
-//! Light by paths: rays to a point of the sun and of the lamp, and a ray in a direction that the material
+//! Light by paths: rays to a point of the sun and of lamps, and a ray in a direction that the material
 //! chooses, from surface to surface. The mean over the samples is the light that a picture without
 //! such noise would have (Kajiya, The rendering equation, 1986). Twin: `wgsl/pass/path.wgsl`.
 
@@ -18,6 +18,16 @@ use crate::scene::{Hit, Solid, Step, Surface};
 
 /// Bounces after which a path may end by chance.
 const PATH_SURE: u32 = 2;
+
+/// The purpose of the random numbers of a light, where the sun is the first and lamps follow. Each
+/// bounce has four, for the sun, the first lamp and the material. Further lamps have those behind:
+/// 68 and more, as there are at most 16 bounces.
+fn path_purpose(bounce: u32, nth: u32) -> u32 {
+    match nth {
+        0 | 1 => 4 * bounce + nth,
+        _ => 66 + 2 * bounce + nth,
+    }
+}
 
 /// A direction to a point of a light, uniform over a disc across it.
 fn path_toward(lamp: &Lamp, pair: DVec2) -> DVec3 {
@@ -86,10 +96,13 @@ pub fn shade<S: Solid>(
         };
         sum += through * emission(solid, light, &at);
         let sun = (light.sun(solid.bounds_far()), look.key * look.light_color);
-        let lamp = lamp_from(light, to(DVec3::Z).origin);
-        let lamp = lamp.map(|lamp| (lamp, lamp_light(light, lamp.far)));
-        for (nth, (lamp, strength)) in (0..).zip([sun].into_iter().chain(lamp)) {
-            let toward = path_toward(&lamp, random_pair(seed, before, 4 * bounce + nth));
+        let lamps = (0..light.lamps.len()).map(|nth| {
+            let lamp = lamp_from(light, nth, to(DVec3::Z).origin);
+            (lamp, lamp_light(light, nth, &lamp))
+        });
+        for (nth, (lamp, strength)) in (0..).zip([sun].into_iter().chain(lamps)) {
+            let pair = random_pair(seed, before, path_purpose(bounce, nth));
+            let toward = path_toward(&lamp, pair);
             let l = frame.transpose() * toward;
             if l.z <= 0.0 || strength == DVec3::ZERO {
                 continue;
@@ -128,4 +141,28 @@ pub fn shade<S: Solid>(
         (at, point, axis) = (solid.surface(&next, &hit), next.at(hit.t), next.axis);
     }
     (sum, decided)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::plan::lamps::MOST_LAMPS;
+
+    #[test]
+    fn no_two_choices_on_a_path_have_the_same_random_numbers() {
+        let bounces = 0..=16;
+        let lights = 0..=MOST_LAMPS as u32;
+        let lit = bounces
+            .clone()
+            .flat_map(|b| lights.clone().map(move |n| path_purpose(b, n)));
+        let all: Vec<u32> = bounces
+            .clone()
+            .flat_map(|b| [4 * b + 2, 4 * b + 3])
+            .chain(lit)
+            .collect();
+        let different: BTreeSet<u32> = all.iter().copied().collect();
+        assert_eq!(different.len(), all.len());
+    }
 }

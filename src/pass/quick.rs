@@ -42,11 +42,14 @@ pub fn shade<S: Solid>(
     let mut decided = key.decided;
     let mut c = albedo * (look.light_color * (look.key * lit) + (ambient + bounce) * open)
         + look.light_color * (look.gloss * lit * shine);
-    if let Some(lamp) = lamp_from(light, q)
-        && n.dot(lamp.axis) > 0.0
-    {
+    for nth in 0..light.lamps.len() {
+        let lamp = lamp_from(light, nth, q);
+        let (to_lamp, strength) = (n.dot(lamp.axis), lamp_light(light, nth, &lamp));
+        if to_lamp <= 0.0 || strength == DVec3::ZERO {
+            continue;
+        }
         let near = shadow::shadow((solid, light), q, n, grain, &lamp);
-        c += albedo * (n.dot(lamp.axis) * near.open) * lamp_light(light, lamp.far);
+        c += albedo * (to_lamp * near.open) * strength;
         decided &= near.decided;
     }
     (c + emission(solid, light, surface), decided)

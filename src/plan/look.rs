@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
+use super::lamps::Lamps;
 use super::layers::Layers;
 use crate::base::key::{
-    Fault, auto_count, auto_triple, count, number, switch, triple, triples, word,
+    Fault, auto_count, auto_number, auto_triple, count, number, switch, triple, triples, word,
 };
 use crate::base::named::named_enum;
 use crate::scene::MOST_SHADOW_STEPS;
@@ -90,6 +91,8 @@ settings! {
         lamp_at: Option<DVec3> = None, auto_triple(-1e9, 1e9), "position of the lamp; auto is the eye";
         lamp_color: DVec3 = DVec3::new(1.0, 0.72, 0.42), triple(0.0, 1.0), "colour of the lamp, sRGB";
         lamp_size: f64 = 0.005, number(1e-4, 1.0), "radius of the lamp as a share of the distance from eye to target; a larger one makes softer shadows";
+        lamp_cone: Option<f64> = None, auto_number(1.0, 360.0), "full angle in degrees of the cone in which the lamp shines, with a soft edge within; auto or 360 is everywhere";
+        lamp_toward: Option<DVec3> = None, auto_triple(-1e9, 1e9), "the point in the middle of the cone; auto is the target; a lamp at that point shines down";
         emission: f64 = 0.0, number(0.0, 1e4), "light that the surface itself sends out where its trap is near, 0 for none" => Program;
         emission_trap: EmissionTrap = EmissionTrap::Plane, word(&EmissionTrap::WORDS), "the orbit trap of a formula that glows; over a heightfield, origin is the lowest ground";
         emission_width: f64 = 0.1, number(0.001, 1.0), "how near the trap the glow ends";
@@ -128,6 +131,8 @@ settings! {
             "whether pixels are magenta if their ray or their shadow ray reached its step limit; the default is true for heightfields";
         /// Traps and layers.
         ..layers: Layers;
+        /// Further lamps.
+        ..lamps: Lamps;
     }
 }
 

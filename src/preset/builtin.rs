@@ -32,6 +32,7 @@ presets![
     "mandelbox-miniature",
     "mandelbox-reef",
     "mandelbox-shell",
+    "mandelbox-stage",
     "mandelbox-towers",
     "mandelbox-vortex",
     "map-kinds",

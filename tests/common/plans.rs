@@ -105,6 +105,10 @@ pub fn limit_iterations(plan: &mut Plan, most: u32) {
 
 /// Switches a feature of the look, by the key that does and nothing else.
 pub fn switch(plan: &mut Plan, feature: LookFeature, on: bool) {
+    // One key cannot switch off several lamps.
+    if feature == LookFeature::Lamp && !on {
+        (plan.look.lamps.lamp2, plan.look.lamps.lamp3) = (0.0, 0.0);
+    }
     let old = plan.look.clone();
     let wanted = |f: &LookFeature| if *f == feature { on } else { f.is_on(&old) };
     let values = [Value::Boolean(on), Value::Float(f64::from(u8::from(on)))];

@@ -59,7 +59,6 @@ pub fn large() -> Vec<(String, Heights)> {
         ([64, 64], WRAPS[0]),
         ([61, 90], WRAPS[1]),
         ([100, 37], WRAPS[2]),
-        ([128, 128], WRAPS[0]),
         ([128, 128], WRAPS[3]),
     ];
     every_pattern(settings).collect()

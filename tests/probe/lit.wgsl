@@ -7,7 +7,7 @@ fn answer(q: Numbers) -> Numbers {
     let at = surface(ray, Hit(q.a.w, 0u, vec2<f32>(0.0)));
     let grain = footprint(ray, q.a.w);
     let sun = Lamp(look.light, 2.0 * bounds_far(), look.softness);
-    let near = lamp_from(q.a.xyz);
+    let near = lamp_from(0u, q.a.xyz);
     return Numbers(
         vec4<f32>(at.normal, shadow(q.a.xyz, q.c.xyz, grain, sun).open),
         vec4<f32>(at.pigment, occlusion(q.a.xyz, q.c.xyz, grain)),

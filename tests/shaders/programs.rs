@@ -18,7 +18,7 @@ use conemarch::preset::BUILTIN;
 use conemarch::scene::{AnySolid, Assets, Scene};
 use rayon::prelude::*;
 use toml::Value;
-use wgpu::naga::{self, valid::Capabilities};
+use wgpu::naga::{self, AddressSpace, valid::Capabilities};
 
 use super::common::plans::{distance, outline, preset, program, solid, switch};
 use super::common::programs::map_programs;
@@ -173,6 +173,26 @@ pub struct Made {
     pub program: Program,
     /// What naga makes of it.
     pub module: naga::Module,
+    /// How many storage buffers its entry point reaches. It need not reach all that its modules
+    /// declare.
+    pub buffers: usize,
+}
+
+impl Made {
+    pub fn new(program: Program) -> Self {
+        let valid = program.validate(Capabilities::default());
+        let (module, info) = valid.unwrap_or_else(|e| panic!("{e}\n{}", program.describe()));
+        let entry = info.get_entry_point(0);
+        let reached = module.global_variables.iter().filter(|(handle, v)| {
+            matches!(v.space, AddressSpace::Storage { .. }) && !entry[*handle].is_empty()
+        });
+        let buffers = reached.count();
+        Self {
+            program,
+            module,
+            buffers,
+        }
+    }
 }
 
 /// All different programs by entry and listing.
@@ -196,10 +216,7 @@ pub static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
         let listing = format!("{}\n{}", program.entry, program.describe());
         found.entry(listing).or_insert(program);
     }
-    let made = |(listing, program): (String, Program)| {
-        let valid = program.validate(Capabilities::default());
-        let (module, _) = valid.unwrap_or_else(|e| panic!("{e}\n{listing}"));
-        (listing, Made { program, module })
-    };
-    found.into_par_iter().map(made).collect()
+    let made = found.into_par_iter();
+    made.map(|(listing, program)| (listing, Made::new(program)))
+        .collect()
 });

@@ -19,6 +19,7 @@ mod common {
 }
 mod background;
 mod device;
+mod lamps;
 mod live;
 mod paths;
 mod samples;
@@ -33,9 +34,11 @@ use conemarch::base::outcome::State;
 use conemarch::base::projection::Projection;
 use conemarch::base::srgb::srgb;
 use conemarch::measure::compare::{DepthError, Report, quantile};
+use conemarch::measure::flip::flip;
 use conemarch::measure::truth::truth;
 use conemarch::pass::LookFeature;
 use conemarch::pass::look::tone;
+use conemarch::pass::tone_map::Tone;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
@@ -52,12 +55,13 @@ const BENCHMARKS: [&str; 5] = [
     "bench-thin",
 ];
 
-/// Two frames of a plan side by side: depth, and the shown picture in steps of 1/255,
-/// median and 95 %.
+/// Two frames of a plan side by side: depth, the shown picture in steps of 1/255, median and
+/// 95 %, and what an eye sees of it.
 #[derive(Debug)]
 struct Apart {
     report: Report,
     shade: [f64; 2],
+    flip: f64,
 }
 
 /// How far apart the shown pixels of two frames are, in steps of 1/255.
@@ -79,7 +83,15 @@ fn apart(plan: &Plan, frame: &Frame, reference: &Frame) -> Apart {
     Apart {
         report: compared(frame, reference, plan),
         shade: median_and_most(shades(plan, frame, reference)),
+        flip: flip(frame.size, &shown(plan, reference), &shown(plan, frame)),
     }
+}
+
+/// The pixels of a file.
+fn shown(plan: &Plan, frame: &Frame) -> Vec<DVec3> {
+    let tone = Tone::of(&plan.look);
+    let light = frame.radiance.iter().map(|c| c.map(f64::from));
+    light.map(|c| tone.shown(DVec3::from_array(c))).collect()
 }
 
 /// Share of pixels that may be a hit on one side only. f32 decides otherwise than f64
@@ -94,6 +106,8 @@ const SHADE: f64 = 0.25;
 /// Steps of 1/255 in 95 of 100 pixels: under what an eye sees; measured up to 0.7. The
 /// rest are edges of shadows and folds, where a rounding decides.
 const SHADE_MOST: f64 = 2.0;
+/// The mean FLIP difference.
+const FLIP: f64 = 0.03;
 
 /// Which bounds two frames break.
 fn faults(apart: &Apart) -> Vec<&'static str> {
@@ -102,6 +116,7 @@ fn faults(apart: &Apart) -> Vec<&'static str> {
         ("depth", apart.report.depth_error.median, DEPTH),
         ("shade", apart.shade[0], SHADE),
         ("most shades", apart.shade[1], SHADE_MOST),
+        ("flip", apart.flip, FLIP),
     ];
     // A NaN breaks every bound.
     let broken = bounds
@@ -113,14 +128,15 @@ fn faults(apart: &Apart) -> Vec<&'static str> {
 #[test]
 fn the_two_executors_agree_on_every_preset() {
     for (name, _) in BUILTIN {
-        let plan = sized(name, [320, 180]);
+        let plan = sized(name, [240, 135]);
         let frame = render(&plan, Extras::default());
         let reference = on_cpu(&plan, Extras::default());
         let apart = apart(&plan, &frame, &reference);
+        println!("{name}: {:.4}", apart.flip);
         assert_eq!(faults(&apart), [""; 0], "{name}: {apart:?}");
         // A picture, and not an empty one that agrees with another.
         let [_, hit, unconverged] = frame.census();
-        assert!(hit > 10_000, "{name}: {hit} hits");
+        assert!(hit > 5_000, "{name}: {hit} hits");
         // More than a few rays that end nowhere is a fault of the preset.
         assert!(unconverged < 60, "{name}: {unconverged} unconverged");
     }
@@ -129,8 +145,8 @@ fn the_two_executors_agree_on_every_preset() {
 #[test]
 fn the_two_executors_agree_in_every_projection() {
     for (word, projection) in &Projection::WORDS[1..] {
-        for (name, samples) in [("mandelbox", 1), ("mandelbox-hall", 3), ("terrain", 1)] {
-            let mut plan = sized(name, [160, 90]);
+        for (name, samples) in [("mandelbox", 1), ("mandelbox-hall", 2), ("terrain", 1)] {
+            let mut plan = sized(name, [112, 63]);
             plan.camera.projection = *projection;
             plan.samples = samples;
             plan.look.fog = 0.7;
@@ -140,7 +156,7 @@ fn the_two_executors_agree_in_every_projection() {
             let apart = apart(&plan, &frame, &reference);
             assert_eq!(faults(&apart), [""; 0], "{word}, {name}: {apart:?}");
             let [_, hit, unconverged] = frame.census();
-            assert!(hit > 250, "{word}, {name}: {hit} hits");
+            assert!(hit > 100, "{word}, {name}: {hit} hits");
             assert!(
                 unconverged < 60,
                 "{word}, {name}: {unconverged} unconverged"

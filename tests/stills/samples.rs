@@ -90,7 +90,7 @@ fn samples_come_near_to_the_filtered_picture() {
 fn a_small_picture_is_the_large_one_made_small() {
     for name in ["mandelbox", "mandelbox-reef", "terrain"] {
         let mut large = sized(name, [320, 180]);
-        large.samples = 8;
+        large.samples = 4;
         let shown = |light: [f64; 3]| {
             let exposure = large.look.exposure.exp2();
             srgb(tone(exposure, DVec3::from(light))).to_array()
@@ -98,7 +98,7 @@ fn a_small_picture_is_the_large_one_made_small() {
         let fine = render(&large, Extras::default());
         let off = |reference: Option<u32>| {
             let mut small = sized(name, [80, 45]);
-            (small.samples, small.reference) = (128, reference);
+            (small.samples, small.reference) = (64, reference);
             255.0 * apart(&render(&small, Extras::default()), &fine, shown)[1]
         };
         let [with, without] = [Some(180), None].map(off);
@@ -120,8 +120,8 @@ fn sampled(plan: &Plan, samples: u32, coarsest: u32) -> Plan {
 fn cones_serve_all_samples() {
     // On a fractal, shades follow the last digits of a hit; their share is that of one sample.
     for (name, most) in [("mandelbox", 0.11), ("terrain", 1e-3), ("stones", 1e-3)] {
-        let plan = sized(name, [160, 90]);
-        for (samples, aperture) in [(1, 0.0), (7, 0.0), (7, 0.02), (7, 0.25)] {
+        let plan = sized(name, [128, 72]);
+        for (samples, aperture) in [(1, 0.0), (5, 0.0), (5, 0.02), (5, 0.25)] {
             let [cones, rays] = [32, 1].map(|coarsest| {
                 let mut plan = sampled(&plan, samples, coarsest);
                 plan.camera.aperture = aperture;

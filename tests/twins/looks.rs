@@ -3,7 +3,7 @@
 use bytemuck::bytes_of;
 use conemarch::base::random::{random_pair, random_seed};
 use conemarch::base::view::{Beam, footprint};
-use conemarch::pass::lamp::lamp_from;
+use conemarch::pass::lamp::{lamp_from, lamp_light};
 use conemarch::pass::material::{Substance, material_frame};
 use conemarch::pass::{LookFeature, fog, occlusion, shadow};
 use conemarch::plan::Plan;
@@ -129,6 +129,58 @@ fn materials_agree() {
 }
 
 #[test]
+fn lamps_agree() {
+    let mut plan = seen_from([4.0, -9.0, 6.0], scene("kind = 'slab'"));
+    let spots = [[1.0, 2.0, 3.0], [-2.0, 0.5, 3.0], [0.0, -1.0, 2.0]].map(DVec3::from_array);
+    let look = &mut plan.look;
+    (look.lamp, look.lamp_at) = (0.5, Some(spots[0]));
+    let more = &mut look.lamps;
+    (more.lamp2, more.lamp2_at, more.lamp2_cone) = (1.0, Some(spots[1]), Some(70.0));
+    (more.lamp3, more.lamp3_at, more.lamp3_cone) = (2.0, Some(spots[2]), Some(1.5));
+    more.lamp2_toward = Some(DVec3::new(-1.0, 1.0, 0.0));
+    more.lamp3_toward = Some(DVec3::new(1.0, 0.0, -3.0));
+    let asked = questions(10, |random| {
+        let axis = DVec3::new(1.0, 1.0, -5.0).normalize();
+        // Within and around the thin cone.
+        let within = spots[2] + 4.0 * (axis + random.cube(0.015));
+        let points = [random.cube(3.0), random.cube(3.0), within];
+        points.map(|point| four(point - plan.camera.eye, 0.0))
+    });
+    let light = light(&plan);
+    let lit = asked.iter().filter(|q| {
+        let lamp = lamp_from(&light, 2, three(q[2]));
+        lamp_light(&light, 2, &lamp) != DVec3::ZERO
+    });
+    let lit = lit.count();
+    assert!(lit > 2000 && lit < 6000, "{lit}");
+    let quantities = [
+        ("first second size", 0.01, Allowed(2e-6, 1e-4)),
+        // Its edge is as thin as a thousand roundings of a direction.
+        ("third", 1.0, Allowed(1e-4, 1e-2)),
+    ];
+    let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+        for (nth, name) in ["first", "second", "third"].into_iter().enumerate() {
+            let lamp = lamp_from(&light, nth, three(q[nth]));
+            pairs.add_vector(name, a[nth], lamp_light(&light, nth, &lamp));
+            pairs.add("size", a[nth][3], lamp.softness);
+        }
+    });
+    let bare = Probe {
+        modules: vec![conemarch::wgsl!("pass/lamp.wgsl"), probe!("lamps")],
+        ..Probe::default()
+    };
+    let probe = |change| with_look(bare.clone(), &changed(&plan, change));
+    let moved = [
+        ("first", probe(|p| p.look.lamp *= MOVED)),
+        ("second", probe(|p| p.look.lamps.lamp2_cone = Some(71.0))),
+        ("third", probe(|p| p.look.lamps.lamp3_cone = Some(1.6))),
+        ("second", probe(|p| p.look.lamps.lamp2_toward = None)),
+        ("size", probe(|p| p.look.lamps.lamp3_size *= 1.01)),
+    ];
+    twins.assert_agree("lamps", &probe(|_| ()), &moved);
+}
+
+#[test]
 fn surfaces_and_their_light_agree() {
     for fog_height in [0.0, 0.2] {
         surfaces_agree(fog_height);
@@ -178,7 +230,7 @@ fn surfaces_agree(fog_height: f64) {
         let (point, normal, grain) = (three(q[0]), three(q[2]), footprint(&ray, t));
         let sun = light.sun(scene.bounds_far());
         let shaded = shadow::shadow((&scene, &light), point, normal, grain, &sun).open;
-        let near = lamp_from(&light, point).expect("a lamp");
+        let near = lamp_from(&light, 0, point);
         let hidden = occlusion::occlusion(&scene, &light, point, normal, grain);
         let fogged = fog::fog(&light, DVec3::new(0.2, 0.5, 0.9), &ray, t);
         pairs.add_vector("normal", a[0], at.normal);

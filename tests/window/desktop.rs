@@ -165,7 +165,7 @@ impl<'a> Preview<'a> {
             process,
             window,
         };
-        preview.tool("windowactivate --sync");
+        preview.focus();
         preview.at_rest();
         preview
     }
@@ -174,6 +174,21 @@ impl<'a> Preview<'a> {
     fn tool(&self, verb: &str) {
         let line = format!("{verb} {}", self.window);
         self.desktop.tool("xdotool", &line);
+    }
+
+    /// Gives the window the keyboard. The manager may not know it yet.
+    fn focus(&self) {
+        let began = Instant::now();
+        let has_it = || {
+            let found = self.desktop.tool("xdotool", "getwindowfocus");
+            String::from_utf8_lossy(&found).trim() == self.window
+        };
+        while !has_it() {
+            let patience = Duration::from_secs(60);
+            assert!(began.elapsed() < patience, "the window gets no keys");
+            self.tool("windowactivate");
+            sleep(Duration::from_millis(100));
+        }
     }
 
     /// Words of xdotool.

@@ -27,13 +27,11 @@ struct LookUniform {
     ground: f32,
     /// How often light goes from surface to surface before the last one, if it is followed.
     bounces: u32,
-    /// The lamp relative to the eye, and its radius.
-    lamp_at: vec3<f32>,
-    lamp_size: f32,
-    /// Its colour times its strength at distance 1.
-    lamp: vec3<f32>,
+    /// Number of lamps.
+    lamps: u32,
     /// How near the trap the glow ends.
     emission_width: f32,
+    unused: vec2<u32>,
     emission: vec3<f32>,
     /// The trap that glows, from 0 to 2.
     emission_trap: u32,
@@ -78,9 +76,25 @@ struct MaterialUniform {
     shares: array<vec4<f32>, 32>,
 }
 
+/// A lamp in the scene (`lamp.wgsl`).
+struct LampUniform {
+    /// Its position relative to the eye, and its radius.
+    at: vec3<f32>,
+    size: f32,
+    /// Its colour times its strength at distance 1.
+    light: vec3<f32>,
+    /// Squares of the distance from `toward` to a unit direction, where full light ends and where
+    /// all light ends.
+    full: f32,
+    /// Unit direction of the middle of its cone.
+    toward: vec3<f32>,
+    none: f32,
+}
+
 struct LookParameters {
     look: LookUniform,
     material: MaterialUniform,
+    lamps: array<LampUniform, 3>,
 }
 
 @group(1) @binding(1) var<storage, read> look_parameters: LookParameters;

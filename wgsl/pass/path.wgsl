@@ -1,4 +1,4 @@
-// Light by paths: rays to a point of the sun and of the lamp, and a ray in a direction that the material
+// Light by paths: rays to a point of the sun and of lamps, and a ray in a direction that the material
 // chooses, from surface to surface. The mean over the samples is the light that a picture without
 // such noise would have (Kajiya, The rendering equation, 1986).
 
@@ -30,6 +30,13 @@ fn path_sight(ray: Beam, reach: f32, left: ptr<function, u32>) -> Sight {
     return Sight(s, walk_hit(walk));
 }
 
+/// The purpose of the random numbers of a light, where the sun is the first and lamps follow. Each
+/// bounce has four, for the sun, the first lamp and the material. Further lamps have those behind:
+/// 68 and more, as there are at most 16 bounces.
+fn path_purpose(bounce: u32, nth: u32) -> u32 {
+    return select(4u * bounce + nth, 66u + 2u * bounce + nth, nth > 1u);
+}
+
 /// A direction to a point of a light, uniform over a disc across it.
 fn path_toward(lamp: Lamp, pair: vec2<f32>) -> vec3<f32> {
     let across = lamp.softness * sqrt(pair.y) * material_turn(pair.x);
@@ -59,17 +66,17 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
         let material = material_at(min(albedo_of(at, point), vec3<f32>(1.0)), v);
         let start = point + lift * at.normal;
         light += through * emission_of(at);
-        for (var nth = 0u; nth < 2u; nth++) {
+        for (var nth = 0u; nth <= lamp_count(); nth++) {
             var lamp = Lamp(look.light, far, look.softness);
             var strength = look.key * look.light_color;
-            if nth == 1u {
-                lamp = lamp_from(start);
-                strength = lamp_light(lamp.far);
+            if nth > 0u {
+                lamp = lamp_from(nth - 1u, start);
+                strength = lamp_light(nth - 1u, lamp);
             }
             if all(strength == vec3<f32>(0.0)) {
                 continue;
             }
-            let pair = random_pair(seed, turn.stage.before, 4u * bounce + nth);
+            let pair = random_pair(seed, turn.stage.before, path_purpose(bounce, nth));
             let toward = path_toward(lamp, pair);
             let l = toward * frame;
             if l.z <= 0.0 {

@@ -30,11 +30,15 @@ fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32, pixel: vec2<u32>
     // A narrow Blinn-Phong highlight.
     let shine = pow(max(0.0, dot(n, half_way)), 40.0);
     c += look.light_color * (look.gloss * lit * shine);
-    let lamp = lamp_from(q);
-    let to_lamp = dot(n, lamp.axis);
-    if to_lamp > 0.0 {
+    for (var nth = 0u; nth < lamp_count(); nth++) {
+        let lamp = lamp_from(nth, q);
+        let to_lamp = dot(n, lamp.axis);
+        let strength = lamp_light(nth, lamp);
+        if to_lamp <= 0.0 || all(strength == vec3<f32>(0.0)) {
+            continue;
+        }
         let near = shadow(q, n, grain, lamp);
-        c += albedo * (to_lamp * near.open) * lamp_light(lamp.far);
+        c += albedo * (to_lamp * near.open) * strength;
         light.decided &= near.decided;
     }
     c += emission_of(surface);
