@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, anyhow};
 use clap::{Args, ValueHint};
 
-use crate::command::arguments::{bits, pixel_samples, size};
+use crate::command::arguments::{bits, noise, pixel_samples, size};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::output::Format;
@@ -56,6 +56,11 @@ pub struct Animate {
     /// Rays through each pixel, in place of the preset's: 1 is quick, 16 is smooth
     #[arg(long, value_name = "N", value_parser = pixel_samples())]
     samples: Option<u32>,
+
+    /// Error of a frame, 0 to 1, below which a tile gets no more samples, in place of the preset's;
+    /// 0.004 is one level of 8 bits
+    #[arg(long, value_name = "NOISE", value_parser = noise, allow_negative_numbers = true)]
+    until: Option<f64>,
 
     /// Set one value of the preset; may be given again
     #[arg(long, value_name = "SECTION.KEY=VALUE", allow_hyphen_values = true)]
@@ -132,6 +137,7 @@ pub fn run(args: &Animate) -> Result<()> {
     let mut film = preset.plan;
     film.size = args.size.unwrap_or(film.size);
     film.samples = args.samples.unwrap_or(film.samples);
+    film.until = args.until.unwrap_or(film.until);
     if film.tracks.is_empty() {
         return Err(usage(format!(
             "`{}` has no [[track]], so that nothing moves; docs/presets.md tells how to write one, and `render` makes a still",

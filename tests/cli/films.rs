@@ -7,6 +7,7 @@ use conemarch::preset::{read, write};
 use glam::DVec3;
 
 use crate::folder::{Folder, output, said};
+use crate::images::pixels;
 
 /// A film of 8 frames: a camera that circles, and a light that grows.
 const FILM: &str = r#"
@@ -158,6 +159,21 @@ fn values_between_two_keys_may_not_fit() {
     folder.write("film.toml", text);
     let begins = "frame 98: at beat 3.2666666666666666: scene.scale: the size";
     folder.fails("animate film.toml -o f-%03d.png --device cpu", 1, begins);
+}
+
+#[test]
+fn frames_end_their_samples_as_stills_do() {
+    let folder = Folder::new();
+    folder.write("film.toml", FILM);
+    let options = "--samples 16 --until 1 --device cpu";
+    folder.done(&format!(
+        "animate film.toml --frames 5..5 -o %d.png {options}"
+    ));
+    folder.done(&format!("render film.toml --at 2.5 -o still.png {options}"));
+    assert_eq!(folder.bytes("5.png"), folder.bytes("still.png"));
+    folder.done("render film.toml --at 2.5 -o all.png --device cpu --samples 16");
+    let [some, all] = ["5.png", "all.png"].map(|name| pixels(folder.bytes(name)).1);
+    assert!(some != all, "the frame did not end");
 }
 
 #[test]

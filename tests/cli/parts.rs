@@ -5,6 +5,7 @@ use std::io::Cursor;
 use std::process::Command;
 
 use crate::folder::{Folder, holds, output, said};
+use crate::pictures::{exr_layer, values};
 
 /// A picture whose sides are no multiples of anything, through a lens, dithered and flagged.
 const PICTURE: &str =
@@ -49,6 +50,26 @@ fn joined_parts_have_the_bytes_of_the_whole_picture() {
     assert_eq!(folder.bytes("again.png"), folder.bytes("whole.png"));
     let piped = folder.done(&format!("merge {names} -o -"));
     assert!(piped.stdout == folder.bytes("whole.png"));
+}
+
+/// Tiles of the picture end alone, so a part ends them as the picture does.
+#[test]
+fn parts_end_their_samples_as_the_picture_does() {
+    let folder = Folder::new();
+    let picture = "mandelbox --device cpu --size 150x139 --samples 32 --until 0.04";
+    let names = parts(&folder, picture, [2, 2]).join(" ");
+    for file in ["png", "exr"] {
+        folder.done(&format!("render {picture} -o whole.{file}"));
+        folder.done(&format!("merge {names} -o joined.{file}"));
+        let [whole, joined] =
+            ["whole", "joined"].map(|name| folder.bytes(&format!("{name}.{file}")));
+        assert!(whole == joined, "{file}");
+    }
+    let counts = values(&exr_layer(&folder.0.join("whole.exr")), "samples.Y");
+    assert!(
+        [8.0, 32.0].iter().all(|n| counts.contains(n)),
+        "no tile ends alone"
+    );
 }
 
 /// Other programs see where a part lies.
