@@ -9,6 +9,7 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable, cast_slice};
+use glam::DVec2;
 use thiserror::Error;
 
 use crate::base::array::SceneArray;
@@ -231,6 +232,18 @@ impl HeightSurface {
     /// Height of the surface in a cell of the domain at (u, v) in 0..=1.
     pub fn height(&self, cell: [i32; 2], u: f64, v: f64) -> f64 {
         bilinear(self.corners(cell), u, v)
+    }
+
+    /// The slope in a cell of the domain at (u, v) in 0..=1, in heights per texel: bilinear between
+    /// the slopes of the four samples.
+    pub fn smooth_slope(&self, cell: [i32; 2], [u, v]: [f64; 2]) -> DVec2 {
+        let [x, y] = self.tile_cell(cell).map(i64::from);
+        let corners = [[0, 0], [1, 0], [0, 1], [1, 1]];
+        let slopes = corners.map(|[i, j]| self.heights.slope(x + i, y + j));
+        DVec2::new(
+            bilinear(slopes.map(|s| s.x), u, v),
+            bilinear(slopes.map(|s| s.y), u, v),
+        )
     }
 
     /// The number of a cell within its tile, row by row.

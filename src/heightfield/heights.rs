@@ -42,6 +42,18 @@ pub enum HeightsError {
 pub const MOST_SAMPLES: u32 = MOST_SIDE;
 
 named_enum! {
+    /// What the normals of the surface are.
+    #[derive(Default)]
+    pub enum Normals {
+        /// Those of the patches, which change suddenly from patch to patch.
+        #[default]
+        Patches = "patches",
+        /// Those of slopes that change steadily: see [`Heights::slope`].
+        Smooth = "smooth",
+    }
+}
+
+named_enum! {
     /// What lies between the samples.
     #[derive(Default)]
     pub enum Patches {
@@ -121,6 +133,22 @@ impl Heights {
     pub fn at(&self, x: i64, y: i64) -> f64 {
         let (x, y) = (self.index(0, x), self.index(1, y));
         f64::from(self.data[(y * self.size[0] + x) as usize])
+    }
+
+    /// The slope of a smooth surface through the samples, at a sample, in heights per texel: that
+    /// between its two neighbours, or its only neighbour at an end.
+    pub fn slope(&self, x: i64, y: i64) -> DVec2 {
+        let span = |axis: usize, i: i64| {
+            let last = i64::from(self.size[axis]) - 1;
+            match self.wrap[axis] {
+                true => 2.0,
+                false => ((i + 1).min(last) - (i - 1).max(0)).max(1) as f64,
+            }
+        };
+        DVec2::new(
+            (self.at(x + 1, y) - self.at(x - 1, y)) / span(0, x),
+            (self.at(x, y + 1) - self.at(x, y - 1)) / span(1, y),
+        )
     }
 
     /// Cells along each axis. Between n samples that do not wrap there are n - 1

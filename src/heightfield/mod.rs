@@ -32,5 +32,5 @@ pub mod tracer;
 pub use conemap::{ConeMap, MapKind};
 pub use file_error::FileError;
 pub use height_surface::HeightSurface;
-pub use heights::{Heights, Patches};
+pub use heights::{Heights, Normals, Patches};
 pub use max_mip::MaxMip;

@@ -9,8 +9,8 @@ use crate::heightfield::conemap::generate::Generator;
 use crate::heightfield::load::PatternSpec;
 use crate::heightfield::tracer::{TracerKind, settings::TracerSettings};
 use crate::heightfield::{
-    Patches, assets::tiles_fault, height_surface::check_tiles, heights::cells, paint::PAINTS,
-    placement::Placement,
+    Normals, Patches, assets::tiles_fault, height_surface::check_tiles, heights::cells,
+    paint::PAINTS, placement::Placement,
 };
 use crate::settings;
 
@@ -26,6 +26,8 @@ settings! {
         ..source: Source;
         patches as "surface": Patches = Patches::Bilinear, word(&Patches::WORDS),
             "the surface between the samples: a bilinear patch over each cell, or each sample as a flat box" => Assets;
+        normals: Normals = Normals::Patches, word(&Normals::WORDS),
+            "what light sees of a bilinear surface: its patches, or a smooth surface through its samples; hits stay the same, and boxes stay flat" => Program;
         tiles: [u32; 2] = [1, 1], counts(1, 256),
             "number of copies of the map along x and y" => Assets;
         width: f64 = 12.0, number(1e-6, 1e6),

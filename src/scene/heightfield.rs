@@ -16,7 +16,7 @@ use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::heightfield::assets::{Assets, Ready};
 use crate::heightfield::height_surface::HeightmapUniform;
-use crate::heightfield::heights::Patches;
+use crate::heightfield::heights::{Normals, Patches};
 use crate::heightfield::maxima_cone::{self, CONE_WINDOWS, LocalCone, maxima_cone, window};
 use crate::heightfield::paint::Colors;
 use crate::heightfield::settings::HeightfieldSettings;
@@ -85,14 +85,12 @@ impl SceneSettings for HeightfieldSettings {
 
     fn solid(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
         let ready = assets.ready(self, from.growth())?;
-        let solid = Heightfield::new(ready, from.eye).spaced(from.spacing);
-        Ok(AnySolid::Heightfield(solid))
+        Ok(AnySolid::Heightfield(Heightfield::of(self, ready, from)))
     }
 
     fn outline(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
         let ready = assets.outline(self, from.growth())?;
-        let solid = Heightfield::new(ready, from.eye).spaced(from.spacing);
-        Ok(AnySolid::Heightfield(solid))
+        Ok(AnySolid::Heightfield(Heightfield::of(self, ready, from)))
     }
 
     /// A tracer of the papers can run out of steps anywhere; a fractal's ray does so only next
@@ -113,9 +111,20 @@ pub struct Heightfield {
     slack: DVec3,
     /// Shadow rays start at this distance from exact hits.
     lift: f64,
+    /// Whether normals change steadily from patch to patch.
+    is_smooth: bool,
 }
 
 impl Heightfield {
+    /// The heightfield of settings that are ready, seen from a viewpoint.
+    fn of(settings: &HeightfieldSettings, made: Ready, from: &Viewpoint) -> Self {
+        let is_smooth = settings.normals == Normals::Smooth;
+        Self {
+            is_smooth: is_smooth && settings.patches == Patches::Bilinear,
+            ..Self::new(made, from.eye).spaced(from.spacing)
+        }
+    }
+
     /// The same for rays that start at most so far from the eye.
     #[must_use]
     pub fn spaced(mut self, spacing: f64) -> Self {
@@ -131,6 +140,7 @@ impl Heightfield {
         let sum = place.position(eye).abs() + place.sides.extend(1.0) + far / place.units();
         let slack = 5e-7 * sum;
         Self {
+            is_smooth: false,
             lift: (HEIGHTFIELD_LIFT * place.texel).max(4.0 * (slack * place.units()).length()),
             slack,
             far,
@@ -239,6 +249,7 @@ impl Twin for Heightfield {
                 "HEIGHTFIELD_EXACT" = f64::from(u8::from(self.is_exact())),
                 "HEIGHTFIELD_GUESS" = HEIGHTFIELD_GUESS,
                 "HEIGHTFIELD_COLORED" = f64::from(u8::from(self.is_colored())),
+                "HEIGHTFIELD_SMOOTH" = f64::from(u8::from(self.is_smooth)),
                 "HEIGHTFIELD_WALL" = HEIGHTFIELD_WALL,
                 "HIT_CARRIES_MARK" = 1.0
             ),
@@ -380,10 +391,13 @@ impl Solid for Heightfield {
             };
         }
         let [u, v] = hit.uv;
-        let slope = DVec2::new(
-            (b - a) + v * ((d - c) - (b - a)),
-            (c - a) + u * ((d - b) - (c - a)),
-        );
+        let slope = match self.is_smooth {
+            true => surface.smooth_slope(cell, hit.uv),
+            false => DVec2::new(
+                (b - a) + v * ((d - c) - (b - a)),
+                (c - a) + u * ((d - b) - (c - a)),
+            ),
+        };
         let up = (slope * (place.depth / place.texel))
             .extend(1.0)
             .length()

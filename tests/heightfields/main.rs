@@ -25,6 +25,7 @@ mod cones;
 mod distant;
 mod first_hits;
 mod limits;
+mod normals;
 mod paint;
 mod scenes;
 mod statistics;

@@ -88,6 +88,29 @@ fn heightmap_height(cell: vec2<i32>, at: vec2<f32>) -> f32 {
     return low + at.y * (high - low);
 }
 
+/// The slope of a smooth surface through the samples, at a sample, in heights per texel.
+fn heightmap_slope(at: vec2<i32>) -> vec2<f32> {
+    let last = heightmap.samples - 1;
+    let wraps = heightmap.wrap == vec2<u32>(1u);
+    let i = select(min(at, last), select(at, vec2<i32>(0), at > last), wraps);
+    let low = select(max(i - 1, vec2<i32>(0)), select(i - 1, last, i == vec2<i32>(0)), wraps);
+    let high = select(min(i + 1, last), i + 1, wraps);
+    let span = select(max(high - low, vec2<i32>(1)), vec2<i32>(2), wraps);
+    let rise = vec2<f32>(
+        heightmap_sample(vec2<i32>(high.x, i.y)) - heightmap_sample(vec2<i32>(low.x, i.y)),
+        heightmap_sample(vec2<i32>(i.x, high.y)) - heightmap_sample(vec2<i32>(i.x, low.y)),
+    );
+    return rise / vec2<f32>(span);
+}
+
+/// The slope in a cell of the domain at a place in 0..1, bilinear between those of the samples.
+fn heightmap_smooth_slope(cell: vec2<i32>, at: vec2<f32>) -> vec2<f32> {
+    let c = heightmap_tile_cell(cell);
+    let low = mix(heightmap_slope(c), heightmap_slope(c + vec2<i32>(1, 0)), at.x);
+    let high = mix(heightmap_slope(c + vec2<i32>(0, 1)), heightmap_slope(c + vec2<i32>(1, 1)), at.x);
+    return mix(low, high, at.y);
+}
+
 /// The number of a cell within its tile, row by row.
 fn heightmap_number(cell: vec2<i32>) -> u32 {
     let c = heightmap_tile_cell(cell);

@@ -30,6 +30,8 @@ override HEIGHTFIELD_GUESS: f32;
 /// Whether hits are exact.
 override HEIGHTFIELD_EXACT: bool;
 override HIT_CARRIES_MARK: bool;
+/// Whether normals change steadily from patch to patch.
+override HEIGHTFIELD_SMOOTH: bool;
 /// Whether pigments are colours, and the grey of walls then.
 override HEIGHTFIELD_COLORED: bool;
 override HEIGHTFIELD_WALL: f32;
@@ -215,9 +217,12 @@ fn surface(ray: Beam, hit: Hit) -> Surface {
             return Surface(to_world(box_side(d, hit.uv)), pigment);
         }
     }
-    let slope = vec2<f32>(
+    var slope = vec2<f32>(
         mix(c.y - c.x, c.w - c.z, hit.uv.y), mix(c.z - c.x, c.w - c.y, hit.uv.x),
     );
+    if HEIGHTFIELD_SMOOTH {
+        slope = heightmap_smooth_slope(cell, hit.uv);
+    }
     let steep = slope * (heightfield.depth / heightfield.texel);
     let n = normalize(vec3<f32>(-steep, 1.0));
     let z = mix(mix(c.x, c.y, hit.uv.x), mix(c.z, c.w, hit.uv.x), hit.uv.y);
