@@ -29,6 +29,7 @@ const TRACERS: [&str; 3] = ["walk", "walk-mip", "cone-mip"];
 const RUNS: usize = 7;
 const DEPTHS: Extras = Extras {
     count: false,
+    variance: false,
     normals: false,
     levels: false,
     depth_only: true,

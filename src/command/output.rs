@@ -115,7 +115,10 @@ impl Format {
             _ => 60 + with(extras.normals, 15) + truth,
         };
         // An f32, and a channel that is encoded.
-        picture + with(extras.count, 25) + with(plan.is_transparent(extras), 8)
+        picture
+            + with(extras.count, 25)
+            + with(plan.is_transparent(extras), 8)
+            + with(plan.has_variance(extras), 8)
     }
 
     /// The picture as the bytes of a file. `errors` are those of the layer that shows them.

@@ -46,7 +46,7 @@ pub struct Render {
     /// without loss. An EXR has the channels R, G, B (linear), A (1, or the share of hits where
     /// image.background is transparent), Z (along the view
     /// axis), depth.Z (along the ray), normal.X/Y/Z, position.X/Y/Z, state.Y (0 sky, 1 hit,
-    /// 2 unconverged), samples.Y with --until, and steps.Y with --stats. Both depths are 1e10 for sky. Its
+    /// 2 unconverged), variance.Y (of the luminance) from two samples on, samples.Y with --until, and steps.Y with --stats. Both depths are 1e10 for sky. Its
     /// attributes hold the preset and the camera.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
@@ -141,6 +141,11 @@ pub fn run(args: &Render) -> Result<()> {
         Some(path) => path.clone(),
         None => default_name(args, &plan, own_size)?,
     };
+    if args.layer == Layer::Variance && plan.samples == 1 {
+        return Err(usage(
+            "one sample has no variance; add --samples 16, for example",
+        ));
+    }
     let options = args.options();
     let format = Format::of(&output, &options, &plan)?;
     if let Some(tile) = args.tile {
@@ -323,6 +328,7 @@ fn explain(args: &Render, plan: &Plan, assets: &Assets, extras: Extras) -> Resul
 fn extras(args: &Render, format: Format) -> Extras {
     let mut extras = args.layer.extras();
     extras.normals |= format == Format::Exr;
+    extras.variance |= format == Format::Exr;
     extras.count |= args.stats.is_some();
     extras.time = args.stats.is_some();
     extras

@@ -6,6 +6,7 @@
 mod sample;
 mod until;
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::base::clock::clock;
@@ -17,13 +18,13 @@ use crate::pass::look::Light;
 use crate::pass::march::{Ended, march};
 use crate::pass::prepare::{FrameError, prepare};
 use crate::pass::progress::{Progress, Watch};
-use crate::pass::{color, trace};
+use crate::pass::{color, trace, variance::spread_of};
 use crate::picture::frame::{Frame, in_image};
 use crate::plan::pyramid::Level;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::{Assets, Hit, Solid, Task};
 pub use sample::sample;
-use until::Judge;
+use until::{Judge, average};
 
 /// Cells between two calls of the watch: some tens of milliseconds on two cores.
 const BAND_CELLS: usize = 1 << 15;
@@ -150,7 +151,7 @@ impl Task for Render<'_> {
                 *figures.iterations.get_or_insert(0) += work.1;
             }
         }
-        run.frame.average(plan.samples);
+        average(&mut run.frame, plan.samples);
         run.frame.undecided = run.undecided.iter().filter(|u| **u).count();
         Ok(run.frame)
     }
@@ -273,11 +274,10 @@ impl<S: Solid> Run<'_, S> {
     }
 
     fn color(&mut self, light: &Light, bands: &mut Bands) -> Result<Sum, FrameError> {
-        let ray = self.rays();
-        let (solid, hits) = (self.solid, &self.hits);
+        let (ray, solid, hits) = (self.rays(), self.solid, &self.hits);
         let size = self.frame.size;
         let (radiance, normals) = (&mut self.frame.radiance, &mut self.frame.normal);
-        let alpha = &mut self.frame.alpha;
+        let (alpha, variance) = (&mut self.frame.alpha, &mut self.frame.variance);
         let (states, undecided) = (&self.frame.state, &mut self.undecided);
         undecided.resize(states.len(), false);
         let (counts, before, origin) = (self.counts, self.before, self.frame.origin);
@@ -307,8 +307,12 @@ impl<S: Solid> Run<'_, S> {
             }
             let is_hit = states[i] != State::Sky as u8;
             let adds = counts && (is_hit || alpha.is_empty());
-            for (sum, light) in radiance[i].iter_mut().zip(pixel.radiance.to_array()) {
-                *sum += if adds { light as f32 } else { 0.0 };
+            let own = if adds { pixel.radiance } else { DVec3::ZERO };
+            if let Some(spread) = variance.get_mut(i).filter(|_| counts && before > 0) {
+                *spread += spread_of(radiance[i], own, before);
+            }
+            for (sum, light) in radiance[i].iter_mut().zip(own.to_array()) {
+                *sum += light as f32;
             }
             if let Some(hits) = alpha.get_mut(i) {
                 *hits += f32::from(u8::from(adds));

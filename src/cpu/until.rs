@@ -2,6 +2,7 @@
 
 use crate::pass::tone_map::Tone;
 use crate::pass::until::{bound, is_kept, squared, squared_alpha};
+use crate::pass::variance::variance_of;
 use crate::picture::frame::Frame;
 use crate::plan::{Plan, UNTIL_TILE};
 
@@ -70,5 +71,22 @@ impl Judge {
         }
         self.halves.clone_from(&frame.radiance);
         self.hits.clone_from(&frame.alpha);
+    }
+}
+
+/// Makes means of the sums over the samples of each pixel, of which there are so many unless its
+/// tile ended before.
+pub(super) fn average(frame: &mut Frame, samples: u32) {
+    let counts = &frame.samples;
+    let count = |i: usize| counts.get(i).copied().unwrap_or(samples);
+    let shares = |i: usize| 1.0 / count(i) as f32;
+    for (i, sum) in frame.radiance.iter_mut().enumerate() {
+        *sum = sum.map(|light| light * shares(i));
+    }
+    for (i, hits) in frame.alpha.iter_mut().enumerate() {
+        *hits *= shares(i);
+    }
+    for (i, spread) in frame.variance.iter_mut().enumerate() {
+        *spread = variance_of(*spread, count(i));
     }
 }

@@ -5,6 +5,7 @@ use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::staging::Staging;
 use crate::gpu::target::Target;
 use crate::pass::layout::{CellsHead, Layout};
+use crate::pass::variance::variance_of;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Pass};
 
@@ -170,7 +171,7 @@ impl Parts {
             false => &[],
         };
         let light = plane(!frame.radiance.is_empty());
-        let normals = plane(!frame.normal.is_empty());
+        let normals = plane(!frame.normal.is_empty() || !frame.variance.is_empty());
         let halves = plane(!frame.samples.is_empty());
         let count = |p: &[f32; 4]| if p[3] > 0.0 { p[3] as u32 } else { samples };
         let counts: Vec<u32> = halves.iter().map(count).collect();
@@ -187,9 +188,17 @@ impl Parts {
             false => light.iter().enumerate().map(share).collect(),
         };
         frame.undecided += light.iter().filter(|p| p[3] <= 0.0).count();
+        let spread = |(i, p): (usize, &[f32; 4])| variance_of(p[3], count(i));
+        let variance: Vec<f32> = match frame.variance.is_empty() {
+            true => Vec::new(),
+            false => normals.iter().enumerate().map(spread).collect(),
+        };
         whole.copy(&alpha, &mut frame.alpha);
+        whole.copy(&variance, &mut frame.variance);
         whole.copy(&rgb(light), &mut frame.radiance);
-        whole.copy(&rgb(normals), &mut frame.normal);
+        if !frame.normal.is_empty() {
+            whole.copy(&rgb(normals), &mut frame.normal);
+        }
         whole.copy(&counts, &mut frame.samples);
         Ok(())
     }

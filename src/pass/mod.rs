@@ -38,6 +38,7 @@ pub mod tone_map;
 pub mod trace;
 pub mod turn;
 pub mod until;
+pub mod variance;
 
 use crate::base::shader::Program;
 use crate::plan::{Extras, Pass, Plan};
@@ -64,7 +65,9 @@ pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Pro
             modules.extend(features::modules(&plan.look));
             modules.push(wgsl!(
                 "pass/color.wgsl",
-                "COLOR_KEEPS_NORMALS" = f64::from(u8::from(extras.normals)),
+                "COLOR_KEEPS_NORMALS" =
+                    f64::from(u8::from(extras.normals || plan.has_variance(extras))),
+                "COLOR_KEEPS_VARIANCE" = f64::from(u8::from(plan.has_variance(extras))),
                 "COLOR_IS_PIGMENT" = f64::from(u8::from(solid.is_colored()))
             ));
             "color"

@@ -5,6 +5,7 @@
 //! that hit, with colours that are multiplied by it; `Z` the distance along the view axis and `depth.Z`
 //! along the ray, [`FAR`] for sky, and the distance reached where a limit stopped the ray;
 //! `normal.X`..`Z` and `position.X`..`Z` in the world; `state.Y` 0 sky, 1 hit, 2 unconverged;
+//! `variance.Y` the variance of the luminance if there are two samples or more;
 //! `samples.Y` where `image.until` may end some tiles before others; `steps.Y` where evaluations were counted. Attributes: the preset, the camera, the program,
 //! pixels per inch and the chromaticities of sRGB.
 
@@ -117,6 +118,9 @@ fn channels(frame: &Frame, plan: &Plan) -> Named {
             "samples.Y",
             frame.samples.iter().map(|n| *n as f32).collect(),
         );
+    }
+    if !frame.variance.is_empty() {
+        channel("variance.Y", frame.variance.clone());
     }
     if !frame.work.is_empty() {
         channel("steps.Y", frame.steps());

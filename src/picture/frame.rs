@@ -107,6 +107,9 @@ pub struct Frame {
     pub radiance: Vec<[f32; 3]>,
     /// The share of each pixel's samples that hit, if the background is transparent.
     pub alpha: Vec<f32>,
+    /// The variance of each pixel's luminance, the mean of its samples, if it was asked for: see
+    /// [`crate::pass::variance`].
+    pub variance: Vec<f32>,
     /// Distance from the eye along the ray: infinite for sky, and as far as the ray came for
     /// unconverged pixels.
     pub depth: Vec<f32>,
@@ -147,6 +150,7 @@ impl Frame {
             radiance: vec![[0.0; 3]; layer(!extras.depth_only, area)],
             alpha: vec![0.0; layer(plan.is_transparent(extras), area)],
             normal: vec![[0.0; 3]; layer(extras.normals, area)],
+            variance: vec![0.0; layer(plan.has_variance(extras), area)],
             samples: vec![plan.samples; layer(plan.is_adaptive() && !extras.depth_only, area)],
             work: vec![Counts::default(); layer(extras.count, area)],
             ..Self::default()
@@ -166,18 +170,6 @@ impl Frame {
             }
         }
         frame
-    }
-
-    /// Makes means of the sums over the samples of each pixel, of which there are so many unless its
-    /// tile ended before.
-    pub(crate) fn average(&mut self, samples: u32) {
-        let shares = |i: usize| 1.0 / self.samples.get(i).copied().unwrap_or(samples) as f32;
-        for (i, sum) in self.radiance.iter_mut().enumerate() {
-            *sum = sum.map(|light| light * shares(i));
-        }
-        for (i, hits) in self.alpha.iter_mut().enumerate() {
-            *hits *= shares(i);
-        }
     }
 
     /// Adds up the time of march and trace, and inserts the figures of the prepared maps, with

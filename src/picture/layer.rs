@@ -36,6 +36,9 @@ named_enum! {
         /// Samples of each pixel.
         Samples = "samples" =>
             "share of image.samples that a pixel has, as grey: black none, white all; less where image.until ends a tile",
+        /// How much the samples of each pixel differ.
+        Variance = "variance" =>
+            "standard error of a pixel's luminance if its samples were random, as grey: black 0, white 0.1 and more; an EXR has its square",
         /// Errors of the depth.
         Error = "error" =>
             "error of the depth against the truth, a slow reference that is rendered too, in footprints (half a pixel's width): grey 0, red 8 too deep or no hit, blue 8 too near",
@@ -45,7 +48,7 @@ named_enum! {
 impl Layer {
     /// Numbers per pixel, without alpha: one is enough for a depth.
     pub fn channels(self) -> usize {
-        if matches!(self, Self::Depth | Self::Samples) {
+        if matches!(self, Self::Depth | Self::Samples | Self::Variance) {
             1
         } else {
             3
@@ -61,7 +64,7 @@ impl Layer {
     pub fn is_local(self) -> bool {
         matches!(
             self,
-            Self::Color | Self::Normal | Self::State | Self::Samples
+            Self::Color | Self::Normal | Self::State | Self::Samples | Self::Variance
         )
     }
 
@@ -70,8 +73,12 @@ impl Layer {
         Extras {
             count: self == Self::Steps,
             normals: self == Self::Normal,
+            variance: self == Self::Variance,
             // The colour pass makes colours and normals, and counts samples.
-            depth_only: !matches!(self, Self::Color | Self::Normal | Self::Samples),
+            depth_only: !matches!(
+                self,
+                Self::Color | Self::Normal | Self::Samples | Self::Variance
+            ),
             ..Extras::default()
         }
     }
@@ -101,6 +108,9 @@ const HEAT: [DVec3; 6] = [
 
 /// Grey of the farthest depth: sky is brighter.
 const FARTHEST: f64 = 0.95;
+
+/// Standard errors from this on are white.
+const MOST_ERROR: f64 = 0.1;
 
 /// Errors in footprints above this have the same colour.
 const MOST_APART: f64 = 8.0;
@@ -154,6 +164,11 @@ impl<'a> Shades<'a> {
                 // Without a list, every pixel has all.
                 let count = |i: usize| frame.samples.get(i).map(|n| f64::from(*n));
                 Box::new(move |i| DVec3::splat(count(i).map_or(1.0, |n| n / all)))
+            }
+            Layer::Variance => {
+                // Without a list, there was one sample.
+                let variance = |i: usize| frame.variance.get(i).map_or(0.0, |v| f64::from(*v));
+                Box::new(move |i| DVec3::splat(variance(i).sqrt() / MOST_ERROR))
             }
             Layer::Error => Box::new(|_| UNCONVERGED),
         };

@@ -223,6 +223,11 @@ impl Plan {
         self.until > 0.0 && self.samples > UNTIL_LEAST
     }
 
+    /// Whether a frame has the variance of each pixel.
+    pub fn has_variance(&self, extras: Extras) -> bool {
+        extras.variance && self.samples > 1 && !extras.depth_only
+    }
+
     /// Whether a frame has alpha in place of the sky.
     pub fn is_transparent(&self, extras: Extras) -> bool {
         self.background == Background::Transparent && !extras.depth_only && !extras.shown
@@ -351,6 +356,8 @@ pub struct Extras {
     pub count: bool,
     /// Keep normals.
     pub normals: bool,
+    /// Keep the variance of each pixel. One sample has none.
+    pub variance: bool,
     /// Keep the fronts and states of every cone level.
     pub levels: bool,
     /// Skip the colour pass.

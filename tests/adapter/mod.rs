@@ -31,6 +31,7 @@ pub const UNCONVERGED: u8 = State::Unconverged as u8;
 pub const EVERYTHING: Extras = Extras {
     count: true,
     normals: true,
+    variance: true,
     levels: true,
     depth_only: false,
     time: false,

@@ -20,6 +20,7 @@ const OPTIONS: &str = r#"
 -o - --stats - ; 2 ; --stats
 -o a.png --stats a.png ; 2 ; --stats
 -o a.png --stats ./a.png ; 2 ; --stats
+--layer variance --samples 1 ; 2 ; one sample has no variance|--samples 16
 --until nan ; 2 ; --until|a number from 0 to 1
 --until -0.1 ; 2 ; --until|a number from 0 to 1
 --until 2 ; 2 ; --until|a number from 0 to 1

@@ -176,7 +176,11 @@ fn an_exr_has_exactly_the_promised_channels() {
     let folder = Folder::new();
     let promised =
         "A B G R Z depth.Z normal.X normal.Y normal.Z position.X position.Y position.Z state.Y";
-    for (more, last) in [("-o a.exr", ""), ("-o b.exr --stats s.json", " steps.Y")] {
+    for (more, last) in [
+        ("-o a.exr --samples 1", ""),
+        ("-o b.exr --samples 1 --stats s.json", " steps.Y"),
+        ("-o c.exr --samples 2", " variance.Y"),
+    ] {
         rendered(&folder, "mandelbox", more);
         let layer = exr_layer(&folder.0.join(&more[3..8]));
         let list = &layer.channel_data.list;

@@ -25,6 +25,7 @@ mod paths;
 mod samples;
 mod tone;
 mod until;
+mod variance;
 mod windows;
 mod work;
 

@@ -25,6 +25,9 @@ fn cropped(frame: &Frame, window: Block) -> Frame {
     if !frame.alpha.is_empty() {
         part.alpha = cut(&frame.alpha, width, origin, size);
     }
+    if !frame.variance.is_empty() {
+        part.variance = cut(&frame.variance, width, origin, size);
+    }
     part.depth = cut(&frame.depth, width, origin, size);
     part.state = cut(&frame.state, width, origin, size);
     part.normal = cut(&frame.normal, width, origin, size);

@@ -27,6 +27,7 @@ pub fn bits(frame: &Frame) -> Vec<u32> {
         .map(|x| x.to_bits())
         .collect();
     all.extend(frame.alpha.iter().map(|a| a.to_bits()));
+    all.extend(frame.variance.iter().map(|v| v.to_bits()));
     all.extend(frame.depth.iter().map(|t| t.to_bits()));
     all.extend(frame.normal.iter().flatten().map(|x| x.to_bits()));
     all.extend(frame.state.iter().map(|s| u32::from(*s)));

@@ -2,6 +2,11 @@
 // Tone and sRGB follow when the picture is written.
 
 override COLOR_KEEPS_NORMALS: bool;
+/// Whether the fourth number of a normal is the sum of the squared deviations of the samples'
+/// luminance from their mean.
+override COLOR_KEEPS_VARIANCE: bool;
+/// The shares of red, green and blue in luminance (ITU-R BT.709).
+const COLOR_LUMA = vec3<f32>(0.2126, 0.7152, 0.0722);
 /// Whether pigments are linear colours.
 override COLOR_IS_PIGMENT: bool;
 
@@ -71,9 +76,20 @@ fn color(
         }
     }
     var note = background_note(decided, is_hit);
+    let normal_at = turn.stage.cells.x * turn.stage.cells.y + index;
+    var spread = 0.0;
     if turn.stage.before > 0u {
         let sum = cell_pixel(index);
         let counts = turn.stage.weight > 0.0 && ended == 0.0;
+        if COLOR_KEEPS_VARIANCE {
+            spread = cell_pixel(normal_at).a;
+            if counts {
+                // Welford 1962.
+                let n = f32(turn.stage.before);
+                let off = dot(COLOR_LUMA, c - sum.rgb / n);
+                spread += off * off * n / (n + 1.0);
+            }
+        }
         c = sum.rgb + select(vec3<f32>(0.0), c, counts);
         note = background_join(sum.a, note, counts);
     }
@@ -83,7 +99,6 @@ fn color(
     }
     cell_store_pixel(index, vec4<f32>(c * scale, note));
     if COLOR_KEEPS_NORMALS {
-        let area = turn.stage.cells.x * turn.stage.cells.y;
-        cell_store_pixel(area + index, vec4<f32>(n, 0.0));
+        cell_store_pixel(normal_at, vec4<f32>(n, spread));
     }
 }

@@ -13,6 +13,7 @@ pub const RUNS: usize = 5;
 
 /// Counts work and keeps the fronts of the levels; no colours.
 pub const COUNTED: Extras = Extras {
+    variance: false,
     count: true,
     levels: true,
     depth_only: true,

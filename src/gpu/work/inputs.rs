@@ -168,7 +168,8 @@ impl FrameRequest {
         };
         let blocks = plan.pixels().cut(self.cutting.edge(), step);
         let marked = scene.twin().marks_hits();
-        let layers = match (extras.depth_only, extras.normals) {
+        let normals = extras.normals || plan.has_variance(*extras);
+        let layers = match (extras.depth_only, normals) {
             (true, _) => 0,
             (false, normals) => 1 + u32::from(normals) + u32::from(plan.is_adaptive()),
         };
