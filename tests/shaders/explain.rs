@@ -235,6 +235,6 @@ fn the_mandelbox_is_explained() {
         wgsl/pass/shadow.wgsl
         wgsl/pass/occlusion.wgsl
         wgsl/pass/quick.wgsl
-        wgsl/pass/color.wgsl  COLOR_KEEPS_NORMALS=0  COLOR_IS_PIGMENT=0
+        wgsl/pass/color.wgsl  COLOR_KEEPS_NORMALS=0  COLOR_KEEPS_VARIANCE=0  COLOR_IS_PIGMENT=0
     ");
 }
