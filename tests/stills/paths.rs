@@ -42,7 +42,9 @@ fn a_white_relief_in_white_light_is_white() {
         (1.0, 0.0, 0.08),
     ] {
         let texture = format!("scene.texture={}", white.display());
-        let mut plan = preset("terrain", &["scene.field=fbm:64x64", &texture]);
+        // Normals that are not those of the surface lose light.
+        let of_surface = "scene.normals=patches";
+        let mut plan = preset("terrain", &["scene.field=fbm:64x64", of_surface, &texture]);
         plan.size = [32, 18];
         let look = &mut plan.look;
         (look.sky_low, look.sky_high, look.light_color) = (DVec3::ONE, DVec3::ONE, DVec3::ZERO);
