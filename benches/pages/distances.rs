@@ -29,8 +29,8 @@ const TRACERS: [&str; 3] = ["walk", "walk-mip", "cone-mip"];
 const RUNS: usize = 7;
 const DEPTHS: Extras = Extras {
     count: false,
-    variance: false,
     normals: false,
+    variance: false,
     levels: false,
     depth_only: true,
     time: false,

@@ -13,11 +13,11 @@ pub const RUNS: usize = 5;
 
 /// Counts work and keeps the fronts of the levels; no colours.
 pub const COUNTED: Extras = Extras {
-    variance: false,
     count: true,
     levels: true,
     depth_only: true,
     normals: false,
+    variance: false,
     time: false,
     shown: false,
     unread: false,
