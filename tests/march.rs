@@ -113,6 +113,28 @@ fn no_cell_starts_behind_a_surface_in_any_projection() {
     }
 }
 
+/// The image planes of two eyes are shifted, and those that show the top of a tower.
+#[test]
+fn no_cell_starts_behind_a_surface_in_a_shifted_image() {
+    let mut most = 0.0_f64;
+    for (n, camera) in cameras().iter().enumerate() {
+        for (fov, shift, rise) in [(48.5, 0.04, 0.0), (90.0, -0.7, 0.4), (20.0, 5.0, -5.0)] {
+            let camera = Camera {
+                fov,
+                shift,
+                rise,
+                ..camera.clone()
+            };
+            for size in [[33, 17], [1, 400], [400, 200]] {
+                let what = format!("camera {n}, fov {fov}, shift {shift}, {size:?}");
+                most = most.max(assert_sound(&balls(0.05, &camera, size), &what));
+                assert_sound(&slab(&camera, size), &format!("slab, {what}"));
+            }
+        }
+    }
+    assert!(most > 0.9, "{most}");
+}
+
 /// The disc of a slab has its radius in a view from above by parallel rays.
 #[test]
 fn parallel_rays_keep_sizes() {

@@ -46,6 +46,10 @@ pub struct ViewUniform {
     pub blades: u32,
     /// A pixel's width: of parallel rays a length, else as its height.
     pub across: f32,
+    /// The point of the image plane at distance 1 in the middle of the image, to the right and up.
+    pub shift: [f32; 2],
+    /// Unused.
+    pub unused: [u32; 2],
 }
 
 /// More than the rounding error of a chord in f32: two unit vectors are each off by up to
@@ -164,6 +168,9 @@ pub struct View {
     pub pixel: f64,
     /// A pixel's width there. Parallel rays are so far apart; else it is measured as the height.
     pub across: f64,
+    /// The point of the image plane at distance 1 in the middle of a perspective image, to the right
+    /// and up.
+    pub shift: DVec2,
     /// Width and height of the full image in pixels.
     pub size: [u32; 2],
     /// How far rays of a pixel go from its centre along each axis, in pixels.
@@ -190,6 +197,7 @@ impl View {
             projection: Projection::Perspective,
             pixel,
             across: pixel,
+            shift: DVec2::ZERO,
             size,
             reach: 0.0,
             lens: None,
@@ -213,6 +221,8 @@ impl View {
             spread: self.lens.map_or(0.0, |lens| lens.spread()) as f32,
             blades: self.lens.map_or(0, |lens| lens.blades),
             across: self.across as f32,
+            shift: self.shift.as_vec2().to_array(),
+            unused: [0; 2],
         }
     }
 
@@ -241,9 +251,20 @@ impl View {
     /// The direction through a point of the image plane of a perspective view, given in pixels from
     /// the upper left corner. Its length is not 1.
     pub fn view_direction(&self, x: f64, y: f64) -> DVec3 {
-        let sx = (x - 0.5 * f64::from(self.size[0])) * self.pixel;
-        let sy = (0.5 * f64::from(self.size[1]) - y) * self.pixel;
+        let sx = (x - 0.5 * f64::from(self.size[0])) * self.pixel + self.shift.x;
+        let sy = (0.5 * f64::from(self.size[1]) - y) * self.pixel + self.shift.y;
         self.forward + sx * self.right + sy * self.up
+    }
+
+    /// The ray through the corner of the image whose pixels are finest: the farthest one from the
+    /// view axis.
+    pub fn finest(&self) -> Beam {
+        let far = |axis: usize, first: bool| match first {
+            true => 0.5 - self.reach,
+            false => f64::from(self.size[axis]) - 0.5 + self.reach,
+        };
+        let corner = DVec2::new(far(0, self.shift.x <= 0.0), far(1, self.shift.y >= 0.0));
+        self.projection.view_through(self, corner)
     }
 
     /// The ray through the centre of a pixel.
@@ -291,7 +312,7 @@ mod tests {
     #[test]
     fn a_cone_holds_all_rays_of_its_pixels() {
         let (eye, target) = (DVec3::new(4.0, -9.0, 6.0), DVec3::ZERO);
-        for fov in [1.0, 48.5, 120.0, 170.0] {
+        for fov in [1.0_f64, 48.5, 120.0, 170.0] {
             for (reach, radius) in [(0.0, 0.0), (0.25, 0.0), (1.5, 0.0), (1.5, 0.5), (1.5, 3.0)] {
                 let lens = Lens {
                     radius,
@@ -299,6 +320,8 @@ mod tests {
                     blades: 0,
                 };
                 let view = View {
+                    // Off the axis, too, by the width of the image.
+                    shift: DVec2::new(1.7, -1.0) * reach * (0.5 * fov.to_radians()).tan(),
                     reach,
                     lens: (radius > 0.0).then_some(lens),
                     ..View::new(eye, target, DVec3::Z, fov, [37, 21])

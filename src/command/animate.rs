@@ -13,7 +13,7 @@ use crate::command::failure::usage;
 use crate::command::output::Format;
 use crate::command::print::say;
 use crate::command::progress::Reporter;
-use crate::command::render::{loaded, moment};
+use crate::command::render::{at_fault, loaded, moment};
 use crate::command::sink::{Parcel, Sink, ending, folder_of, spared};
 use crate::command::{completions, interrupt, memory};
 use crate::gpu::adapters::Choice;
@@ -138,6 +138,7 @@ pub fn run(args: &Animate) -> Result<()> {
     film.size = args.size.unwrap_or(film.size);
     film.samples = args.samples.unwrap_or(film.samples);
     film.until = args.until.unwrap_or(film.until);
+    film.check_stereo().map_err(at_fault)?;
     if film.tracks.is_empty() {
         return Err(usage(format!(
             "`{}` has no [[track]], so that nothing moves; docs/presets.md tells how to write one, and `render` makes a still",
@@ -230,7 +231,7 @@ fn render(
             let share = (done as f64 + now.done) / missing.len() as f64;
             progress.report(share, &format!("frame {frame}, {}", now.pass))
         };
-        let rendered = executor.render(plan, assets, extras, &mut watch);
+        let rendered = executor.picture(plan, assets, extras, &mut watch);
         let rendered = rendered.with_context(|| {
             format!(
                 "{done} of {} frames are written; the same command goes on",

@@ -152,7 +152,7 @@ impl<'a> BigPicture<'a> {
                 progress.report(share, &detail)
             };
             plan.window = Some(self.bands.block(band));
-            let frame = executor.render(&plan, assets, extras, &mut watch)?;
+            let frame = executor.picture(&plan, assets, extras, &mut watch)?;
             let own = Figures::of(&frame);
             let rows = Shades::new(self.layer, &frame, &plan).rows(self.depth);
             drop(frame);

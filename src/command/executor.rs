@@ -5,7 +5,8 @@ use crate::gpu::RenderError;
 use crate::gpu::adapters::{Adapters, Choice};
 use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::render::Renderer;
-use crate::pass::progress::Watch;
+use crate::pass::progress::{Progress, Watch};
+use crate::picture::beside;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
 use crate::scene::Assets;
@@ -86,6 +87,33 @@ impl Executor {
             Self::Gpu(renderer) => renderer.render(plan, assets, extras, watch),
             Self::Cpu => Ok(cpu::render(plan, assets, extras, watch)?),
         }
+    }
+
+    /// Renders the picture of a plan that passes [`Plan::check`]: one view, or those of two eyes side
+    /// by side.
+    ///
+    /// # Errors
+    /// As [`Executor::render`].
+    pub fn picture(
+        &mut self,
+        plan: &Plan,
+        assets: &Assets,
+        extras: Extras,
+        watch: Watch<'_>,
+    ) -> Result<Frame, RenderError> {
+        let Some(eyes) = plan.eyes() else {
+            return self.render(plan, assets, extras, watch);
+        };
+        let mut view = |nth: usize| {
+            let half = &mut |now: &Progress| {
+                watch(&Progress {
+                    done: 0.5 * (nth as f64 + now.done),
+                    ..now.clone()
+                })
+            };
+            self.render(&eyes[nth], assets, extras, half)
+        };
+        Ok(beside(view(0)?, view(1)?))
     }
 
     /// The device; `None` for the CPU.

@@ -117,6 +117,8 @@ impl Format {
         // An f32, and a channel that is encoded.
         picture
             + with(extras.count, 25)
+            // The frame of one eye beside that of both.
+            + with(plan.is_stereo(), 40)
             + with(plan.is_transparent(extras), 8)
             + with(plan.has_variance(extras), 8)
     }

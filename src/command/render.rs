@@ -6,6 +6,7 @@ use anyhow::{Result, anyhow};
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint};
 
+use crate::base::key::Fault;
 use crate::command::arguments::{noise, pixel_samples, size, words};
 use crate::command::bands::{Bands, BigPicture};
 use crate::command::bench::common::of_how_many;
@@ -137,6 +138,7 @@ pub fn run(args: &Render) -> Result<()> {
     plan.size = args.size.unwrap_or(own_size);
     plan.samples = args.samples.unwrap_or(plan.samples);
     plan.until = args.until.unwrap_or(plan.until);
+    plan.check_stereo().map_err(at_fault)?;
     let output = match &args.output {
         Some(path) => path.clone(),
         None => default_name(args, &plan, own_size)?,
@@ -146,9 +148,19 @@ pub fn run(args: &Render) -> Result<()> {
             "one sample has no variance; add --samples 16, for example",
         ));
     }
+    if args.layer == Layer::Error && plan.is_stereo() {
+        return Err(usage(
+            "the layer error is of one view, and camera.stereo asks for two; set camera.stereo=off",
+        ));
+    }
     let options = args.options();
     let format = Format::of(&output, &options, &plan)?;
     if let Some(tile) = args.tile {
+        if plan.is_stereo() {
+            return Err(usage(
+                "a part of a picture has one view, and camera.stereo asks for two; leave --tile out, or set camera.stereo=off",
+            ));
+        }
         if format != Format::Exr {
             return Err(usage(
                 "a part of a picture is an .exr file; name one with -o, and `merge` makes the picture of all parts",
@@ -240,7 +252,7 @@ fn whole(
     format: Format,
 ) -> Result<(Vec<u8>, Figures)> {
     let mut progress = Reporter::start("rendering");
-    let frame = executor.render(plan, assets, extras, &mut progress.watch())?;
+    let frame = executor.picture(plan, assets, extras, &mut progress.watch())?;
     drop(progress);
     let errors = match args.layer {
         Layer::Error => {
@@ -300,6 +312,11 @@ pub fn moment(plan: &Plan, beat: f64) -> Result<Plan> {
     at.map_err(|fault| anyhow!("at beat {beat}: {}: {}", fault.key, fault.why))
 }
 
+/// A fault of settings that an option of the command changed.
+pub fn at_fault(fault: Fault) -> anyhow::Error {
+    usage(format!("{}: {}", fault.key, fault.why))
+}
+
 /// Whether no ray comes farther than a hundred-thousandth of the way to the target.
 fn ends_at_the_eye(figures: &Figures, plan: &Plan) -> bool {
     let near = 1e-5 * plan.camera.eye.distance(plan.camera.target);
@@ -321,7 +338,12 @@ fn explain(args: &Render, plan: &Plan, assets: &Assets, extras: Extras) -> Resul
     if args.layer == Layer::Error {
         text += "compared with the truth: a slow render of the same plan in f64 on the CPU\n";
     }
-    text += &pass::explain(plan, assets, extras)?;
+    let eyes = plan.eyes();
+    if eyes.is_some() {
+        text += "two views side by side, each as the left one here:\n";
+    }
+    let shown = eyes.as_ref().map_or(plan, |[left, _]| left);
+    text += &pass::explain(shown, assets, extras)?;
     print(text.as_bytes())
 }
 
@@ -347,8 +369,8 @@ fn warm_times(
     assets: &Assets,
     figures: &mut Figures,
 ) -> Result<()> {
-    // The warm runs are of one sample.
-    if figures.march_ms > MOST_AGAIN || plan.samples > 1 {
+    // The warm runs are of one sample and one view.
+    if figures.march_ms > MOST_AGAIN || plan.samples > 1 || plan.is_stereo() {
         return Ok(());
     }
     let mut runner = Runner::new(executor, assets, "warm runs", AGAIN);

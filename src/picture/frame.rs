@@ -4,6 +4,7 @@ use crate::base::outcome::{Counts, State};
 use crate::base::view::{Beam, View, footprint};
 use crate::heightfield::assets::Preparation;
 use crate::plan::pyramid::Block;
+use crate::plan::stereo::Sights;
 use crate::plan::{Extras, Pass, Plan};
 use serde::{Serialize, Serializer};
 
@@ -225,18 +226,23 @@ impl Frame {
 
     /// The ray of a pixel, counted row by row.
     pub fn ray(&self, view: &View, i: usize) -> Beam {
+        view.view_ray(self.pixel(i))
+    }
+
+    /// A pixel of the whole image, counted row by row in the frame.
+    pub fn pixel(&self, i: usize) -> [u32; 2] {
         let width = self.size[0] as usize;
-        let local = [(i % width) as u32, (i / width) as u32];
-        view.view_ray(in_image(self.origin, local))
+        in_image(self.origin, [(i % width) as u32, (i / width) as u32])
     }
 
     /// The world position of each pixel's hit; zero for sky.
-    pub fn positions(&self, view: &View) -> Vec<[f32; 3]> {
+    pub fn positions(&self, sights: &Sights) -> Vec<[f32; 3]> {
         let at = |(i, t): (usize, &f32)| {
             if t.is_infinite() {
                 return [0.0; 3];
             }
-            let p = view.eye + self.ray(view, i).at(f64::from(*t));
+            let (eye, ray) = sights.ray(self.pixel(i));
+            let p = eye + ray.at(f64::from(*t));
             p.as_vec3().to_array()
         };
         self.depth.iter().enumerate().map(at).collect()

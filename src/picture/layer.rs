@@ -142,7 +142,7 @@ impl<'a> Shades<'a> {
             }
             Layer::Normal => Box::new(|i| vector(frame.normal[i]) * 0.5 + 0.5),
             Layer::Position => {
-                let positions = frame.positions(&plan.view());
+                let positions = frame.positions(&plan.sights());
                 let share = shares(&mut positions.iter().copied().map(vector));
                 Box::new(move |i| match vector(positions[i]) {
                     p if p.is_finite() => share(p),

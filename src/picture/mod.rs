@@ -2,6 +2,7 @@
 //! or not at all.
 //!
 //! - [`frame`]: what a render yields; `layer`: a layer of it as pixels
+//! - `stereo`: two frames side by side
 //! - `png`, `exr`, `web` (JPEG and WebP): files of pictures
 //! - `place`: a file that appears whole or not at all; `folder`: where it goes
 //! - `error`: why a picture cannot be written
@@ -15,6 +16,7 @@ mod layer;
 #[cfg(feature = "cli")]
 mod place;
 mod png;
+mod stereo;
 mod web;
 
 pub use error::OutputError;
@@ -25,6 +27,7 @@ pub use layer::{Layer, Shades, heat};
 #[cfg(feature = "cli")]
 pub use place::{Place, clear, commit, set_unfinished};
 pub use png::{LAYER_KEYWORD, PngHead, write_png, write_png_rows};
+pub use stereo::beside;
 pub use web::{write_jpeg, write_webp};
 
 pub use crate::raster::png::BitDepth;

@@ -1,10 +1,11 @@
 //! The camera: the section `[camera]` of a preset.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::base::key::{Fault, auto_count, auto_number, number, triple, word};
 use crate::base::projection::Projection;
 use crate::base::view::{Lens, View};
+use crate::plan::stereo::Stereo;
 use crate::settings;
 
 settings! {
@@ -18,6 +19,10 @@ settings! {
         aperture: f64 = 0.0, number(0.0, 0.25), "radius of the lens as a share of the distance to the focus: 0 for none, 0.01 for a blurred background; a picture of one sample has no blur";
         focus: Option<f64> = None, auto_number(1e-9, 1e9), "distance to the plane that is sharp, along the view axis; auto is that of the target";
         blades: Option<u32> = None, auto_count(3, 16), "blades of the lens, which are the corners of blurred lights; auto is a round lens";
+        shift: f64 = 0.0, number(-5.0, 5.0), "how far the image plane of a perspective view is shifted to the right, as a share of the image's height: the view turns there, and keeps its lines parallel";
+        rise: f64 = 0.0, number(-5.0, 5.0), "how far it is shifted up; 0.3 shows the top of a tower whose walls stay upright";
+        stereo: Stereo = Stereo::Off, word(&Stereo::WORDS), "two views in a picture of perspective, each with half its width: pair with the left eye's view on the left, for glasses and parallel viewing, or cross with it on the right, for crossed eyes; the target is at the depth of the screen, and the window shows one view from between the eyes" => Nothing;
+        eyes: f64 = 0.03, number(0.0, 0.5), "distance between the eyes of stereo as a share of the distance from eye to target" => Nothing;
     }
 }
 
@@ -50,6 +55,15 @@ impl Camera {
             format!(
                 "camera.projection {name} has no lens; use aperture 0, or projection perspective"
             ),
+        )?;
+        let moved = [("camera.shift", self.shift), ("camera.rise", self.rise)];
+        let moved = moved.into_iter().find(|(_, by)| *by != 0.0);
+        Fault::unless(
+            moved.is_none() || self.projection == Projection::Perspective,
+            moved.map_or("camera.shift", |(key, _)| key),
+            format!(
+                "camera.projection {name} has no image plane to shift; move eye and target, or use projection perspective"
+            ),
         )
     }
 
@@ -66,10 +80,12 @@ impl Camera {
     /// The camera over an image of a size, without a lens. The camera must pass [`Camera::check`].
     pub fn view(&self, size: [u32; 2]) -> View {
         let distance = self.eye.distance(self.target);
-        View::new(self.eye, self.target, self.up, self.fov, size).by(
-            self.projection,
-            self.fov,
-            distance,
-        )
+        let view = View::new(self.eye, self.target, self.up, self.fov, size);
+        let height = view.pixel * f64::from(size[1]);
+        View {
+            shift: height * DVec2::new(self.shift, self.rise),
+            ..view
+        }
+        .by(self.projection, self.fov, distance)
     }
 }

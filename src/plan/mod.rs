@@ -5,7 +5,7 @@
 //! map: [`crate::scene::Assets`] do.
 //!
 //! - [`camera`], [`march`], [`look`] with [`layers`] and [`lamps`]: the sections of a preset beside `[scene]`
-//! - [`film`]: the plan at a moment of its film
+//! - [`film`]: the plan at a moment of its film; [`stereo`]: the plans of two eyes
 //! - `cones`: whether cones pay; [`pyramid`]: the cone levels, and the blocks of a large image
 
 pub mod camera;
@@ -16,10 +16,9 @@ pub mod layers;
 pub mod look;
 pub mod march;
 pub mod pyramid;
+pub mod stereo;
 
 use std::borrow::Cow;
-
-use glam::DVec2;
 
 use crate::base::filter::RADIUS;
 use crate::base::key::{Fault, Key, Redo, auto_count, count, number, size, text, word};
@@ -177,6 +176,7 @@ impl Plan {
     pub fn check(&self) -> Result<(), Fault> {
         self.scene.check()?;
         self.camera.check()?;
+        self.check_stereo()?;
         self.march.check()?;
         self.look.check(self.scene.most_shadow_steps())?;
         Fault::unless(
@@ -246,7 +246,7 @@ impl Plan {
     /// The eye, the finest pixel and the steps of the plan.
     pub fn viewpoint(&self) -> Viewpoint {
         let view = self.view();
-        let corner = view.view_ray_at([0, 0], DVec2::splat(-view.reach));
+        let corner = view.finest();
         Viewpoint {
             eye: self.camera.eye,
             grain0: corner.grain0,

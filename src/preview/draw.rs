@@ -74,15 +74,19 @@ fn turned(from: &View, to: &View) -> DMat3 {
         let factor = |i: usize| f64::from(to.size[i]) / f64::from(from.size[i]);
         return DMat3::from_diagonal(DVec3::new(factor(0), factor(1), 1.0));
     }
-    let half = |view: &View| [0, 1].map(|i| 0.5 * f64::from(view.size[i]));
-    let [w, h] = half(from);
+    // The pixel on the view axis.
+    let middle = |view: &View| {
+        let shift = [-view.shift.x, view.shift.y].map(|s| s / view.pixel);
+        [0, 1].map(|i| 0.5 * f64::from(view.size[i]) + shift[i])
+    };
+    let [w, h] = middle(from);
     // Directions of pixels.
     let ways = DMat3::from_cols(
         from.pixel * from.right,
         -from.pixel * from.up,
         from.forward + from.pixel * (h * from.up - w * from.right),
     );
-    let [w, h] = half(to);
+    let [w, h] = middle(to);
     let pixels = DMat3::from_cols(
         to.right / to.pixel + w * to.forward,
         -to.up / to.pixel + h * to.forward,
@@ -206,13 +210,17 @@ pub fn pipeline(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
 
     #[test]
     fn a_pixel_is_turned_to_the_pixel_of_the_same_direction() {
         let view = |target: DVec3, fov, size| {
             View::new(DVec3::new(0.0, -5.0, 1.0), target, DVec3::Z, fov, size)
         };
-        let now = view(DVec3::new(0.3, 0.0, 0.9), 50.0, [640, 360]);
+        let now = View {
+            shift: DVec2::new(0.3, -0.2),
+            ..view(DVec3::new(0.3, 0.0, 0.9), 50.0, [640, 360])
+        };
         let then = view(DVec3::ZERO, 40.0, [160, 90]);
         let map = turned(&now, &then);
         for (x, y) in [(0.5, 0.5), (300.0, 200.0), (639.5, 12.5)] {

@@ -35,6 +35,11 @@ impl Still {
         assets: &Assets,
         path: PathBuf,
     ) -> Result<Self, String> {
+        if plan.is_stereo() {
+            return Err(
+                "camera.stereo: the window writes no pairs; save the preset and use `conemarch render`, or set stereo to off".into(),
+            );
+        }
         let work = renderer.begin(&plan, assets, Extras::default());
         Ok(Self {
             work: Some(work.map_err(|e| e.to_string())?),

@@ -51,6 +51,11 @@ const OPTIONS: &str = r#"
 --size=16384x1 -o a.webp ; 2 ; WebP|16383
 --device 99 ; 1 ; there is no adapter|99|cpu
 --device foo ; 1 ; there is no|foo|cpu
+--size 25x16 --set camera.stereo=pair ; 2 ; camera.stereo|even width|26
+--set camera.stereo=pair --set camera.projection=orthographic ; 2 ; camera.stereo|perspective|orthographic
+--set camera.rise=0.2 --set camera.projection=fisheye ; 2 ; camera.rise|perspective|fisheye
+--size 128x64 --set camera.stereo=pair --tile 0,0/2x1 -o a.exr ; 2 ; --tile|camera.stereo=off
+--set camera.stereo=pair --layer error ; 2 ; error|camera.stereo=off
 "#;
 
 const PRESETS: &str = r#"

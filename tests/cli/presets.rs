@@ -131,7 +131,7 @@ fn only_kind_and_formula_are_required_and_the_rest_is_default() {
 }
 
 /// Values of many kinds, with `;` between them; each key takes some of them.
-const CANDIDATES: &str = r#"0;1;2;3;17;100;5000;0.5;0.25;1.5;-1.5;1e-3;0.1;true;false;"auto";"off";"ray";"truth";"classic";"sine:8x8";"xy";"boxes";"csm-loop";"nearest";"walk";"fisheye";"path";"agx";"oklab";"sphere";"multiply";"transparent";"smooth";[0.25, 0.5, 0.75];[1, 2, 3];[5, 7];[0.5];[0.5, 0.75];[[0.1, 0.2, 0.3]];[[0, 0, 0], [1, 1, 1]]"#;
+const CANDIDATES: &str = r#"0;1;2;3;17;100;5000;0.5;0.25;1.5;-1.5;1e-3;0.1;true;false;"auto";"off";"ray";"truth";"classic";"sine:8x8";"xy";"boxes";"csm-loop";"nearest";"walk";"fisheye";"pair";"path";"agx";"oklab";"sphere";"multiply";"transparent";"smooth";[0.25, 0.5, 0.75];[1, 2, 3];[5, 7];[0.5];[0.5, 0.75];[[0.1, 0.2, 0.3]];[[0, 0, 0], [1, 1, 1]]"#;
 
 #[test]
 fn every_key_can_be_set_in_a_file_and_by_override_and_reads_back() {

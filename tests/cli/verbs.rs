@@ -97,6 +97,10 @@ fn presets_files_and_keys_are_completed() {
         "camera.aperture=",
         "camera.focus=",
         "camera.blades=",
+        "camera.shift=",
+        "camera.rise=",
+        "camera.stereo=",
+        "camera.eyes=",
     ];
     assert_eq!(found, keys);
     let found = asked("render mandelbox --set scene.");

@@ -83,8 +83,8 @@ fn a_window_is_a_part_of_the_picture_bit_for_bit() {
                 assert_eq!((found.size, found.origin), (size, origin));
                 assert_eq!(bits(&found), bits(&expected), "{}: {origin:?}", plan.title);
                 assert_eq!(
-                    found.positions(&plan.view()),
-                    expected.positions(&plan.view())
+                    found.positions(&plan.sights()),
+                    expected.positions(&plan.sights())
                 );
                 let shown =
                     |frame: &Frame, layer| Shades::new(layer, frame, plan).rows(BitDepth::Eight);

@@ -3,8 +3,8 @@
 /// The direction through a point of the image, given in pixels from the upper left corner. Its
 /// length is not 1.
 fn view_direction(x: f32, y: f32) -> vec3<f32> {
-    let sx = (x - 0.5 * f32(view.size.x)) * view.pixel;
-    let sy = (0.5 * f32(view.size.y) - y) * view.pixel;
+    let sx = (x - 0.5 * f32(view.size.x)) * view.pixel + view.shift.x;
+    let sy = (0.5 * f32(view.size.y) - y) * view.pixel + view.shift.y;
     return view.forward + sx * view.right + sy * view.up;
 }
 

@@ -28,6 +28,9 @@ struct ViewUniform {
     blades: u32,
     /// A pixel's width: of parallel rays a length, else as its height.
     across: f32,
+    /// The point of the image plane at distance 1 in the middle of the image.
+    shift: vec2<f32>,
+    unused: vec2<u32>,
 }
 
 /// A bundle of rays. At distance t they lie within `r0 + k t` of the axis, and the footprint,
