@@ -1,4 +1,4 @@
-//! The colour pass: the light of each hit ([`quick`] or [`path`]), and fog.
+//! The colour pass: the light of each hit ([`quick`] or [`path`]), fog and glow.
 //! Twin: `wgsl/pass/color.wgsl`.
 
 use glam::DVec3;
@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::base::outcome::State;
 use crate::base::view::Beam;
 use crate::pass::look::Light;
-use crate::pass::{fog, layers, path, quick};
+use crate::pass::{fog, glow, layers, path, quick};
 use crate::scene::{Hit, Solid, Surface};
 
 /// A pixel's colour.
@@ -38,7 +38,7 @@ pub fn color<S: Solid>(
 ) -> Shaded {
     if state == State::Sky {
         return Shaded {
-            radiance: light.sky(ray.axis),
+            radiance: light.sky(ray.axis) + glow::glow(solid, light, ray, solid.bounds_far()),
             normal: DVec3::ZERO,
             decided: true,
         };
@@ -48,7 +48,7 @@ pub fn color<S: Solid>(
         None => quick::shade(solid, light, ray, hit.t, &surface),
         Some(of) => path::shade((solid, light, of), (pixel, before), ray, hit.t, &surface),
     };
-    c = fog::fog(light, c, ray, hit.t);
+    c = fog::fog(light, c, ray, hit.t) + glow::glow(solid, light, ray, hit.t);
     // One of many paths says little of its pixel.
     let dark = light.substance.is_none() && !decided;
     if light.look.flag_unconverged && (state == State::Unconverged || dark) {

@@ -57,6 +57,9 @@ features![
     /// Fog that thins out with the height.
     FogHeight: wgsl!("pass/fog_height.wgsl").neutral(), wgsl!("pass/fog_height_off.wgsl"),
         |look| look.fog_height > 0.0;
+    /// Light of the air near the surface.
+    Glow: wgsl!("pass/glow.wgsl").neutral(), wgsl!("pass/glow_off.wgsl"),
+        |look| look.glow > 0.0;
 ];
 
 /// The modules of a look: how light is found, and its features.

@@ -10,6 +10,7 @@ use glam::{DVec3, Vec3, Vec4};
 use crate::base::oklab::{oklab, unoklab};
 use crate::base::srgb::linear;
 use crate::pass::LookFeature;
+use crate::pass::glow::{Glow, GlowUniform};
 use crate::pass::lamp::{Lamp, LampSource, LampUniform};
 use crate::pass::material::{MaterialUniform, Substance};
 use crate::plan::Plan;
@@ -93,6 +94,8 @@ pub struct LookParameters {
     pub material: MaterialUniform,
     /// The lamps, and zeros after the last one.
     pub lamps: [LampUniform; MOST_LAMPS],
+    /// The glow; dark where there is none.
+    pub glow: GlowUniform,
 }
 
 /// A [`Look`] in the numbers that passes use.
@@ -117,6 +120,8 @@ pub struct Light {
     pub fog_rise: f64,
     /// How many of them the eye is above the fog's level.
     pub fog_start: f64,
+    /// Light of the air near the surface.
+    pub glow: Glow,
 }
 
 impl Light {
@@ -176,6 +181,7 @@ impl Light {
             substance: (look.mode == LightMode::Path).then(|| Substance::of(&look)),
             fog_rise,
             fog_start: fog_rise * above,
+            glow: Glow::of(plan, PATH_ROUNDS / (solid.twin().rounds() + 1)),
             look,
         }
     }
@@ -239,6 +245,7 @@ impl Light {
             look: self.uniform(),
             material: material.unwrap_or(Zeroable::zeroed()),
             lamps,
+            glow: self.glow.uniform(),
         }
     }
 

@@ -5,7 +5,7 @@
 //! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits; [`layout`]: where
 //!   their results are
 //! - [`color`]: light and colour, with [`look`], [`layers`] and [`fog`], which may thin out with the height
-//!   ([`fog_height`]): by formulas, [`quick`] with [`shadow`] and [`occlusion`], or by paths,
+//!   ([`fog_height`]), and [`glow`]: by formulas, [`quick`] with [`shadow`] and [`occlusion`], or by paths,
 //!   [`path`] with [`material`]; [`lamp`] and [`emission`] for both
 //! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone_map`], [`tone`]: from light to display values, and from these to the bytes of a picture
@@ -20,6 +20,7 @@ mod explain;
 pub mod features;
 pub mod fog;
 pub mod fog_height;
+pub mod glow;
 pub mod lamp;
 pub mod layers;
 pub mod layout;

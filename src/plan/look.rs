@@ -111,6 +111,11 @@ settings! {
             "height over which the fog thins out to the share 1/e, as a share of the distance from eye to target; 0 for fog that is as dense everywhere" => Program;
         fog_level: f64 = 0.0, number(-1000.0, 1000.0),
             "height above the target at which the fog has its density, as a share of the distance from eye to target; only for fog_height";
+        glow: f64 = 0.0, number(0.0, 100.0),
+            "strength of light that the air of a formula sends out near the surface, 0 for none: a ray that meets a flat wall gains this much radiance, and one that passes close by more; a transparent background has it only before hits" => Program;
+        glow_width: f64 = 0.02, number(0.005, 1.0),
+            "distance from the surface at which the glow of the air is the share 1/e, as a share of the distance from eye to target";
+        glow_color: DVec3 = DVec3::new(0.30, 0.55, 1.0), triple(0.0, 1.0), "colour of the glow of the air, sRGB";
         gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights, 0 for none; in mode path 0.08 is that of most materials but metal, 2 that of a mirror";
         sky_high: DVec3 = DVec3::new(0.30, 0.42, 0.58), triple(0.0, 1.0), "colour of the sky overhead, sRGB";
         sky_low: DVec3 = DVec3::new(0.80, 0.77, 0.73), triple(0.0, 1.0), "colour of the sky below, sRGB";

@@ -184,6 +184,11 @@ impl Plan {
             self.look.layers.first_on().unwrap_or("look.trap"),
             "only a formula has orbits that traps measure; over other scenes use trap = \"auto\" and no layers",
         )?;
+        Fault::unless(
+            self.look.glow == 0.0 || self.scene.heightfield().is_none(),
+            "look.glow",
+            "only formulas tell the distance that the glow follows; over heightfields use glow 0, and fog with fog_height for mist",
+        )?;
         let proves = !self.march.stepping().proven || self.scene.sharpest() == self.scene;
         Fault::unless(
             proves || !matches!(self.scene, Scene::Distance(_)),

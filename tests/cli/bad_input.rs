@@ -55,6 +55,7 @@ const OPTIONS: &str = r#"
 --set camera.stereo=pair --set camera.projection=orthographic ; 2 ; camera.stereo|perspective|orthographic
 --set camera.rise=0.2 --set camera.projection=fisheye ; 2 ; camera.rise|perspective|fisheye
 --size 128x64 --set camera.stereo=pair --tile 0,0/2x1 -o a.exr ; 2 ; --tile|camera.stereo=off
+--set scene.kind=heightfield --set look.glow=1 ; 2 ; look.glow|heightfields|fog_height
 --set camera.stereo=pair --layer error ; 2 ; error|camera.stereo=off
 "#;
 

@@ -19,6 +19,7 @@ mod common {
 }
 mod background;
 mod device;
+mod glow;
 mod lamps;
 mod live;
 mod paths;

@@ -1,5 +1,5 @@
-// The colour pass: the light of each hit (`quick.wgsl` or `path.wgsl`), and fog. Light is linear.
-// Tone and sRGB follow when the picture is written.
+// The colour pass: the light of each hit (`quick.wgsl` or `path.wgsl`), fog and glow. Light is
+// linear. Tone and sRGB follow when the picture is written.
 
 override COLOR_KEEPS_NORMALS: bool;
 /// Whether the fourth number of a normal is the sum of the squared deviations of the samples'
@@ -68,12 +68,14 @@ fn color(
             let grain = footprint(ray, hit.t);
             let pixel = turn.stage.origin + cell;
             let shaded = shade(ray, ray.origin + hit.t * ray.axis, at, grain, pixel);
-            c = fog(shaded.rgb, ray, hit.t);
+            c = fog(shaded.rgb, ray, hit.t) + glow(ray, hit.t);
             decided = shaded.w;
         }
         if look.flag == 1u && (s == STATE_UNCONVERGED || (LIGHT_IS_FLAGGED && decided == 0.0)) {
             c = vec3<f32>(1.0, 0.0, 1.0);
         }
+    } else if ended == 0.0 {
+        c += background(glow(ray, bounds_far()));
     }
     var note = background_note(decided, is_hit);
     let normal_at = turn.stage.cells.x * turn.stage.cells.y + index;

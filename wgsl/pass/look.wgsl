@@ -91,10 +91,22 @@ struct LampUniform {
     none: f32,
 }
 
+/// Light of the air near the surface (`glow.wgsl`).
+struct GlowUniform {
+    /// Radiance of a whole way to a flat wall.
+    light: vec3<f32>,
+    /// Widths per unit of length.
+    rate: f32,
+    /// Parts of a ray at most.
+    parts: u32,
+    pad: array<u32, 3>,
+}
+
 struct LookParameters {
     look: LookUniform,
     material: MaterialUniform,
     lamps: array<LampUniform, 3>,
+    glow: GlowUniform,
 }
 
 @group(1) @binding(1) var<storage, read> look_parameters: LookParameters;
