@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::base::outcome::State;
 use crate::base::view::Beam;
 use crate::pass::look::Light;
-use crate::pass::{fog, glow, layers, path, quick};
+use crate::pass::{fog, glow, layers, path, quick, shafts};
 use crate::scene::{Hit, Solid, Surface};
 
 /// A pixel's colour.
@@ -37,8 +37,11 @@ pub fn color<S: Solid>(
     state: State,
 ) -> Shaded {
     if state == State::Sky {
+        let end = solid.bounds_far();
+        let sky = light.sky(ray.axis);
+        let (lit, _) = shafts::shafts((solid, light), (pixel, before), sky, ray, end);
         return Shaded {
-            radiance: light.sky(ray.axis) + glow::glow(solid, light, ray, solid.bounds_far()),
+            radiance: lit + glow::glow(solid, light, ray, end),
             normal: DVec3::ZERO,
             decided: true,
         };
@@ -48,7 +51,10 @@ pub fn color<S: Solid>(
         None => quick::shade(solid, light, ray, hit.t, &surface),
         Some(of) => path::shade((solid, light, of), (pixel, before), ray, hit.t, &surface),
     };
-    c = fog::fog(light, c, ray, hit.t) + glow::glow(solid, light, ray, hit.t);
+    c = fog::fog(light, c, ray, hit.t);
+    let (lit, clear) = shafts::shafts((solid, light), (pixel, before), c, ray, hit.t);
+    c = lit + glow::glow(solid, light, ray, hit.t);
+    let decided = decided && clear;
     // One of many paths says little of its pixel.
     let dark = light.substance.is_none() && !decided;
     if light.look.flag_unconverged && (state == State::Unconverged || dark) {

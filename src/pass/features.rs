@@ -6,6 +6,7 @@
 //! once.
 
 use crate::base::shader::Module;
+use crate::pass::shafts;
 use crate::plan::look::{LightMode, Look};
 use crate::wgsl;
 
@@ -70,6 +71,10 @@ pub fn modules(look: &Look) -> Vec<Module> {
         |f: &&LookFeature| !followed || !matches!(f, LookFeature::Shadow | LookFeature::Occlusion);
     let features = LookFeature::ALL.iter().filter(serves);
     let mut all: Vec<Module> = features.map(|f| f.module(f.is_on(look))).collect();
+    all.push(match shafts::are_on(look) {
+        true => wgsl!("pass/shafts.wgsl").neutral(),
+        false => wgsl!("pass/shafts_off.wgsl"),
+    });
     match look.mode {
         LightMode::Quick => all.push(wgsl!("pass/quick.wgsl")),
         LightMode::Path => all.extend([

@@ -13,6 +13,7 @@ use crate::pass::LookFeature;
 use crate::pass::glow::{Glow, GlowUniform};
 use crate::pass::lamp::{Lamp, LampSource, LampUniform};
 use crate::pass::material::{MaterialUniform, Substance};
+use crate::pass::shafts::{ShaftsUniform, shafts_light};
 use crate::plan::Plan;
 use crate::plan::lamps::MOST_LAMPS;
 use crate::plan::look::{LightMode, Look, MOST_STOPS, PATH_STEPS, PaletteSpace, SHADOW_STEPS};
@@ -96,6 +97,8 @@ pub struct LookParameters {
     pub lamps: [LampUniform; MOST_LAMPS],
     /// The glow; dark where there is none.
     pub glow: GlowUniform,
+    /// Light of the sun in the fog; dark where none is followed.
+    pub shafts: ShaftsUniform,
 }
 
 /// A [`Look`] in the numbers that passes use.
@@ -246,6 +249,10 @@ impl Light {
             material: material.unwrap_or(Zeroable::zeroed()),
             lamps,
             glow: self.glow.uniform(),
+            shafts: ShaftsUniform {
+                light: shafts_light(&self.look).as_vec3(),
+                pad: 0,
+            },
         }
     }
 
@@ -253,8 +260,13 @@ impl Light {
     pub fn sky(&self, axis: DVec3) -> DVec3 {
         let look = &self.look;
         let blend = smoothstep(-0.6, 0.8, axis.dot(self.world_up));
-        let near = axis.dot(look.light).max(0.0);
-        look.sky_low.lerp(look.sky_high, blend) + look.light_color * (0.12 * near.powi(6))
+        look.sky_low.lerp(look.sky_high, blend) + self.halo(axis)
+    }
+
+    /// The wide, faint halo about the sun in the radiance of the sky: what air scatters of its light.
+    pub fn halo(&self, axis: DVec3) -> DVec3 {
+        let near = axis.dot(self.look.light).max(0.0);
+        self.look.light_color * (0.12 * near.powi(6))
     }
 
     /// Radiance that comes from the sky or the ground to a surface.

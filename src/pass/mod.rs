@@ -6,7 +6,7 @@
 //!   their results are
 //! - [`color`]: light and colour, with [`look`], [`layers`] and [`fog`], which may thin out with the height
 //!   ([`fog_height`]), and [`glow`]: by formulas, [`quick`] with [`shadow`] and [`occlusion`], or by paths,
-//!   [`path`] with [`material`]; [`lamp`] and [`emission`] for both
+//!   [`path`] with [`material`] and [`shafts`]; [`lamp`] and [`emission`] for both
 //! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone_map`], [`tone`]: from light to display values, and from these to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
@@ -34,6 +34,7 @@ pub mod prepare;
 pub mod progress;
 pub mod quick;
 pub mod shadow;
+pub mod shafts;
 pub mod tone;
 pub mod tone_map;
 pub mod trace;

@@ -30,14 +30,14 @@ fn path_purpose(bounce: u32, nth: u32) -> u32 {
 }
 
 /// A direction to a point of a light, uniform over a disc across it.
-fn path_toward(lamp: &Lamp, pair: DVec2) -> DVec3 {
+pub(super) fn path_toward(lamp: &Lamp, pair: DVec2) -> DVec3 {
     let across = lamp.softness * pair.y.sqrt() * material_turn(pair.x);
     (material_frame(lamp.axis) * across.extend(1.0)).normalize()
 }
 
 /// Follows a ray for `reach`. It is neither a hit nor out if it reached a step limit. The path has so many
 /// steps left.
-fn path_sight<S: Solid>(
+pub(super) fn path_sight<S: Solid>(
     (solid, light): (&S, &Light),
     ray: &Beam,
     reach: f64,

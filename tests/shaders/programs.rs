@@ -113,6 +113,8 @@ fn plans() -> Vec<Plan> {
                 if *mode == plan.march.mode {
                     let mut followed = one.clone();
                     followed.look.mode = LightMode::Path;
+                    // Where there is fog.
+                    followed.look.shafts = 1.0;
                     all.push(followed);
                 }
                 all.push(one);

@@ -13,6 +13,7 @@ mod adapter;
 #[path = "../common"]
 #[allow(dead_code, reason = "other crates use the rest")]
 mod common {
+    pub mod exact;
     pub mod folder;
     pub mod plans;
     pub mod random;
@@ -24,6 +25,7 @@ mod lamps;
 mod live;
 mod paths;
 mod samples;
+mod shafts;
 mod tone;
 mod until;
 mod variance;

@@ -68,14 +68,16 @@ fn color(
             let grain = footprint(ray, hit.t);
             let pixel = turn.stage.origin + cell;
             let shaded = shade(ray, ray.origin + hit.t * ray.axis, at, grain, pixel);
-            c = fog(shaded.rgb, ray, hit.t) + glow(ray, hit.t);
-            decided = shaded.w;
+            let lit = shafts(fog(shaded.rgb, ray, hit.t), ray, hit.t, pixel);
+            c = lit.rgb + glow(ray, hit.t);
+            decided = min(shaded.w, lit.w);
         }
         if look.flag == 1u && (s == STATE_UNCONVERGED || (LIGHT_IS_FLAGGED && decided == 0.0)) {
             c = vec3<f32>(1.0, 0.0, 1.0);
         }
     } else if ended == 0.0 {
-        c += background(glow(ray, bounds_far()));
+        let lit = shafts(c, ray, bounds_far(), turn.stage.origin + cell);
+        c = background(lit.rgb + glow(ray, bounds_far()));
     }
     var note = background_note(decided, is_hit);
     let normal_at = turn.stage.cells.x * turn.stage.cells.y + index;

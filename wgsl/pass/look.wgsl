@@ -102,11 +102,19 @@ struct GlowUniform {
     pad: array<u32, 3>,
 }
 
+/// Light of the sun in the fog (`shafts.wgsl`).
+struct ShaftsUniform {
+    /// What lit fog scatters into all directions together.
+    light: vec3<f32>,
+    pad: u32,
+}
+
 struct LookParameters {
     look: LookUniform,
     material: MaterialUniform,
     lamps: array<LampUniform, 3>,
     glow: GlowUniform,
+    shafts: ShaftsUniform,
 }
 
 @group(1) @binding(1) var<storage, read> look_parameters: LookParameters;
@@ -119,11 +127,13 @@ fn look_load() {
 fn sky(axis: vec3<f32>) -> vec3<f32> {
     let height = dot(axis, look.world_up);
     let blend = smoothstep(-0.6, 0.8, height);
-    var c = mix(look.sky_low, look.sky_high, blend);
-    // A wide, faint glow about the light.
+    return mix(look.sky_low, look.sky_high, blend) + sky_halo(axis);
+}
+
+/// The wide, faint halo about the light in the radiance of the sky.
+fn sky_halo(axis: vec3<f32>) -> vec3<f32> {
     let near = max(0.0, dot(axis, look.light));
-    c += look.light_color * (0.12 * pow(near, 6.0));
-    return c;
+    return look.light_color * (0.12 * pow(near, 6.0));
 }
 
 /// Radiance that comes from the sky or the ground to a surface.
