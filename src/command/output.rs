@@ -107,7 +107,8 @@ impl Format {
     pub fn bytes_per_pixel(self, layer: Layer, plan: &Plan, extras: Extras) -> u64 {
         // Peaks of 8 million pixels, rounded up. Both executors take about as much: the CPU
         // 51 bytes for colours and 102 for an EXR, which holds its channels beside the frame,
-        // and a software device 54 and 132. The truth is a second frame, on the CPU.
+        // and a software device 54 and 132. A pair takes no more than one view: its frames are halves.
+        // The truth is a second frame, on the CPU.
         let with = |asked: bool, more: u64| if asked { more } else { 0 };
         let truth = with(layer == Layer::Error, 20);
         let picture = match self {
@@ -117,8 +118,6 @@ impl Format {
         // An f32, and a channel that is encoded.
         picture
             + with(extras.count, 25)
-            // The frame of one eye beside that of both.
-            + with(plan.is_stereo(), 40)
             + with(plan.is_transparent(extras), 8)
             + with(plan.has_variance(extras), 8)
     }
