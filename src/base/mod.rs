@@ -8,6 +8,7 @@
 //! - [`outcome`]: what a pixel is, and what it cost
 //! - [`filter`]: where the samples of a pixel are; [`random`]: numbers for their light
 //! - [`srgb`]: linear colours to and from sRGB
+//! - [`last`]: values that take long to make
 //! - [`named`]: enums whose variants are chosen by a word
 //! - [`mod@clock`]: time; [`parallel`]: work over all cores
 //! - [`units`]: amounts of memory for people to read
@@ -20,6 +21,7 @@ mod equirectangular;
 pub mod filter;
 mod fisheye;
 pub mod key;
+pub mod last;
 pub mod named;
 pub mod oklab;
 mod orthographic;

@@ -184,7 +184,7 @@ pub fn run(args: &Animate) -> Result<()> {
     let plans: Vec<Plan> = frames.iter().map(|f| plan(*f)).collect::<Result<_>>()?;
     // A frame must not take the place of what the film is made from.
     let preset = preset::file(&args.preset).map(|file| ("the preset", file));
-    let mut inputs = film.scene.files();
+    let mut inputs = film.files();
     inputs.extend(preset);
     spared(&[("--video", args.video.as_deref())], &inputs)?;
     for frame in &frames {

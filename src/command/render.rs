@@ -172,7 +172,7 @@ pub fn run(args: &Render) -> Result<()> {
     let stats = args.stats.as_deref();
     let outputs = [("the picture", Some(output.as_path())), ("--stats", stats)];
     apart(&outputs)?;
-    spared(&outputs, &plan.scene.files())?;
+    spared(&outputs, &plan.files())?;
     // A picture may take the place of the one whose preset it was rendered from.
     let preset = preset::file(&args.preset).map(|file| ("the preset", file));
     spared(&outputs[1..], preset.as_slice())?;

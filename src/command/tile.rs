@@ -72,7 +72,7 @@ pub fn fingerprint(plan: &Plan, assets: &Assets, more: &str) -> String {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part);
     }
-    hash.update(plan.scene.contents(assets));
+    hash.update(plan.contents(assets));
     // The cones of a file decide the steps of a ray.
     let named = plan.scene.heightfield().map(|settings| settings.files());
     let maps = named

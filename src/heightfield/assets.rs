@@ -4,12 +4,13 @@
 //! keeps the last one of each kind until its settings change. Clones share what is kept.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use bytemuck::cast_slice;
 use glam::DVec2;
 
 use crate::base::key::Fault;
+use crate::base::last::{Last, is_kept, kept_or_made};
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, ShareWatch};
 use crate::heightfield::load::PatternSpec;
 use crate::heightfield::paint::{Colors, Paint};
@@ -340,52 +341,4 @@ fn paint_key(settings: &HeightfieldSettings, by: Generator) -> PaintKey {
 /// A fault of `scene.tiles`.
 pub(super) fn tiles_fault(e: HeightSurfaceError) -> Fault {
     Fault::new("scene.tiles", e.to_string())
-}
-
-/// The last value that was made, with its key. Clones share it.
-type Last<K, V> = Arc<Mutex<Option<(K, Arc<V>)>>>;
-
-/// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.
-fn kept_or_made<K: PartialEq, V, E>(
-    last: &Last<K, V>,
-    key: K,
-    make: impl FnOnce(&K) -> Result<V, E>,
-) -> Result<Arc<V>, E> {
-    // After a panic in `make` the old value is still there.
-    let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((of, value)) = &*last
-        && *of == key
-    {
-        return Ok(value.clone());
-    }
-    let value = Arc::new(make(&key)?);
-    *last = Some((key, value.clone()));
-    Ok(value)
-}
-
-/// Whether the value of a key is kept. It does not wait for one that is being made.
-fn is_kept<K: PartialEq, V>(last: &Last<K, V>, key: &K) -> bool {
-    let last = last.try_lock();
-    last.is_ok_and(|last| last.as_ref().is_some_and(|(of, _)| of == key))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_value_is_made_once_and_again_when_its_key_changes() {
-        let last = Last::<u32, u32>::default();
-        let mut made = 0;
-        for (key, times) in [(1, 1), (1, 1), (2, 2), (1, 3)] {
-            let value = kept_or_made(&last.clone(), key, |k| {
-                made += 1;
-                Ok::<u32, ()>(10 * k)
-            });
-            assert_eq!(value, Ok(Arc::new(10 * key)));
-            assert_eq!(made, times);
-        }
-        assert_eq!(kept_or_made(&last, 3, |_| Err("no")), Err("no"));
-        assert_eq!(kept_or_made(&last, 1, |_| Err("no")), Ok(Arc::new(10)));
-    }
 }

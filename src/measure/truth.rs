@@ -151,7 +151,7 @@ impl Cache {
         let mut hash = Sha256::new();
         hash.update(self.program);
         hash.update(preset::write(&asked(plan)));
-        hash.update(plan.scene.contents(assets));
+        hash.update(plan.contents(assets));
         let name: String = hash.finalize().iter().map(|b| format!("{b:02x}")).collect();
         self.folder.join(format!("truth-{name}"))
     }

@@ -63,6 +63,14 @@ features![
         |look| look.glow > 0.0;
 ];
 
+/// The sky: that of a file, or two colours.
+pub fn sky(look: &Look) -> Module {
+    match look.sky.path() {
+        Some(_) => wgsl!("pass/sky_file.wgsl"),
+        None => wgsl!("pass/sky.wgsl"),
+    }
+}
+
 /// The modules of a look: how light is found, and its features.
 pub fn modules(look: &Look) -> Vec<Module> {
     let followed = look.mode == LightMode::Path;

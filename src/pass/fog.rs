@@ -13,5 +13,5 @@ pub fn fog(light: &Light, color: DVec3, ray: &Beam, t: f64) -> DVec3 {
         return color;
     }
     let depth = fog_depth(light, ray, t);
-    light.sky(ray.axis).lerp(color, (-depth).exp())
+    light.sky_haze(ray.axis).lerp(color, (-depth).exp())
 }

@@ -5,6 +5,8 @@
 //! picture is written.
 
 use bytemuck::{Pod, Zeroable};
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3, Vec4};
 
 use crate::base::oklab::{oklab, unoklab};
@@ -14,9 +16,11 @@ use crate::pass::glow::{Glow, GlowUniform};
 use crate::pass::lamp::{Lamp, LampSource, LampUniform};
 use crate::pass::material::{MaterialUniform, Substance};
 use crate::pass::shafts::{ShaftsUniform, shafts_light};
+use crate::pass::sky::{SkyLight, SkyUniform};
 use crate::plan::Plan;
 use crate::plan::lamps::MOST_LAMPS;
 use crate::plan::look::{LightMode, Look, MOST_STOPS, PATH_STEPS, PaletteSpace, SHADOW_STEPS};
+use crate::scene::sky::Sky;
 use crate::scene::{AnySolid, MOST_SHADOW_STEPS};
 
 /// The most rounds of inner loops on a path of light. Mesa's software Vulkan silently ends all loops
@@ -99,6 +103,8 @@ pub struct LookParameters {
     pub glow: GlowUniform,
     /// Light of the sun in the fog; dark where none is followed.
     pub shafts: ShaftsUniform,
+    /// The sky of a file; zeros without one.
+    pub sky: SkyUniform,
 }
 
 /// A [`Look`] in the numbers that passes use.
@@ -125,6 +131,8 @@ pub struct Light {
     pub fog_start: f64,
     /// Light of the air near the surface.
     pub glow: Glow,
+    /// The sky of a file.
+    pub sky: Option<SkyLight>,
 }
 
 impl Light {
@@ -185,8 +193,16 @@ impl Light {
             fog_rise,
             fog_start: fog_rise * above,
             glow: Glow::of(plan, PATH_ROUNDS / (solid.twin().rounds() + 1)),
+            sky: None,
             look,
         }
+    }
+
+    /// The light under the sky of a file.
+    #[must_use]
+    pub fn under(self, sky: Option<Arc<Sky>>) -> Self {
+        let sky = sky.map(|sky| SkyLight::of(sky, &self.look.sky, self.world_up));
+        Self { sky, ..self }
     }
 
     /// The sun over a scene in which nothing is farther than `far` from the eye.
@@ -253,29 +269,11 @@ impl Light {
                 light: shafts_light(&self.look).as_vec3(),
                 pad: 0,
             },
+            sky: self
+                .sky
+                .as_ref()
+                .map_or(Zeroable::zeroed(), SkyLight::uniform),
         }
-    }
-
-    /// Radiance of the sky in a direction.
-    pub fn sky(&self, axis: DVec3) -> DVec3 {
-        let look = &self.look;
-        let blend = smoothstep(-0.6, 0.8, axis.dot(self.world_up));
-        look.sky_low.lerp(look.sky_high, blend) + self.halo(axis)
-    }
-
-    /// The wide, faint halo about the sun in the radiance of the sky: what air scatters of its light.
-    pub fn halo(&self, axis: DVec3) -> DVec3 {
-        let near = axis.dot(self.look.light).max(0.0);
-        self.look.light_color * (0.12 * near.powi(6))
-    }
-
-    /// Radiance that comes from the sky or the ground to a surface.
-    pub fn sky_light(&self, axis: DVec3) -> DVec3 {
-        let look = &self.look;
-        let blend = smoothstep(-0.6, 0.8, axis.dot(self.world_up));
-        let glow = 0.12 * axis.dot(look.light).max(0.0).powi(6);
-        let below = look.ground * look.sky_low;
-        look.fill * (below.lerp(look.sky_high, blend) + look.light_color * glow)
     }
 
     /// The palette at x: a triangle wave over evenly spaced colours.

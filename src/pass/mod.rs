@@ -6,7 +6,7 @@
 //!   their results are
 //! - [`color`]: light and colour, with [`look`], [`layers`] and [`fog`], which may thin out with the height
 //!   ([`fog_height`]), and [`glow`]: by formulas, [`quick`] with [`shadow`] and [`occlusion`], or by paths,
-//!   [`path`] with [`material`] and [`shafts`]; [`lamp`] and [`emission`] for both
+//!   [`path`] with [`material`] and [`shafts`]; [`lamp`], [`sky`] and [`emission`] for both
 //! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone_map`], [`tone`]: from light to display values, and from these to the bytes of a picture
 //! - [`features`]: the parts of a look that can be absent
@@ -35,6 +35,7 @@ pub mod progress;
 pub mod quick;
 pub mod shadow;
 pub mod shafts;
+pub mod sky;
 pub mod tone;
 pub mod tone_map;
 pub mod trace;
@@ -62,7 +63,7 @@ pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Pro
     let entry = match pass {
         Pass::Color => {
             modules.extend([turn::until(plan), turn::background(plan, extras)]);
-            modules.push(wgsl!("pass/look.wgsl"));
+            modules.extend([wgsl!("pass/look.wgsl"), features::sky(&plan.look)]);
             modules.extend(layers::modules(&plan.look.layers, solid));
             modules.extend(features::modules(&plan.look));
             modules.push(wgsl!(

@@ -29,6 +29,10 @@ fn path_purpose(bounce: u32, nth: u32) -> u32 {
     }
 }
 
+/// The first purpose of the random numbers of a sky that is chosen. Each bounce has two. Those of
+/// shafts are before it.
+const PATH_SKY: u32 = 130;
+
 /// A direction to a point of a light, uniform over a disc across it.
 pub(super) fn path_toward(lamp: &Lamp, pair: DVec2) -> DVec3 {
     let across = lamp.softness * pair.y.sqrt() * material_turn(pair.x);
@@ -114,6 +118,21 @@ pub fn shade<S: Solid>(
             }
             decided &= matches!(step, Step::Hit | Step::Out);
         }
+        if let Some(sky) = &light.sky {
+            let [place, within] =
+                [0, 1].map(|i| random_pair(seed, before, PATH_SKY + 2 * bounce + i));
+            let (toward, chosen) = sky.sky_toward(place, within);
+            let l = frame.transpose() * toward;
+            if l.z > 0.0 {
+                let (step, _) = path_sight((solid, light), &to(toward), reach, &mut left);
+                if step == Step::Out {
+                    // The balance heuristic (Veach 1997): both ways to choose a direction share it.
+                    let (reflected, own) = substance.material_reflects(&material, v, l);
+                    sum += through * reflected / (chosen + own) * light.sky_light(toward);
+                }
+                decided &= matches!(step, Step::Hit | Step::Out);
+            }
+        }
         let choice = random_pair(seed, before, 4 * bounce + 2);
         let pair = random_pair(seed, before, 4 * bounce + 3);
         let l = substance.material_scatter(&material, v, pair, choice.x);
@@ -132,7 +151,12 @@ pub fn shade<S: Solid>(
         let next = to(frame * l);
         let (step, hit) = path_sight((solid, light), &next, reach, &mut left);
         if step == Step::Out {
-            sum += through * light.sky_light(next.axis);
+            let other = light
+                .sky
+                .as_ref()
+                .map_or(0.0, |sky| sky.sky_density(next.axis));
+            let share = density / (density + other).max(1e-20);
+            sum += through * (share * light.sky_light(next.axis));
         }
         decided &= matches!(step, Step::Hit | Step::Out);
         if step != Step::Hit || bounce == look.bounces {

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::progress::{Progress, Watch};
 use crate::base::clock::Clock;
+use crate::base::key::Fault;
 use crate::heightfield::assets::Preparation;
 use crate::heightfield::conemap::ConeMap;
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, Options};
@@ -21,6 +22,12 @@ pub enum FrameError {
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<Fault> for FrameError {
+    fn from(fault: Fault) -> Self {
+        PrepareError::from(fault).into()
+    }
 }
 
 impl From<PrepareError> for FrameError {
@@ -59,7 +66,13 @@ pub fn prepare(
     };
     if let Scene::Heightfield(settings) = &plan.scene {
         let pass = format!("heights of {}", settings.source.field);
-        assets.make_heights(settings, &mut |done| tell(&pass, done))?;
+        assets
+            .heightfield
+            .make_heights(settings, &mut |done| tell(&pass, done))?;
+    }
+    if plan.look.sky.path().is_some() && !plan.has_assets(assets) {
+        let _ = tell("sky", 0.0);
+        plan.sky(assets)?;
     }
     let mut taken = Vec::new();
     let make = &mut |generator, heights: &Heights, patches, options: &Options| {

@@ -34,7 +34,7 @@ pub fn shade<S: Solid>(
     let lit = facing.max(0.0) * key.open;
     let open = occlusion::occlusion(solid, light, q, n, grain);
     let up = 0.5 + 0.5 * n.dot(light.world_up);
-    let ambient = (look.ground * look.sky_low).lerp(look.sky_high, up) * look.fill;
+    let ambient = light.sky_ambient(n);
     // Light from lit neighbours: warm, from below.
     let bounce = look.light_color * (0.12 * look.fill * (1.0 - up));
     let half_way = (look.light - ray.axis).normalize_or_zero();

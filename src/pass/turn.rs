@@ -6,7 +6,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use crate::base::shader::{Module, Program};
-use crate::pass::program;
+use crate::pass::{features::sky, program};
 use crate::plan::pyramid::Level;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::AnySolid;
@@ -214,7 +214,7 @@ impl StageKind {
             }
             Self::Sketch(_) => {
                 let mut all = plan.view().modules();
-                all.push(wgsl!("pass/look.wgsl"));
+                all.extend([wgsl!("pass/look.wgsl"), sky(&plan.look)]);
                 all.extend(tone());
                 all.push(wgsl!("pass/sketch.wgsl"));
                 over_cells("sketch", &all)

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::lamps::Lamps;
 use super::layers::Layers;
+use super::sky::SkySettings;
 use crate::base::key::{
     Fault, auto_count, auto_number, auto_triple, count, number, switch, triple, triples, word,
 };
@@ -136,6 +137,8 @@ settings! {
         saturation: f64 = 1.0, number(0.0, 4.0), "strength of the colours before the tone map, 0 for grey" => Tone;
         flag_unconverged: bool = false, switch(),
             "whether pixels are magenta if their ray or their shadow ray reached its step limit; the default is true for heightfields";
+        /// A sky in a file.
+        ..sky: SkySettings;
         /// Traps and layers.
         ..layers: Layers;
         /// Further lamps.

@@ -4,10 +4,11 @@
 //! compared, written as a preset and tested without a GPU. It reads no file and makes no
 //! map: [`crate::scene::Assets`] do.
 //!
-//! - [`camera`], [`march`], [`look`] with [`layers`] and [`lamps`]: the sections of a preset beside `[scene]`
+//! - [`camera`], [`march`], [`look`] with [`layers`], [`lamps`] and [`sky`]: the sections of a preset beside `[scene]`
 //! - [`film`]: the plan at a moment of its film; [`stereo`]: the plans of two eyes
 //! - `cones`: whether cones pay; [`pyramid`]: the cone levels, and the blocks of a large image
 
+mod assets;
 pub mod camera;
 mod cones;
 pub mod film;
@@ -16,6 +17,7 @@ pub mod layers;
 pub mod look;
 pub mod march;
 pub mod pyramid;
+pub mod sky;
 pub mod stereo;
 
 use std::borrow::Cow;
@@ -169,7 +171,7 @@ impl Plan {
         Some(keys)
     }
 
-    /// Checks that all settings fit together. No file is read: [`Scene::load`] does that.
+    /// Checks that all settings fit together. No file is read: [`Plan::load`] does that.
     ///
     /// # Errors
     /// The first value that does not fit, with a valid alternative.
@@ -291,6 +293,9 @@ impl Plan {
         }
         if extras.depth_only && self.samples > 1 {
             plan.to_mut().samples = 1;
+        }
+        if extras.depth_only && self.look.sky.path().is_some() {
+            plan.to_mut().look.sky = self.look.sky.without();
         }
         if self.march.may_drop_cones() && !self.cones_pay() {
             plan.to_mut().march.coarsest = Some(1);

@@ -74,7 +74,7 @@ impl Preset {
     /// A file cannot be read, holds something else or does not fit. The error names the line
     /// of the preset, or the override.
     pub fn load_assets(&self, assets: &Assets) -> Result<(), PresetError> {
-        let loaded = self.plan.scene.load(assets);
+        let loaded = self.plan.load(assets);
         loaded.map_err(|fault| self.source.fault(&self.plan, &self.entries, fault))
     }
 }
@@ -129,6 +129,7 @@ impl Source {
             }
         }
         let mut plan = Plan::new(self.scene(entries)?);
+        plan.set_folder(&self.folder);
         for entry in entries {
             self.put(&mut plan, entry)?;
         }
@@ -155,9 +156,7 @@ impl Source {
         };
         let mut scenes = Scene::all().into_iter();
         let found = scenes.find(|s| s.kind() == word && s.formula() == formula);
-        let mut scene = found.ok_or_else(|| self.value(kind, "there is no such kind of scene"))?;
-        scene.set_folder(&self.folder);
-        Ok(scene)
+        found.ok_or_else(|| self.value(kind, "there is no such kind of scene"))
     }
 
     /// The word of a few that an entry's value is.

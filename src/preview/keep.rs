@@ -51,7 +51,7 @@ pub fn find(folder: Option<&Path>, document: &Document) -> Option<Plan> {
     let text = fs::read_to_string(path(folder?, document)).ok()?;
     let mut plan = preset::read(&text, "unsaved work").ok()?;
     if let Some(parent) = document.path.as_ref().and_then(|path| path.parent()) {
-        plan.scene.set_folder(parent);
+        plan.set_folder(parent);
     }
     (plan != document.plan).then_some(plan)
 }

@@ -1,9 +1,10 @@
 //! Image files as numbers, for pictures, height maps and cone maps.
 //!
-//! - [`open`]: a file and its format; [`png`], [`exr`], [`tiff`]: their numbers
+//! - [`open`]: a file and its format; [`png`], [`exr`], [`tiff`]: their numbers; [`hdr`]: light
 //! - [`text_chunk`]: the texts in a PNG
 
 pub mod exr;
+pub mod hdr;
 pub mod open;
 pub mod png;
 pub mod text_chunk;

@@ -14,7 +14,7 @@ use crate::base::key::{Fault, Key};
 use crate::base::outcome::Counts;
 use crate::base::shader::Module;
 use crate::base::view::Beam;
-use crate::heightfield::assets::{Assets, Ready};
+use crate::heightfield::assets::Ready;
 use crate::heightfield::height_surface::HeightmapUniform;
 use crate::heightfield::heights::{Normals, Patches};
 use crate::heightfield::maxima_cone::{self, CONE_WINDOWS, LocalCone, maxima_cone, window};
@@ -24,7 +24,7 @@ use crate::heightfield::tracer::grid::{FAR, FLAT};
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::heightfield::tracer::{self, Accuracy, LocalRay, Trace, TraceHit};
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use crate::scene::{AnySolid, SceneSettings, Viewpoint};
+use crate::scene::{AnySolid, Assets, SceneSettings, Viewpoint};
 use crate::wgsl;
 
 /// The most windows in the search of an empty ball: it halves the levels of the pyramid, of which
@@ -84,12 +84,12 @@ impl SceneSettings for HeightfieldSettings {
     }
 
     fn solid(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
-        let ready = assets.ready(self, from.growth())?;
+        let ready = assets.heightfield.ready(self, from.growth())?;
         Ok(AnySolid::Heightfield(Heightfield::of(self, ready, from)))
     }
 
     fn outline(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
-        let ready = assets.outline(self, from.growth())?;
+        let ready = assets.heightfield.outline(self, from.growth())?;
         Ok(AnySolid::Heightfield(Heightfield::of(self, ready, from)))
     }
 

@@ -4,6 +4,7 @@
 //!   steps
 //! - [`heightfield`]: a block with heights on top
 //! - [`slab`]: a slab between two planes, the smallest complete scene
+//! - [`sky`]: a sky in a file; `assets`: what is read and made
 //! - `contract`: [`Solid`], what passes ask a scene; [`Twin`], what a GPU needs of it
 //! - `settings`: [`SceneSettings`], what the settings of a scene answer
 //!
@@ -11,11 +12,13 @@
 //! resolves them to an [`AnySolid`], which answers [`Solid`] and [`Twin`]. The list `scenes!`
 //! below names all kinds; passes and executors do not know them.
 
+mod assets;
 mod contract;
 pub mod distance;
 pub mod distance_settings;
 pub mod heightfield;
 mod settings;
+pub mod sky;
 pub mod slab;
 pub mod stepping;
 
@@ -24,10 +27,10 @@ use std::path::{Path, PathBuf};
 
 use crate::base::key::Fault;
 use crate::formula::Formula;
-pub use crate::heightfield::assets::Assets;
 use crate::heightfield::assets::Preparation;
 use crate::heightfield::settings::HeightfieldSettings;
 use crate::heightfield::tracer::settings::{Make, PrepareError};
+pub use assets::Assets;
 pub use contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use distance::Distance;
 use distance_settings::DistanceSettings;
@@ -169,7 +172,8 @@ impl Scene {
     /// # Errors
     /// The key of a file that cannot be read or does not fit.
     pub fn load(&self, assets: &Assets) -> Result<(), Fault> {
-        self.heightfield().map_or(Ok(()), |h| assets.load(h))
+        self.heightfield()
+            .map_or(Ok(()), |h| assets.heightfield.load(h))
     }
 
     /// Samples along each axis of heights that a pattern makes.
@@ -179,7 +183,7 @@ impl Scene {
 
     /// Whether all assets are loaded and made. It never waits for a thread that does it.
     pub fn has_assets(&self, assets: &Assets) -> bool {
-        self.heightfield().is_none_or(|h| assets.has(h))
+        self.heightfield().is_none_or(|h| assets.heightfield.has(h))
     }
 
     /// Makes the cone maps by `make`.
@@ -188,24 +192,26 @@ impl Scene {
     /// A file does not fit, or `make` fails.
     pub fn prepare(&self, assets: &Assets, make: Make<'_>) -> Result<(), PrepareError> {
         self.heightfield()
-            .map_or(Ok(()), |h| assets.prepare(h, make))
+            .map_or(Ok(()), |h| assets.heightfield.prepare(h, make))
     }
 
     /// The cone maps that [`Scene::prepare`] makes.
     pub fn preparations(&self, assets: &Assets) -> Vec<Preparation> {
-        let all = self.heightfield().map(|h| assets.preparations(h));
+        let all = self
+            .heightfield()
+            .map(|h| assets.heightfield.preparations(h));
         all.unwrap_or_default()
     }
 
     /// Notes about the named files: what was ignored in them, and what could not be checked.
     pub fn notes(&self, assets: &Assets) -> Vec<String> {
-        let all = self.heightfield().map(|h| assets.notes(h));
+        let all = self.heightfield().map(|h| assets.heightfield.notes(h));
         all.unwrap_or_default()
     }
 
     /// The numbers in the named files. They decide a picture as the settings do.
     pub fn contents(&self, assets: &Assets) -> Vec<u8> {
-        let all = self.heightfield().map(|h| assets.contents(h));
+        let all = self.heightfield().map(|h| assets.heightfield.contents(h));
         all.unwrap_or_default()
     }
 }

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::AnySolid;
+use super::Assets;
 use super::stepping::Stepping;
 use crate::base::key::{Fault, Key};
-use crate::heightfield::assets::Assets;
 use crate::heightfield::tracer::settings::PrepareError;
 
 /// The largest step limit of a shadow ray in scenes without a formula. Mesa's software Vulkan

@@ -26,6 +26,7 @@ mod pictures;
 mod preset_errors;
 mod presets;
 mod render;
+mod sky;
 mod stereo;
 mod streams;
 mod tools;

@@ -28,8 +28,8 @@ fn no_key_takes_what_is_no_value_for_anything_and_says_where() {
             let e = read(&file, "bad.toml").expect_err(&file).to_string();
             assert!(e.starts_with(&format!("bad.toml:{line}: ")), "{e}");
             // The parser itself rejects numbers that are too large, and files of heights,
-            // cones and colours are looked for.
-            let named = ["field", "map", "texture"].contains(&name) && text == "\"?\"";
+            // cones, colours and skies are looked for.
+            let named = ["field", "map", "texture", "sky_file"].contains(&name) && text == "\"?\"";
             if text != "1e400" && !named {
                 let what = format!("bad.toml:{line}: {section}.{name} = {text}: must be ");
                 assert!(e.starts_with(&what), "{e}");

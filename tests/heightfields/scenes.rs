@@ -36,7 +36,7 @@ pub fn ready(plan: &Plan) -> Ready {
     let Scene::Heightfield(settings) = &plan.scene else {
         panic!("no heightfield");
     };
-    Assets::default().ready(settings, 1e-3).unwrap()
+    Assets::default().heightfield.ready(settings, 1e-3).unwrap()
 }
 
 /// The scene of a plan in f64.

@@ -232,6 +232,7 @@ fn the_mandelbox_is_explained() {
         wgsl/pass/turn.wgsl
         wgsl/pass/queue.wgsl
         wgsl/pass/look.wgsl
+        wgsl/pass/sky.wgsl
         wgsl/pass/shadow.wgsl
         wgsl/pass/occlusion.wgsl
         wgsl/pass/quick.wgsl

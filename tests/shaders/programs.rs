@@ -115,6 +115,10 @@ fn plans() -> Vec<Plan> {
                     followed.look.mode = LightMode::Path;
                     // Where there is fog.
                     followed.look.shafts = 1.0;
+                    for mut under in [one.clone(), followed.clone()] {
+                        under.look.sky.sky_file = "sky.hdr".into();
+                        all.push(under);
+                    }
                     all.push(followed);
                 }
                 all.push(one);

@@ -26,6 +26,7 @@ mod live;
 mod paths;
 mod samples;
 mod shafts;
+mod sky;
 mod tone;
 mod until;
 mod variance;

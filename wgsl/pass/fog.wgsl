@@ -6,5 +6,5 @@ fn fog(color: vec3<f32>, ray: Beam, t: f32) -> vec3<f32> {
         return color;
     }
     let seen = exp(-fog_depth(ray, t));
-    return mix(sky(ray.axis), color, seen);
+    return mix(sky_haze(ray.axis), color, seen);
 }

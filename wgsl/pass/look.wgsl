@@ -109,12 +109,27 @@ struct ShaftsUniform {
     pad: u32,
 }
 
+/// The sky of a file (`sky_file.wgsl`).
+struct SkyUniform {
+    /// To the right of the file's middle, and the factor of its light.
+    right: vec3<f32>,
+    strength: f32,
+    /// Toward its middle.
+    forward: vec3<f32>,
+    width: u32,
+    up: vec3<f32>,
+    height: u32,
+    /// Radiance spread over a half space, in spherical harmonics.
+    bands: array<vec4<f32>, 9>,
+}
+
 struct LookParameters {
     look: LookUniform,
     material: MaterialUniform,
     lamps: array<LampUniform, 3>,
     glow: GlowUniform,
     shafts: ShaftsUniform,
+    sky: SkyUniform,
 }
 
 @group(1) @binding(1) var<storage, read> look_parameters: LookParameters;
@@ -122,26 +137,6 @@ var<private> look: LookUniform;
 
 fn look_load() {
     look = look_parameters.look;
-}
-
-fn sky(axis: vec3<f32>) -> vec3<f32> {
-    let height = dot(axis, look.world_up);
-    let blend = smoothstep(-0.6, 0.8, height);
-    return mix(look.sky_low, look.sky_high, blend) + sky_halo(axis);
-}
-
-/// The wide, faint halo about the light in the radiance of the sky.
-fn sky_halo(axis: vec3<f32>) -> vec3<f32> {
-    let near = max(0.0, dot(axis, look.light));
-    return look.light_color * (0.12 * pow(near, 6.0));
-}
-
-/// Radiance that comes from the sky or the ground to a surface.
-fn sky_light(axis: vec3<f32>) -> vec3<f32> {
-    let blend = smoothstep(-0.6, 0.8, dot(axis, look.world_up));
-    let glow = 0.12 * pow(max(0.0, dot(axis, look.light)), 6.0);
-    let c = mix(look.ground * look.sky_low, look.sky_high, blend) + look.light_color * glow;
-    return c * look.fill;
 }
 
 /// Oklab to linear sRGB (Ottosson 2020). What a screen cannot show is cut to no light.

@@ -37,6 +37,10 @@ fn path_purpose(bounce: u32, nth: u32) -> u32 {
     return select(4u * bounce + nth, 66u + 2u * bounce + nth, nth > 1u);
 }
 
+/// The first purpose of the random numbers of a sky that is chosen. Each bounce has two. Those of
+/// shafts are before it.
+const PATH_SKY = 130u;
+
 /// A direction to a point of a light, uniform over a disc across it.
 fn path_toward(lamp: Lamp, pair: vec2<f32>) -> vec3<f32> {
     let across = lamp.softness * sqrt(pair.y) * material_turn(pair.x);
@@ -88,6 +92,22 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
             }
             decided = select(decided, 0.0, sight.state == STATE_UNCONVERGED);
         }
+        if SKY_IS_CHOSEN {
+            let place = random_pair(seed, turn.stage.before, PATH_SKY + 2u * bounce);
+            let within = random_pair(seed, turn.stage.before, PATH_SKY + 2u * bounce + 1u);
+            let chosen = sky_toward(place, within);
+            let l = chosen.xyz * frame;
+            if l.z > 0.0 {
+                let sight = path_sight(Beam(start, chosen.xyz, 0.0, 0.0, grain, 0.0), reach, &left);
+                if sight.state == STATE_SKY {
+                    // The balance heuristic (Veach 1997): both ways to choose a direction share it.
+                    let reflected = material_reflects(material, v, l);
+                    let joint = reflected.rgb / (chosen.w + reflected.w);
+                    light += through * joint * sky_light(chosen.xyz);
+                }
+                decided = select(decided, 0.0, sight.state == STATE_UNCONVERGED);
+            }
+        }
         let choice = random_pair(seed, turn.stage.before, 4u * bounce + 2u);
         let pair = random_pair(seed, turn.stage.before, 4u * bounce + 3u);
         let l = material_scatter(material, v, pair, choice.x);
@@ -106,7 +126,11 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
         let next = Beam(start, frame * l, 0.0, 0.0, grain, 0.0);
         let sight = path_sight(next, reach, &left);
         if sight.state == STATE_SKY {
-            light += through * sky_light(next.axis);
+            var share = 1.0;
+            if SKY_IS_CHOSEN {
+                share = reflected.w / max(reflected.w + sky_density(next.axis), 1e-20);
+            }
+            light += through * (share * sky_light(next.axis));
             break;
         }
         if sight.state == STATE_UNCONVERGED {

@@ -17,10 +17,8 @@ fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32, pixel: vec2<u32>
     }
     let lit = facing * light.open;
     let open = occlusion(q, n, grain);
-    // From 0 for a surface that faces down to 1 for one that faces up. The ground absorbs
-    // a part of the light of the lower sky.
     let up = 0.5 + 0.5 * dot(n, look.world_up);
-    let ambient = mix(look.ground * look.sky_low, look.sky_high, up) * look.fill;
+    let ambient = sky_ambient(n);
     // Light from lit neighbours: warm, from below.
     let bounce = look.light_color * (0.12 * look.fill * (1.0 - up));
     var c = albedo * (look.light_color * (look.key * lit) + (ambient + bounce) * open);

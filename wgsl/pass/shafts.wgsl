@@ -3,7 +3,7 @@
 
 /// How far fog scatters forward: the mean cosine of Henyey and Greenstein (1941).
 const SHAFTS_FORWARD = 0.6;
-/// The purposes of the random numbers: those of paths are below 128.
+/// The purposes of the random numbers: those of paths are below 128, or above 129.
 const SHAFTS_PURPOSE = 128u;
 /// Halvings of the way: what is left is less than its rounding.
 const SHAFTS_HALVINGS = 24u;

@@ -70,7 +70,7 @@ impl Common {
         let subjects = self.subjects(&assets)?;
         let presets = self.names.iter().filter_map(|name| preset::file(name));
         let presets = presets.map(|file| ("a preset", file));
-        let read = subjects.iter().flat_map(|one| one.plan.scene.files());
+        let read = subjects.iter().flat_map(|one| one.plan.files());
         let read: Vec<_> = presets.chain(read).collect();
         let files = self.rows.prepare(plot, &read)?;
         Ok(Measurement {

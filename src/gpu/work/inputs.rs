@@ -104,7 +104,7 @@ impl FrameRequest {
     pub fn at_once(&self) -> Result<Option<FrameInputs>, RenderError> {
         // Another thread may be uploading arrays, which takes long.
         let busy = self.shared.arrays.try_lock().is_err();
-        if busy || !self.plan.scene.has_assets(&self.assets) {
+        if busy || !self.plan.has_assets(&self.assets) {
             return Ok(None);
         }
         let draft = self.draft()?;
@@ -210,7 +210,8 @@ impl FrameRequest {
         let Self { plan, extras, .. } = self;
         let (scene, needs) = (draft.scene, draft.needs);
         let marched = marched(plan, &scene);
-        let light = Light::of(plan, &scene);
+        let sky = plan.sky(&self.assets).map_err(PrepareError::from)?;
+        let light = Light::of(plan, &scene).under(sky);
         let mut look = bytes_of(&light.parameters()).to_vec();
         let mut parameters = marched.clone();
         parameters.push(("look_parameters", look.clone()));
@@ -241,7 +242,9 @@ impl FrameRequest {
         let arrays = self.shared.arrays.lock();
         let mut arrays = arrays.unwrap_or_else(PoisonError::into_inner);
         let uploads = &mut traffic.uploads;
-        let arrays = arrays.keep(device, &kernels, scene.twin().arrays(), uploads)?;
+        let mut read = scene.twin().arrays();
+        read.extend(light.sky.iter().flat_map(|file| file.sky.arrays()));
+        let arrays = arrays.keep(device, &kernels, read, uploads)?;
         let color = StageKind::Pass(Pass::Color);
         let colors = draft.kinds.iter().position(|kind| *kind == color);
         let colors = colors.unwrap_or(draft.kinds.len());

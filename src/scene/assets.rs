@@ -1,0 +1,31 @@
+//! Assets: what a plan needs beside its numbers.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::base::last::{Last, is_kept, kept_or_made};
+use crate::heightfield::assets::Assets as HeightfieldAssets;
+use crate::scene::sky::Sky;
+
+/// Loaded heights, made cone maps, and read textures and skies. Clones share what is kept.
+#[derive(Clone, Debug, Default)]
+pub struct Assets {
+    /// Those of heightfields.
+    pub heightfield: HeightfieldAssets,
+    skies: Last<PathBuf, Sky>,
+}
+
+impl Assets {
+    /// The sky in a file.
+    ///
+    /// # Errors
+    /// As [`Sky::read`].
+    pub fn sky(&self, path: PathBuf) -> Result<Arc<Sky>, String> {
+        kept_or_made(&self.skies, path, |path| Sky::read(path))
+    }
+
+    /// Whether the sky in a file is read. It never waits for a thread that reads it.
+    pub fn has_sky(&self, path: &PathBuf) -> bool {
+        is_kept(&self.skies, path)
+    }
+}

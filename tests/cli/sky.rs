@@ -1,0 +1,75 @@
+//! Files of skies.
+
+use std::fs;
+
+use crate::folder::Folder;
+
+/// A Radiance HDR of one colour.
+fn even([w, h]: [u32; 2]) -> Vec<u8> {
+    let head = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {h} +X {w}\n");
+    let texels = [128, 64, 32, 129].repeat((w * h) as usize);
+    [head.into_bytes(), texels].concat()
+}
+
+const RENDER: &str = "render mandelbox --size 32x18 --set look.sky_file";
+
+#[test]
+fn a_sky_that_cannot_be_read_is_named() {
+    let folder = Folder::new();
+    let whole = even([16, 8]);
+    folder.write("cut.hdr", &whole[..whole.len() - 9]);
+    folder.write("wide.hdr", even([16, 4]));
+    folder.write("empty.hdr", "");
+    folder.write("text.hdr", "no light at all");
+    folder.write(
+        "large.hdr",
+        "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 200000\n",
+    );
+    for (name, why) in [
+        ("none.hdr", "cannot be read"),
+        ("cut.hdr", "fetch or save it again"),
+        (
+            "wide.hdr",
+            "is 16 x 4, and a whole sky is twice as wide as high",
+        ),
+        ("empty.hdr", "is empty"),
+        ("text.hdr", "is no Radiance HDR and no OpenEXR"),
+        ("large.hdr", "8192"),
+    ] {
+        folder.fails(
+            &format!("{RENDER}={name}"),
+            2,
+            &format!("sky_file|{name}|{why}"),
+        );
+        assert!(!folder.files().iter().any(|file| file.ends_with(".png")));
+    }
+}
+
+#[test]
+fn a_picture_is_the_sky_of_another() {
+    let folder = Folder::new();
+    folder
+        .done("render valley-mist --size 64x32 --set camera.projection=equirectangular -o sky.exr");
+    // A preset names the file beside it.
+    fs::create_dir(folder.0.join("sub")).unwrap();
+    fs::rename(folder.0.join("sky.exr"), folder.0.join("sub/sky.exr")).unwrap();
+    let preset =
+        "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n[look]\nsky_file = \"sky.exr\"\n";
+    folder.write("sub/own.toml", preset);
+    for device in ["auto", "cpu"] {
+        folder.done(&format!(
+            "render sub/own.toml --device {device} --size 32x18 -o {device}.png"
+        ));
+        folder.done(&format!(
+            "render mandelbox --device {device} --size 32x18 -o plain.png"
+        ));
+        assert!(folder.bytes(&format!("{device}.png")) != folder.bytes("plain.png"));
+        fs::remove_file(folder.0.join("plain.png")).unwrap();
+    }
+    // Nothing is written over the sky.
+    folder.fails(
+        "render sub/own.toml --size 32x18 -o sub/sky.exr",
+        2,
+        "sky.exr",
+    );
+}
