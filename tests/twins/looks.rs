@@ -22,6 +22,7 @@ use super::{balls, three};
 fn with_look(mut probe: Probe, plan: &Plan) -> Probe {
     let look = bytes_of(&light(plan).parameters()).to_vec();
     probe.modules.push(conemarch::wgsl!("pass/look.wgsl"));
+    probe.modules.push(conemarch::wgsl!("pass/sky.wgsl"));
     probe.parameters.push(("look_parameters", look));
     probe
 }
