@@ -4,9 +4,9 @@
 //! Twin: `wgsl/pass/look.wgsl`. Tone and sRGB have no twin: they are applied only where a
 //! picture is written.
 
-use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
 
+use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3, Vec4};
 
 use crate::base::oklab::{oklab, unoklab};

@@ -29,7 +29,7 @@ fn path_purpose(bounce: u32, nth: u32) -> u32 {
     }
 }
 
-/// The first purpose of the random numbers of a sky that is chosen. Each bounce has two. Those of
+/// The first purpose of the random numbers of a sky that is sampled. Each bounce has two. Those of
 /// shafts are before it.
 const PATH_SKY: u32 = 130;
 
@@ -121,14 +121,14 @@ pub fn shade<S: Solid>(
         if let Some(sky) = &light.sky {
             let [place, within] =
                 [0, 1].map(|i| random_pair(seed, before, PATH_SKY + 2 * bounce + i));
-            let (toward, chosen) = sky.sky_toward(place, within);
+            let (toward, other) = sky.sky_toward(place, within);
             let l = frame.transpose() * toward;
             if l.z > 0.0 {
                 let (step, _) = path_sight((solid, light), &to(toward), reach, &mut left);
                 if step == Step::Out {
-                    // The balance heuristic (Veach 1997): both ways to choose a direction share it.
+                    // The balance heuristic (Veach 1997): both rays may find the same light.
                     let (reflected, own) = substance.material_reflects(&material, v, l);
-                    sum += through * reflected / (chosen + own) * light.sky_light(toward);
+                    sum += through * reflected / (other + own) * light.sky_light(toward);
                 }
                 decided &= matches!(step, Step::Hit | Step::Out);
             }
@@ -172,6 +172,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+    use crate::pass::shafts::SHAFTS_PURPOSE;
     use crate::plan::lamps::MOST_LAMPS;
 
     #[test]
@@ -183,7 +184,8 @@ mod tests {
             .flat_map(|b| lights.clone().map(move |n| path_purpose(b, n)));
         let all: Vec<u32> = bounces
             .clone()
-            .flat_map(|b| [4 * b + 2, 4 * b + 3])
+            .flat_map(|b| [4 * b + 2, 4 * b + 3, PATH_SKY + 2 * b, PATH_SKY + 2 * b + 1])
+            .chain([SHAFTS_PURPOSE, SHAFTS_PURPOSE + 1])
             .chain(lit)
             .collect();
         let different: BTreeSet<u32> = all.iter().copied().collect();

@@ -70,8 +70,10 @@ pub fn prepare(
             .heightfield
             .make_heights(settings, &mut |done| tell(&pass, done))?;
     }
-    if plan.look.sky.path().is_some() && !plan.has_assets(assets) {
-        let _ = tell("sky", 0.0);
+    if let Some(path) = plan.look.sky.path().filter(|path| !assets.has_sky(path)) {
+        if !tell(&format!("sky of {}", path.display()), 0.0) {
+            return Err(GenerateError::Cancelled.into());
+        }
         plan.sky(assets)?;
     }
     let mut taken = Vec::new();

@@ -23,7 +23,7 @@ use crate::scene::{Solid, Step};
 /// How far fog scatters forward: the mean cosine of Henyey and Greenstein (1941).
 const SHAFTS_FORWARD: f64 = 0.6;
 /// The purposes of the random numbers: those of paths are below 128, or above 129.
-const SHAFTS_PURPOSE: u32 = 128;
+pub(super) const SHAFTS_PURPOSE: u32 = 128;
 /// Halvings of the way: what is left is less than its rounding in f32.
 const SHAFTS_HALVINGS: u32 = 24;
 /// A ray from the fog to the sun has this part of the steps of a path.

@@ -77,13 +77,13 @@ impl SkyLight {
         }
     }
 
-    /// A direction to the sky, and the density of such choices per steradian.
-    pub fn sky_toward(&self, choice: DVec2, pair: DVec2) -> (DVec3, f64) {
-        let (own, density) = self.sky.toward(choice, pair);
+    /// A sample of the sky's directions, and its probability density per steradian.
+    pub fn sky_toward(&self, cell: DVec2, pair: DVec2) -> (DVec3, f64) {
+        let (own, density) = self.sky.toward(cell, pair);
         (self.frame * own, density)
     }
 
-    /// The density of the choices of [`SkyLight::sky_toward`] in a direction.
+    /// The probability density of [`SkyLight::sky_toward`] in a direction.
     pub fn sky_density(&self, axis: DVec3) -> f64 {
         self.sky.density(self.own(axis))
     }

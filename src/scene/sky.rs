@@ -3,8 +3,8 @@
 //! Columns are angles about the up axis, and rows angles from it. The middle of the picture lies
 //! forward on the horizon, and its right half to the right.
 //!
-//! Next rays go where the sky is bright: cells of equal solid angle are chosen by the light that
-//! comes from them (Walker's alias method, by Vose 1991).
+//! Rays are sent by importance: cells of equal solid angle are sampled by the light that comes from
+//! them (Walker's alias method, with the table of Vose 1991).
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -17,8 +17,8 @@ use crate::raster::hdr;
 
 /// Cells about the up axis and along it. A cell is as wide as the sun.
 const SKY_CELLS: [u32; 2] = [512, 256];
-/// The share of rays that go anywhere, so that no direction is forgotten.
-const SKY_ANYWHERE: f64 = 0.05;
+/// The share of samples that are uniform, so that no direction is forgotten.
+const SKY_UNIFORM: f64 = 0.05;
 /// Points along each axis of a cell that are asked for its light.
 const SKY_POINTS: u32 = 3;
 /// Darker light is none.
@@ -26,14 +26,14 @@ const SKY_DARK: f32 = 1e-18;
 /// The smallest exponent of a texel, as a number that is stored without a sign.
 const SKY_EXPONENT: i32 = 64;
 
-/// What a chosen cell of the sky tells.
+/// An entry of the alias table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cell {
-    /// The share of choices that stay with this cell.
+    /// The probability that a sample stays in this cell.
     stays: f32,
     /// The cell of the others.
-    other: u32,
-    /// Choices per steradian.
+    alias: u32,
+    /// Probability density per steradian.
     density: f32,
 }
 
@@ -44,7 +44,7 @@ pub struct Sky {
     /// Red and green, then blue and an exponent, each of 16 bits.
     texels: Vec<[u32; 2]>,
     cells: Vec<Cell>,
-    /// Radiance spread over a half space, in spherical harmonics up to the second degree
+    /// Irradiance over pi, in spherical harmonics up to the second degree
     /// (Ramamoorthi and Hanrahan, An efficient representation for irradiance environment maps, 2001).
     bands: [DVec3; 9],
 }
@@ -57,7 +57,8 @@ fn harmonics(n: DVec3) -> [f64; 9] {
     [1.0, x, y, z, a, b, c, d, e]
 }
 
-/// The mean of 1 over the mean square of each harmonic, times its share in light from a half space.
+/// One over the mean square of each harmonic, times the factor of its degree in irradiance over pi: 1,
+/// 2/3 and 1/4.
 const HARMONIC_SHARES: [f64; 9] = [
     1.0,
     2.0,
@@ -128,7 +129,7 @@ impl Sky {
             cells: Vec::new(),
             bands: [DVec3::ZERO; 9],
         };
-        sky.cells = choices(&sky.brightness());
+        sky.cells = alias_table(&sky.brightness());
         sky.bands = sky.spread();
         Ok(sky)
     }
@@ -160,13 +161,13 @@ impl Sky {
         sum.max(DVec3::ZERO)
     }
 
-    /// A direction to the sky, and the density of such choices per steradian.
-    pub fn toward(&self, choice: DVec2, pair: DVec2) -> (DVec3, f64) {
+    /// A sample of directions, and its probability density per steradian. Both pairs are from 0 to 1.
+    pub fn toward(&self, cell: DVec2, pair: DVec2) -> (DVec3, f64) {
         let [w, h] = SKY_CELLS;
         let last = self.cells.len() - 1;
-        let mut i = ((choice.x * self.cells.len() as f64) as usize).min(last);
-        if choice.y >= f64::from(self.cells[i].stays) {
-            i = self.cells[i].other as usize;
+        let mut i = ((cell.x * self.cells.len() as f64) as usize).min(last);
+        if cell.y >= f64::from(self.cells[i].stays) {
+            i = self.cells[i].alias as usize;
         }
         let (x, y) = (i as u32 % w, i as u32 / w);
         let own = in_cells(
@@ -176,13 +177,13 @@ impl Sky {
         (own, f64::from(self.cells[i].density))
     }
 
-    /// The density of the choices of [`Sky::toward`] in a direction.
+    /// The probability density of [`Sky::toward`] in a direction.
     pub fn density(&self, own: DVec3) -> f64 {
         let [x, y] = cell_of(own);
         f64::from(self.cells[(y * SKY_CELLS[0] + x) as usize].density)
     }
 
-    /// Radiance spread over a half space, in spherical harmonics.
+    /// Irradiance over pi, in spherical harmonics up to the second degree.
     pub fn bands(&self) -> [DVec3; 9] {
         self.bands
     }
@@ -201,7 +202,7 @@ impl Sky {
     }
 
     fn cell_bytes(&self) -> Vec<u8> {
-        let words = |c: &Cell| [c.stays.to_bits(), c.other, c.density.to_bits()];
+        let words = |c: &Cell| [c.stays.to_bits(), c.alias, c.density.to_bits()];
         let words: Vec<[u32; 3]> = self.cells.iter().map(words).collect();
         bytemuck::cast_slice(&words).to_vec()
     }
@@ -288,19 +289,19 @@ fn cell_of(own: DVec3) -> [u32; 2] {
     [0, 1].map(|a| ((at[a] * f64::from(SKY_CELLS[a])) as u32).min(SKY_CELLS[a] - 1))
 }
 
-/// The table by which cells are chosen as often as they are bright.
-fn choices(light: &[f64]) -> Vec<Cell> {
+/// The alias table that samples cells as often as they are bright.
+fn alias_table(light: &[f64]) -> Vec<Cell> {
     let (count, sum) = (light.len() as f64, light.iter().sum::<f64>());
     let share = |x: &f64| match sum > 0.0 {
-        true => (1.0 - SKY_ANYWHERE) * x / sum * count + SKY_ANYWHERE,
+        true => (1.0 - SKY_UNIFORM) * x / sum * count + SKY_UNIFORM,
         false => 1.0,
     };
     let shares: Vec<f64> = light.iter().map(share).collect();
     let mut cells: Vec<Cell> = (0..)
         .zip(&shares)
-        .map(|(other, share)| Cell {
+        .map(|(alias, share)| Cell {
             stays: 1.0,
-            other,
+            alias,
             density: (share / (4.0 * PI)) as f32,
         })
         .collect();
@@ -308,7 +309,7 @@ fn choices(light: &[f64]) -> Vec<Cell> {
     let (mut poor, mut rich): (Vec<usize>, Vec<usize>) =
         (0..rest.len()).partition(|i| rest[*i] < 1.0);
     while let (Some(low), Some(&high)) = (poor.pop(), rich.last()) {
-        (cells[low].stays, cells[low].other) = (rest[low] as f32, high as u32);
+        (cells[low].stays, cells[low].alias) = (rest[low] as f32, high as u32);
         rest[high] -= 1.0 - rest[low];
         if rest[high] < 1.0 {
             rich.pop();
@@ -339,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn choices_find_the_light_of_the_whole_sky() {
+    fn samples_find_the_light_of_the_whole_sky() {
         let sky = sunny();
         let exact: DVec3 = sky
             .directions()

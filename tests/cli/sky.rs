@@ -2,13 +2,28 @@
 
 use std::fs;
 
+use exr::prelude::{SpecificChannels, WritableImage};
+
 use crate::folder::Folder;
+use crate::images::pixels;
 
 /// A Radiance HDR of one colour.
 fn even([w, h]: [u32; 2]) -> Vec<u8> {
     let head = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {h} +X {w}\n");
     let texels = [128, 64, 32, 129].repeat((w * h) as usize);
     [head.into_bytes(), texels].concat()
+}
+
+/// An OpenEXR with one odd number.
+fn with_red(red: f32) -> Vec<u8> {
+    let light = |at: exr::math::Vec2<usize>| match (at.x(), at.y()) {
+        (3, 1) => (red, 1.0, 1.0),
+        _ => (1.0_f32, 1.0_f32, 1.0_f32),
+    };
+    let image = exr::image::Image::from_channels((8, 4), SpecificChannels::rgb(light));
+    let mut file = std::io::Cursor::new(Vec::new());
+    image.write().to_buffered(&mut file).expect("a file");
+    file.into_inner()
 }
 
 const RENDER: &str = "render mandelbox --size 32x18 --set look.sky_file";
@@ -21,6 +36,9 @@ fn a_sky_that_cannot_be_read_is_named() {
     folder.write("wide.hdr", even([16, 4]));
     folder.write("empty.hdr", "");
     folder.write("text.hdr", "no light at all");
+    folder.write("dark.exr", with_red(-0.5));
+    folder.write("endless.exr", with_red(f32::INFINITY));
+    folder.write("nothing.exr", with_red(f32::NAN));
     folder.write(
         "large.hdr",
         "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 200000\n",
@@ -34,6 +52,9 @@ fn a_sky_that_cannot_be_read_is_named() {
         ),
         ("empty.hdr", "is empty"),
         ("text.hdr", "is no Radiance HDR and no OpenEXR"),
+        ("dark.exr", "-0.5|column 3, row 1"),
+        ("endless.exr", "inf|column 3, row 1"),
+        ("nothing.exr", "NaN|column 3, row 1"),
         ("large.hdr", "8192"),
     ] {
         folder.fails(
@@ -57,14 +78,13 @@ fn a_picture_is_the_sky_of_another() {
         "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n[look]\nsky_file = \"sky.exr\"\n";
     folder.write("sub/own.toml", preset);
     for device in ["auto", "cpu"] {
-        folder.done(&format!(
-            "render sub/own.toml --device {device} --size 32x18 -o {device}.png"
-        ));
-        folder.done(&format!(
-            "render mandelbox --device {device} --size 32x18 -o plain.png"
-        ));
-        assert!(folder.bytes(&format!("{device}.png")) != folder.bytes("plain.png"));
-        fs::remove_file(folder.0.join("plain.png")).unwrap();
+        let shown = ["sky.exr", "none"].map(|file| {
+            folder.done(&format!(
+                "render sub/own.toml --device {device} --size 32x18 -o a.png --set look.sky_file={file}"
+            ));
+            pixels(folder.bytes("a.png")).1
+        });
+        assert_ne!(shown[0], shown[1]);
     }
     // Nothing is written over the sky.
     folder.fails(

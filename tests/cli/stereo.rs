@@ -1,7 +1,5 @@
 //! Stereo pairs: two views in one picture.
 
-use std::fs;
-
 use conemarch::base::projection::Projection;
 use conemarch::plan::stereo::Stereo;
 use conemarch::preset::{BUILTIN, load};
@@ -116,7 +114,6 @@ fn files_films_and_bands_have_both_views() {
     let explained = folder.done(&format!("{line} --explain -o x.png"));
     assert!(crate::folder::text(&explained).contains("two views side by side"));
     assert!(!said(&explained).contains("error"));
-    fs::remove_file(folder.0.join("f.toml")).expect("written above");
 }
 
 #[test]

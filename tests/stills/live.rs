@@ -70,12 +70,12 @@ fn a_shader_text_changes_and_a_wrong_one_keeps_the_old() {
         (path == "wgsl/pass/color.wgsl").then(|| now.lock().unwrap().clone())
     }));
     assert!(whole(&mut renderer, &plan).unwrap() == old);
-    let line = "    var c = background(sky(ray.axis));";
+    let line = "        let behind = sky(ray.axis);";
     let at = COLOR.lines().position(|l| l == line).unwrap() + 1;
     let edit = |new: &str| *text.lock().unwrap() = COLOR.replace(line, new);
-    edit("    var c = vec3<f32>(7.0);");
+    edit("        let behind = vec3<f32>(7.0);");
     assert!(whole(&mut renderer, &plan).unwrap() != old);
-    edit("    var c = background(skye(ray.axis));");
+    edit("        let behind = skye(ray.axis);");
     let error = whole(&mut renderer, &plan).unwrap_err().to_string();
     assert!(
         error.contains(&format!("wgsl/pass/color.wgsl:{at}: ")),

@@ -129,7 +129,7 @@ fn a_wall_gets_the_light_of_its_half_space() {
 
 /// Mirrors and walls under an even sky are as bright as it is: no direction is counted twice.
 #[test]
-fn both_ways_to_choose_a_direction_make_one_whole() {
+fn the_weights_of_both_rays_sum_to_one() {
     let folder = Folder::new();
     // One channel is even, and another one decides where rays are sent.
     let light = |x: u32, y: u32| [if (x, y) == (10, 6) { 3000.0 } else { 0.5 }, 0.5, 0.5];

@@ -49,7 +49,7 @@ fn color(
     }
     let ray = view_ray_from(turn.stage.origin + cell, turn.stage.place, turn.stage.lens);
     let s = cell_state(turn.stage.state + index);
-    var c = background(sky(ray.axis));
+    var c = vec3<f32>(0.0);
     var decided = 1.0;
     var n = vec3<f32>(0.0);
     // A pixel under a sky cell was never written: it is sky.
@@ -76,7 +76,8 @@ fn color(
             c = vec3<f32>(1.0, 0.0, 1.0);
         }
     } else if ended == 0.0 {
-        let lit = shafts(c, ray, bounds_far(), turn.stage.origin + cell);
+        let behind = sky(ray.axis);
+        let lit = shafts(behind, ray, bounds_far(), turn.stage.origin + cell);
         c = background(lit.rgb + glow(ray, bounds_far()));
     }
     var note = background_note(decided, is_hit);

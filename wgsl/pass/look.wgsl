@@ -119,7 +119,7 @@ struct SkyUniform {
     width: u32,
     up: vec3<f32>,
     height: u32,
-    /// Radiance spread over a half space, in spherical harmonics.
+    /// Irradiance over pi, in spherical harmonics.
     bands: array<vec4<f32>, 9>,
 }
 

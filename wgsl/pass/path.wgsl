@@ -37,7 +37,7 @@ fn path_purpose(bounce: u32, nth: u32) -> u32 {
     return select(4u * bounce + nth, 66u + 2u * bounce + nth, nth > 1u);
 }
 
-/// The first purpose of the random numbers of a sky that is chosen. Each bounce has two. Those of
+/// The first purpose of the random numbers of a sky that is sampled. Each bounce has two. Those of
 /// shafts are before it.
 const PATH_SKY = 130u;
 
@@ -92,18 +92,18 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
             }
             decided = select(decided, 0.0, sight.state == STATE_UNCONVERGED);
         }
-        if SKY_IS_CHOSEN {
+        if SKY_IS_SAMPLED {
             let place = random_pair(seed, turn.stage.before, PATH_SKY + 2u * bounce);
             let within = random_pair(seed, turn.stage.before, PATH_SKY + 2u * bounce + 1u);
-            let chosen = sky_toward(place, within);
-            let l = chosen.xyz * frame;
+            let sampled = sky_toward(place, within);
+            let l = sampled.xyz * frame;
             if l.z > 0.0 {
-                let sight = path_sight(Beam(start, chosen.xyz, 0.0, 0.0, grain, 0.0), reach, &left);
+                let sight = path_sight(Beam(start, sampled.xyz, 0.0, 0.0, grain, 0.0), reach, &left);
                 if sight.state == STATE_SKY {
-                    // The balance heuristic (Veach 1997): both ways to choose a direction share it.
+                    // The balance heuristic (Veach 1997): both rays may find the same light.
                     let reflected = material_reflects(material, v, l);
-                    let joint = reflected.rgb / (chosen.w + reflected.w);
-                    light += through * joint * sky_light(chosen.xyz);
+                    let joint = reflected.rgb / (sampled.w + reflected.w);
+                    light += through * joint * sky_light(sampled.xyz);
                 }
                 decided = select(decided, 0.0, sight.state == STATE_UNCONVERGED);
             }
@@ -127,7 +127,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
         let sight = path_sight(next, reach, &left);
         if sight.state == STATE_SKY {
             var share = 1.0;
-            if SKY_IS_CHOSEN {
+            if SKY_IS_SAMPLED {
                 share = reflected.w / max(reflected.w + sky_density(next.axis), 1e-20);
             }
             light += through * (share * sky_light(next.axis));

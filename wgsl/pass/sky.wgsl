@@ -1,7 +1,7 @@
 // The light of the sky: two colours, and a halo about the sun. `sky_file.wgsl` takes its place.
 
-/// Whether rays are sent where the sky is bright.
-const SKY_IS_CHOSEN = false;
+/// Whether directions are sampled by the light of the sky.
+const SKY_IS_SAMPLED = false;
 
 fn sky(axis: vec3<f32>) -> vec3<f32> {
     let height = dot(axis, look.world_up);
@@ -18,9 +18,8 @@ fn sky_halo(axis: vec3<f32>) -> vec3<f32> {
 /// Radiance that comes from the sky or the ground to a surface.
 fn sky_light(axis: vec3<f32>) -> vec3<f32> {
     let blend = smoothstep(-0.6, 0.8, dot(axis, look.world_up));
-    let glow = 0.12 * pow(max(0.0, dot(axis, look.light)), 6.0);
-    let c = mix(look.ground * look.sky_low, look.sky_high, blend) + look.light_color * glow;
-    return c * look.fill;
+    let below = look.ground * look.sky_low;
+    return (mix(below, look.sky_high, blend) + sky_halo(axis)) * look.fill;
 }
 
 /// Radiance of fog in a direction.
@@ -36,8 +35,8 @@ fn sky_ambient(normal: vec3<f32>) -> vec3<f32> {
     return mix(look.ground * look.sky_low, look.sky_high, up) * look.fill;
 }
 
-/// Never used: this sky is even enough for the choices of the material.
-fn sky_toward(choice: vec2<f32>, pair: vec2<f32>) -> vec4<f32> {
+/// Never used: this sky is so even that the material alone samples it well.
+fn sky_toward(cell: vec2<f32>, pair: vec2<f32>) -> vec4<f32> {
     return vec4<f32>(look.world_up, 0.0);
 }
 

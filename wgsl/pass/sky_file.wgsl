@@ -1,6 +1,6 @@
 // The light of a sky in a file, in equirectangular form: `src/scene/sky.rs`.
 
-const SKY_IS_CHOSEN = true;
+const SKY_IS_SAMPLED = true;
 /// Numbers in a row of the textures (`src/gpu/array.rs`).
 const SKY_ROW = 8192u;
 /// Cells of equal solid angle about the up axis and along it.
@@ -79,16 +79,16 @@ fn sky_ambient(normal: vec3<f32>) -> vec3<f32> {
     return look.fill * sky_haze(normal);
 }
 
-fn sky_cell(cell: u32, word: u32) -> u32 {
+fn sky_word(cell: u32, word: u32) -> u32 {
     return textureLoad(sky_cells, sky_number(3u * cell + word), 0).x;
 }
 
-/// A direction to the sky, and the density of such choices per steradian.
-fn sky_toward(choice: vec2<f32>, pair: vec2<f32>) -> vec4<f32> {
+/// A sample of the sky's directions, and its probability density per steradian.
+fn sky_toward(cell: vec2<f32>, pair: vec2<f32>) -> vec4<f32> {
     let count = SKY_CELLS.x * SKY_CELLS.y;
-    var i = min(u32(choice.x * f32(count)), count - 1u);
-    if choice.y >= bitcast<f32>(sky_cell(i, 0u)) {
-        i = sky_cell(i, 1u);
+    var i = min(u32(cell.x * f32(count)), count - 1u);
+    if cell.y >= bitcast<f32>(sky_word(i, 0u)) {
+        i = sky_word(i, 1u);
     }
     let at = (vec2<f32>(vec2<u32>(i % SKY_CELLS.x, i / SKY_CELLS.x)) + pair) / vec2<f32>(SKY_CELLS);
     let z = 1.0 - 2.0 * at.y;
@@ -96,13 +96,13 @@ fn sky_toward(choice: vec2<f32>, pair: vec2<f32>) -> vec4<f32> {
     let across = sqrt(max(1.0 - z * z, 0.0)) * vec2<f32>(sin(angle), cos(angle));
     let to = look_parameters.sky;
     let axis = across.x * to.right + across.y * to.forward + z * to.up;
-    return vec4<f32>(axis, bitcast<f32>(sky_cell(i, 2u)));
+    return vec4<f32>(axis, bitcast<f32>(sky_word(i, 2u)));
 }
 
-/// The density of the choices of `sky_toward` in a direction.
+/// The probability density of `sky_toward` in a direction.
 fn sky_density(axis: vec3<f32>) -> f32 {
     let own = sky_own(axis);
     let at = vec2<f32>(sky_turns(own), 0.5 - 0.5 * own.z) * vec2<f32>(SKY_CELLS);
     let cell = min(vec2<u32>(max(at, vec2<f32>(0.0))), SKY_CELLS - 1u);
-    return bitcast<f32>(sky_cell(cell.y * SKY_CELLS.x + cell.x, 2u));
+    return bitcast<f32>(sky_word(cell.y * SKY_CELLS.x + cell.x, 2u));
 }
