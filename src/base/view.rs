@@ -229,6 +229,10 @@ impl View {
     /// The WGSL modules of the view.
     pub fn modules(&self) -> Vec<Module> {
         let mut all = vec![wgsl!("base/view.wgsl")];
+        all.push(match self.lens {
+            Some(_) => wgsl!("base/lens.wgsl").neutral(),
+            None => wgsl!("base/lens_off.wgsl"),
+        });
         all.extend(self.projection.modules());
         all
     }

@@ -8,6 +8,18 @@ use std::time::Duration;
 use crate::gpu::task_status::{Panicked, TaskStatus};
 use crate::pass::progress::Progress;
 
+/// Does work on all items at once and returns the answers in their order.
+pub fn all_at_once<T: Sync, A: Send>(items: &[T], work: impl Fn(&T) -> A + Sync) -> Vec<A> {
+    let mut answers: Vec<Option<A>> = items.iter().map(|_| None).collect();
+    std::thread::scope(|scope| {
+        for (item, answer) in items.iter().zip(&mut answers) {
+            scope.spawn(|| *answer = Some(work(item)));
+        }
+    });
+    // A panic of a thread has gone on to this one.
+    answers.into_iter().flatten().collect()
+}
+
 /// The threads of a renderer. Dropping it waits for them, as a driver may fail if a program ends
 /// while it compiles.
 #[derive(Default)]

@@ -3,6 +3,7 @@
 //! Layouts are read from the WGSL, so a binding is declared in one place. Resources are bound
 //! by the names of the WGSL variables, so they cannot be swapped.
 
+use std::borrow::Cow;
 use std::pin::pin;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Context, Poll, Waker};
@@ -139,7 +140,7 @@ impl Kernel {
         });
         let shader = gpu.create_shader_module(wgpu::ShaderModuleDescriptor {
             label,
-            source: wgpu::ShaderSource::Wgsl(program.source().into()),
+            source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
         });
         let pipeline = gpu.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label,

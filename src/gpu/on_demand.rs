@@ -5,6 +5,11 @@ use std::sync::{Mutex, PoisonError};
 use crate::gpu::task_status::{Panicked, TaskStatus};
 use crate::pass::progress::Progress;
 
+/// Does work on all items, one after the other.
+pub fn all_at_once<T, A>(items: &[T], work: impl Fn(&T) -> A) -> Vec<A> {
+    items.iter().map(work).collect()
+}
+
 /// No threads.
 #[derive(Default)]
 pub struct Threads {}

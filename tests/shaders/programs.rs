@@ -93,8 +93,11 @@ fn plans() -> Vec<Plan> {
         plan.camera.projection = *projection;
         plan
     });
+    let mut lens = preset("mandelbox", &[]);
+    lens.camera.aperture = 0.1;
+    lens.samples = 2;
     let scenes = scenes().into_iter().map(Plan::new);
-    let first = presets.chain(projected).chain(scenes);
+    let first = presets.chain(projected).chain([lens]).chain(scenes);
     let mut all = Vec::new();
     for plan in first {
         for mode in &Mode::ALL {

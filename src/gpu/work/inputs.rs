@@ -11,6 +11,7 @@ use super::Shared;
 use super::job::{Job, Made};
 use crate::base::shader::{Program, Sources};
 use crate::gpu::array::KeptArray;
+use crate::gpu::background::all_at_once;
 #[cfg(feature = "cli")]
 use crate::gpu::conemap::generate::Maker;
 use crate::gpu::error::{RenderError, check_room};
@@ -227,16 +228,22 @@ impl FrameRequest {
         }
         let mut traffic = Traffic::default();
         let device = &self.shared.device;
-        let mut compile = |program| {
-            let known = self.shared.kernels.known(program);
-            traffic.compilations += usize::from(known.is_none());
-            let pass = "compile".into();
-            if known.is_none() && !tell(&Progress { pass, done: 0.0 }) {
-                return Err(RenderError::Cancelled);
+        let compile = |program: &Program| self.shared.kernels.get(device, program);
+        let mut new: Vec<Program> = Vec::new();
+        for program in needs.programs.iter().chain([&draft.arrange]) {
+            if self.shared.kernels.known(program).is_none() && !new.contains(program) {
+                new.push(program.clone());
             }
-            Ok(self.shared.kernels.get(device, program)?)
-        };
-        let kernels = needs.programs.iter().map(&mut compile);
+        }
+        traffic.compilations = new.len();
+        let pass = "compile".into();
+        if !new.is_empty() && !tell(&Progress { pass, done: 0.0 }) {
+            return Err(RenderError::Cancelled);
+        }
+        for kernel in all_at_once(&new, compile) {
+            kernel?;
+        }
+        let kernels = needs.programs.iter().map(compile);
         let kernels: Vec<_> = kernels.collect::<Result<_, _>>()?;
         let arrange = compile(&draft.arrange)?;
         let arrays = self.shared.arrays.lock();
