@@ -109,24 +109,39 @@ fn a_big_picture_has_bands_and_all_the_figures_on_a_device() {
 #[test]
 fn a_killed_picture_goes_on_to_the_same_bytes() {
     let folder = Folder::new();
-    let expected = whole(&folder, "");
-    // Some moments: after one band, within one, and shortly before the end; each kill is real.
-    for (bands, wait) in [(1, 0), (4, 30), (8, 0)] {
-        let mut child = begun(&folder, "", bands * BAND);
+    let view = "--set camera.projection=equirectangular --set camera.fov=180";
+    folder.done(&format!(
+        "render valley-mist --size 32x16 --samples 1 {view} -o sky.exr"
+    ));
+    // Some moments: after one band, within one, and shortly before the end; each kill is real. Also
+    // where tiles have their own numbers of samples, and under a sky from a file.
+    for (more, bands, wait) in [
+        ("", 1, 0),
+        ("", 4, 30),
+        ("", 8, 0),
+        (
+            "--samples 16 --until 0.05 --set camera.fov=120 --set look.occlusion=0",
+            2,
+            0,
+        ),
+        ("--set look.sky_file=sky.exr", 3, 0),
+    ] {
+        let expected = whole(&folder, more);
+        let mut child = begun(&folder, more, bands * BAND);
         sleep(Duration::from_millis(wait));
         child.kill().expect("it runs");
         child.wait().expect("an end");
         assert!(!folder.files().contains(&"a.png".into()));
         let kept = fs::metadata(folder.0.join(PART)).expect("kept").len();
-        let again = said(&folder.done(&format!("{PICTURE} -o a.png --resume")));
+        let again = said(&folder.done(&format!("{PICTURE} -o a.png --resume {more}")));
         assert!(
             folder.bytes("a.png") == expected,
-            "after {bands} bands: {again}"
+            "{more} after {bands} bands: {again}"
         );
         assert!(kept >= bands * BAND, "{kept}");
         fs::remove_file(folder.0.join("a.png")).expect("made");
         // The killed process leaves its temporary file.
-        for name in folder.files() {
+        for name in folder.files().iter().filter(|name| *name != "sky.exr") {
             assert!(name.ends_with(".tmp"), "{name}");
             fs::remove_file(folder.0.join(name)).expect("left");
         }
