@@ -4,9 +4,11 @@
 //! Times are medians of warm runs. The overhead is march and trace on the clock less the
 //! device's own time for them.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Instant;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, ensure};
 use conemarch::gpu::adapters::{Adapters, Choice};
@@ -293,57 +295,58 @@ fn frames() -> Result<String> {
     ))
 }
 
-/// How soon a render that is cancelled returns, and how soon the device has done what was submitted
-/// of it. Every preset is cancelled as soon as each of its passes is under way.
+/// Renders of a preset that are cancelled, and the time within which they are.
+const CANCELS: u32 = 12;
+const CANCELLED_WITHIN: Duration = Duration::from_millis(3000);
+
+/// How soon a render that another thread cancels returns. Every preset is rendered with its own
+/// samples and light, by a renderer that has rendered nothing yet, and cancelled at moments that are
+/// spread over its first seconds.
 fn cancels() -> Result<String> {
     let adapters = Adapters::find();
     let chosen = adapters.choose(&Choice::Auto)?;
     let (adapter, _) = chosen.context("there is no adapter")?;
-    let mut renderer = Renderer::new(Device::open(adapter)?);
     let mut rows = Vec::new();
     for (name, _) in preset::BUILTIN {
-        let assets = Assets::default();
-        let mut plan = preset::load(name, &[])?.plan.one_sample();
+        let mut plan = preset::load(name, &[])?.plan;
         plan.size = [1280, 720];
-        let mut passes: Vec<String> = Vec::new();
-        let extras = Extras::default();
-        renderer.render(&plan, &assets, extras, &mut |now| {
-            if !passes.contains(&now.pass) {
-                passes.push(now.pass.clone());
-            }
-            true
-        })?;
-        let (mut returned, mut free) = (0.0_f64, 0.0_f64);
-        let marched = plan.resolved(extras).passes(extras);
-        let marched: Vec<String> = marched.iter().map(|pass| pass.name()).collect();
-        passes.retain(|pass| marched.contains(pass));
-        let mut met = Vec::new();
-        for pass in &passes {
-            let mut asked = None;
-            let cancelled = renderer.render(&plan, &assets, extras, &mut |now| {
-                if now.pass == *pass {
-                    asked = Some(Instant::now());
-                }
-                asked.is_none()
+        let mut times = Vec::new();
+        let mut passes = BTreeSet::new();
+        for nth in 0..CANCELS {
+            let mut renderer = Renderer::new(Device::open(adapter)?);
+            let asked: OnceLock<Instant> = OnceLock::new();
+            let mut pass = String::new();
+            let cancelled = std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    std::thread::sleep(CANCELLED_WITHIN * (2 * nth + 1) / (2 * CANCELS));
+                    asked.get_or_init(Instant::now);
+                });
+                let rendered =
+                    renderer.render(&plan, &Assets::default(), Extras::default(), &mut |now| {
+                        pass.clone_from(&now.pass);
+                        asked.get().is_none()
+                    });
+                let returned = asked.get().map(Instant::elapsed);
+                rendered.is_err().then_some(returned).flatten()
             });
-            // A pass that is too short to be seen cannot be cancelled.
-            let Some(asked) = asked else { continue };
-            ensure!(cancelled.is_err(), "{name} went on in {pass}");
-            met.push(pass.as_str());
-            returned = returned.max(asked.elapsed().as_secs_f64() * 1e3);
-            renderer
-                .device
-                .device
-                .poll(wgpu::PollType::wait_indefinitely())?;
-            free = free.max(asked.elapsed().as_secs_f64() * 1e3);
+            // A render that was over by then cannot be cancelled.
+            if let Some(returned) = cancelled {
+                times.push(returned.as_secs_f64() * 1e3);
+                passes.insert(pass);
+            }
         }
+        times.sort_by(f64::total_cmp);
+        let (Some(median), Some(most)) = (times.get(times.len() / 2), times.last()) else {
+            continue;
+        };
+        let passes: Vec<String> = passes.into_iter().collect();
         rows.push(format!(
-            "{name} | {} | {returned:.1} | {free:.0}",
-            met.join(", ")
+            "{name} | {} | {median:.0} | {most:.0}",
+            passes.join(", ")
         ));
     }
     Ok(markdown::table(
-        "preset, 1280 x 720 | cancelled in | returned after, ms | device free after, ms",
+        "preset, 1280 x 720 | cancelled in | returned after, median, ms | the longest, ms",
         "llr",
         rows,
     ))

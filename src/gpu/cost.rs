@@ -7,10 +7,16 @@ use crate::pass::turn::Stage;
 /// a software device wait for others, so short dispatches cost it time.
 pub const LONGEST_MS: f64 = 30.0;
 /// The time that a dispatch of unknown cost is taken for.
-const FIRST_MS: f64 = 5.0;
+const FIRST_MS: f64 = 8.0;
 /// The product of workgroups and steps of a first dispatch. At 64 steps of a fractal with few
 /// iterations it takes about `FIRST_MS` on a slow device.
-const FIRST_SLICE: u32 = 64 * 512;
+const FIRST_SLICE: u32 = 64 * 256;
+/// The same where light is followed by rays: such a dispatch takes up to a hundred times as long.
+const FIRST_SLICE_OF_PATHS: u32 = 64 * 16;
+/// The largest change of a dispatch's size at once. The time of a small dispatch says little of a
+/// large one.
+const MOST_SHORTER: f64 = 1.0 / 16.0;
+const MOST_LONGER: f64 = 4.0;
 /// Rounds beyond the first that are expected of a stage with a step limit.
 const ROUNDS: u32 = 2;
 /// The largest number of workgroups along an axis.
@@ -27,17 +33,19 @@ pub struct Cost {
     last: Option<u32>,
 }
 
-impl Default for Cost {
-    fn default() -> Self {
+impl Cost {
+    /// What is known of a stage that has not run yet.
+    pub fn first(follows_light: bool) -> Self {
         Self {
-            slice: FIRST_SLICE,
+            slice: match follows_light {
+                true => FIRST_SLICE_OF_PATHS,
+                false => FIRST_SLICE,
+            },
             dispatch_ms: FIRST_MS,
             last: None,
         }
     }
-}
 
-impl Cost {
     /// Dispatches that visit every cell once.
     fn of_first_round(&self, stage: &Stage) -> u32 {
         let groups = (self.slice / stage.chunk.max(1)).clamp(1, MOST_GROUPS);
@@ -64,8 +72,10 @@ impl Cost {
         let shorter = each_ms > 1.33 * aim_ms && self.slice > stage.chunk;
         let more = dispatches > 1 && self.of_first_round(stage) > 1;
         let longer = self.dispatch_ms < 0.45 * aim_ms && more;
-        if shorter || longer {
-            self.scale(if shorter { 0.5 } else { 2.0 });
+        if shorter {
+            self.scale((aim_ms / each_ms).max(MOST_SHORTER));
+        } else if longer {
+            self.scale((0.7 * aim_ms / self.dispatch_ms).min(MOST_LONGER));
         }
     }
 

@@ -32,6 +32,7 @@ use crate::pass::tone::tone_steps;
 use crate::pass::tone_map::Tone;
 use crate::pass::turn::{self, StageKind};
 use crate::picture::frame::{Frame, Traffic};
+use crate::plan::look::LightMode;
 use crate::plan::{Extras, Pass, Plan, UNTIL_TILE};
 use crate::scene::{AnySolid, Assets};
 
@@ -274,6 +275,7 @@ impl FrameRequest {
             job: Job {
                 firsts: firsts.len(),
                 first_stages,
+                follows_light: plan.look.mode == LightMode::Path,
                 samples: plan.samples,
                 visits: plan.visits(),
                 until: plan.until,

@@ -73,6 +73,8 @@ pub(in crate::gpu) struct Job {
     /// and how many stages of them run.
     pub firsts: usize,
     pub first_stages: usize,
+    /// Whether colours follow light by rays.
+    pub follows_light: bool,
     /// Samples of each pixel, and how often a block is visited for them.
     pub samples: u32,
     pub visits: u32,
@@ -85,6 +87,19 @@ pub(in crate::gpu) struct Job {
 }
 
 impl Job {
+    /// What is known of the cost of a stage that has not run yet.
+    fn first_cost(&self, kind: &StageKind) -> Cost {
+        Cost::first(self.follows_light && *kind == StageKind::Pass(Pass::Color))
+    }
+
+    /// The costs of the stages, where those of the last frame say nothing of them.
+    pub(super) fn first_costs(&self) -> Vec<Cost> {
+        self.kinds
+            .iter()
+            .map(|kind| self.first_cost(kind))
+            .collect()
+    }
+
     /// The blocks of the image. They are visited one after the other, each as often as a pixel has
     /// samples.
     pub(super) fn blocks(&self) -> usize {

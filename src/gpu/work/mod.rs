@@ -220,7 +220,14 @@ impl Work {
         }
         let mut told = 0;
         loop {
-            self.advance(f64::INFINITY)?;
+            self.advance(SUBMISSION_MS)?;
+            // Software Vulkan runs a submission before it returns: ask before the next one.
+            if !watch(&self.progress()) {
+                return Err(RenderError::Cancelled);
+            }
+            if let Some(run) = &mut self.run {
+                run.fill(SUBMISSION_MS);
+            }
             let frame = self.poll()?;
             let Some(run) = &self.run else {
                 return Err(RenderError::Cancelled);

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::{Arc, PoisonError};
 
-use crate::gpu::cost::{Cost, LONGEST_MS};
+use crate::gpu::cost::LONGEST_MS;
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::{Staging, Stagings};
 use crate::gpu::stamps::{STAMPS, Stamps};
@@ -89,6 +89,13 @@ impl Run {
         let traffic = frame.traffic.get_or_insert_default();
         match &mut reusable.target {
             Some(target) if target.serves(&needs, job.colors_at, &parameters, &arrays) => {
+                // Another program takes another time.
+                let first = job.first_costs();
+                for (stage, (cost, first)) in reusable.costs.iter_mut().zip(first).enumerate() {
+                    if target.needs.programs[stage] != needs.programs[stage] {
+                        *cost = first;
+                    }
+                }
                 target.rebind(device, kernels, needs, &arrays)?;
                 traffic.uploads += target.rewrite(device, parameters);
             }
@@ -98,7 +105,7 @@ impl Run {
                 let target = Target::new(device, kernels, arrange, needs, parameters, &arrays)?;
                 *reusable = Reusable {
                     target: Some(target),
-                    costs: vec![Cost::default(); job.kinds.len()],
+                    costs: job.first_costs(),
                     aim_ms: LONGEST_MS,
                     stamps: Stamps::new(device),
                     ..Reusable::default()
@@ -283,11 +290,16 @@ impl Run {
             }
             self.follow_slice(slice);
         }
+        self.fill(budget_ms);
+        Ok(())
+    }
+
+    /// Submits about so many milliseconds of work, if there is room.
+    pub(super) fn fill(&mut self, budget_ms: f64) {
         let mut left = budget_ms;
         while left > 0.0 && self.flights.len() < IN_FLIGHT && self.cursor < self.end() {
             left -= self.submit(left.min(SUBMISSION_MS));
         }
-        Ok(())
     }
 
     /// The frame, once it is finished. It never waits.
