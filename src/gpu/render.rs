@@ -139,10 +139,22 @@ impl Renderer {
         assets: &Assets,
         held: Option<Needs>,
     ) -> Result<(), RenderError> {
+        let extras = work.extras();
+        let mut resolved = plan.resolved(extras).into_owned();
+        // Frames that follow each other keep the stages of cones, or a move of the eye would make
+        // buffers and programs. The first picture is of cones too.
+        let rays_alone = (extras.shown || extras.reuse)
+            && !extras.levels
+            && plan.march.may_drop_cones()
+            && !resolved.march.may_drop_cones();
+        if rays_alone {
+            resolved.march.coarsest = None;
+        }
         let request = FrameRequest {
-            plan: plan.resolved(work.extras()).into_owned(),
+            plan: resolved,
+            rays_alone,
             assets: assets.clone(),
-            extras: work.extras(),
+            extras,
             cutting: self.cutting,
             sources: self.sources.clone(),
             held,

@@ -150,6 +150,8 @@ impl Turn {
     }
 }
 
+/// The divisor of the finest level of the first picture.
+pub const FIRST_PICTURE: u32 = 4;
 /// The most stages of a block.
 pub const MOST_STAGES: usize = 20;
 
@@ -185,10 +187,11 @@ impl StageKind {
         passes.chain([Self::Census]).collect()
     }
 
-    /// Stages that are enough for a first picture of a block: up to the sketch of the level of 1/4,
+    /// Stages that are enough for a first picture of a block: up to the sketch of its finest level,
     /// which takes a few percent of the time; 0 without such a sketch.
     pub fn first_picture(kinds: &[Self]) -> usize {
-        let is_coarse = |kind: &Self| matches!(kind, Self::Sketch(level) if level.divisor >= 4);
+        let is_coarse =
+            |kind: &Self| matches!(kind, Self::Sketch(level) if level.divisor >= FIRST_PICTURE);
         kinds.iter().rposition(is_coarse).map_or(0, |last| last + 1)
     }
 

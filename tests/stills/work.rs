@@ -1,6 +1,8 @@
 //! A render in slices: whatever their sizes, and whatever was begun before, the picture is the
 //! same; and what a frame needs again stays on the device.
 
+use std::collections::BTreeSet;
+
 use conemarch::base::clock::clock;
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
@@ -10,7 +12,7 @@ use conemarch::heightfield::{ConeMap, Heights};
 use conemarch::picture::frame::{Frame, Traffic};
 use conemarch::picture::{Layer, Shades};
 use conemarch::plan::{Extras, Plan};
-use conemarch::preset::BUILTIN;
+use conemarch::preset::{BUILTIN, load};
 use conemarch::scene::Assets;
 use wgpu::Limits;
 
@@ -242,6 +244,66 @@ fn the_picture_on_the_device_grows_into_that_of_the_file() {
                 assert!(reached.unwrap()[..half] != wanted[..half], "{block}");
             }
         }
+    }
+}
+
+#[test]
+fn a_first_picture_comes_also_where_rays_have_no_cones() {
+    let shown = Extras {
+        shown: true,
+        ..Extras::default()
+    };
+    for block in [1024, 64] {
+        let mut plan = load("mandelbox", &[]).unwrap().plan.one_sample();
+        plan.size = [320, 180];
+        assert!(plan.resolved(shown).levels().is_empty());
+        let mut renderer = adapter::open();
+        renderer.cutting.block = block;
+        let mut work = renderer.begin(&plan, &Assets::default(), shown).unwrap();
+        // The first pictures of all blocks are no part of what is done.
+        while work.picture().is_none() || work.progress().done == 0.0 {
+            work.advance(1e-3).unwrap();
+        }
+        let pixels = work.pixels().unwrap();
+        let lit = pixels.chunks(4).filter(|p| p[..3] != [0; 3]).count();
+        assert!(
+            4 * lit > pixels.chunks(4).count(),
+            "{lit} of {}",
+            pixels.len() / 4
+        );
+        let frame = work.finish(&mut |_| true).unwrap();
+        assert!(bits(&frame) == bits(&adapter::render(&plan, Extras::default())));
+    }
+}
+
+/// Whether cones pay changes on the way to a surface. The pictures are those of stills.
+#[test]
+fn a_flight_makes_no_buffer_and_compiles_nothing() {
+    let live = Extras {
+        shown: true,
+        reuse: true,
+        ..Extras::default()
+    };
+    for name in ["mandelbox", "bench-far", "mandelbox-hall"] {
+        let mut renderer = adapter::open();
+        let mut plan = load(name, &[]).unwrap().plan.one_sample();
+        plan.size = [320, 180];
+        let mut choices = BTreeSet::new();
+        for nth in 0..30 {
+            choices.insert(plan.resolved(live).levels().len());
+            let frame = renderer.render(&plan, &Assets::default(), live, &mut |_| true);
+            let frame = frame.unwrap();
+            let traffic = frame.traffic.unwrap();
+            let made = (traffic.allocations, traffic.compilations);
+            assert!(nth == 0 || made == (0, 0), "{name}, frame {nth}: {made:?}");
+            if nth % 10 == 9 {
+                let still = adapter::render(&plan, Extras::default());
+                assert!(bits(&frame) == bits(&still), "{name}, frame {nth}");
+            }
+            let way = plan.camera.target - plan.camera.eye;
+            plan.camera.eye += 0.03 * way;
+        }
+        assert_eq!(choices.len(), 2, "{name}: {choices:?}");
     }
 }
 

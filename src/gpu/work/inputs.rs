@@ -69,6 +69,8 @@ pub fn marched(plan: &Plan, scene: &AnySolid) -> Parameters {
 /// A frame that is asked for.
 pub struct FrameRequest {
     pub plan: Plan,
+    /// Whether rays start without cones although the plan has cone levels.
+    pub rays_alone: bool,
     pub assets: Assets,
     pub extras: Extras,
     pub cutting: Cutting,
@@ -273,6 +275,7 @@ impl FrameRequest {
         frame.traffic = Some(traffic);
         Ok(FrameInputs {
             job: Job {
+                rays_alone: self.rays_alone,
                 firsts: firsts.len(),
                 first_stages,
                 follows_light: plan.look.mode == LightMode::Path,

@@ -8,8 +8,9 @@ use crate::gpu::stamps::Stamps;
 use crate::gpu::target::{Needs, Parameters, Target};
 use crate::heightfield::assets::Preparation;
 use crate::pass::layout::Layout;
-use crate::pass::turn::{Stage, StageKind};
+use crate::pass::turn::{FIRST_PICTURE, Stage, StageKind};
 use crate::pass::until::{bound, is_kept};
+use crate::plan::pyramid::Level;
 use crate::plan::{Extras, Pass};
 
 /// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
@@ -65,6 +66,8 @@ pub(in crate::gpu) struct Reusable {
 /// before any ray, and once more with each block. Each sample of the pixels is a further visit of
 /// a block, whose cones stay. The last one is that of the pixels' centres, whose depths stay.
 pub(in crate::gpu) struct Job {
+    /// Whether rays start without cones: then there are at most the cones of the first picture.
+    pub rays_alone: bool,
     pub kinds: Vec<StageKind>,
     /// The first stage that only colours need.
     pub colors_at: usize,
@@ -124,10 +127,18 @@ impl Job {
 
     /// Whether a stage of a visit is left out.
     pub(super) fn leaves_out(&self, visit: usize, index: usize) -> bool {
+        let kind = &self.kinds[index];
+        let shows = |level: &Level| self.extras.shown && level.divisor >= FIRST_PICTURE;
+        if let StageKind::Pass(Pass::March(level)) | StageKind::Sketch(level) = kind
+            && self.rays_alone
+            && (!shows(level) || (self.firsts > 0 && self.sampled(visit).is_some()))
+        {
+            return true;
+        }
         let Some((_, before)) = self.sampled(visit) else {
             return index >= self.first_stages;
         };
-        match self.kinds[index] {
+        match kind {
             // The first picture is finer.
             StageKind::Sketch(_) => before > 0 || (self.firsts > 0 && index < self.first_stages),
             StageKind::Pass(Pass::March(_)) => before > 0,
@@ -139,6 +150,13 @@ impl Job {
 
     /// Sets what the stages of a visit do for its sample.
     pub(super) fn sample(&self, visit: usize, index: usize, stage: &mut Stage) {
+        if self.rays_alone {
+            match self.kinds[index] {
+                StageKind::Pass(Pass::Trace) => stage.parent_width = 0,
+                StageKind::Census => stage.divisor = 1,
+                _ => {}
+            }
+        }
         let Some((_, before)) = self.sampled(visit) else {
             return;
         };
