@@ -132,9 +132,13 @@ fn core(text: &str) -> (String, Vec<String>) {
 }
 
 /// What a browser lacks, or forbids.
-const NOT_IN_CORE: [&str; 8] = [
+const NOT_IN_CORE: [&str; 12] = [
     "std::fs",
     "File::open",
+    "File::create",
+    "OpenOptions",
+    "SystemTime",
+    "std::process",
     "std::thread",
     "Instant",
     "std::env",

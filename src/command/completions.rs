@@ -9,7 +9,7 @@ use anyhow::Result;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Command};
 use clap_complete::engine::{
-    ArgValueCandidates, ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter,
+    ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter,
 };
 use clap_complete::env::{CompleteEnv, Shells};
 
@@ -57,10 +57,21 @@ pub fn presets() -> ArgValueCompleter {
     })
 }
 
-/// Completes the keys of `--set`.
-pub fn settings() -> ArgValueCandidates {
-    let key = |(key, help): (String, &str)| {
-        CompletionCandidate::new(format!("{key}=")).help(Some(help.to_string().into()))
-    };
-    ArgValueCandidates::new(move || keys().into_iter().map(key).collect())
+/// Completes the keys of `--set`, and behind the sign the words that a key takes.
+pub fn settings() -> ArgValueCompleter {
+    ArgValueCompleter::new(|current: &OsStr| {
+        let current = current.to_string_lossy();
+        let mut found = Vec::new();
+        for (key, help, words) in keys() {
+            let start = format!("{key}=");
+            if current.starts_with(&start) {
+                let full = words.iter().map(|word| format!("{start}{word}"));
+                let full = full.filter(|full| full.starts_with(&*current));
+                found.extend(full.map(CompletionCandidate::new));
+            } else if start.starts_with(&*current) {
+                found.push(CompletionCandidate::new(start).help(Some(help.to_string().into())));
+            }
+        }
+        found
+    })
 }

@@ -40,15 +40,18 @@ pub struct Render {
     ///
     /// Without -o the picture goes to the current folder as NAME.png, with --set as
     /// NAME-camera.fov=60.png, with another --size as NAME-640x360.png, with --samples as
-    /// NAME-samples=16.png, with --until likewise, and with another --layer as NAME.depth.png. Only a picture of the same
-    /// layer and settings is replaced, or one that is older than a preset's file.
+    /// NAME-samples=16.png, with --until likewise, and with another --layer as NAME.depth.png. Only a
+    /// picture of the same layer and settings is replaced, or one that is older than a preset's
+    /// file.
     ///
-    /// A PNG carries its preset and can be rendered again; JPEG and WebP carry none. WebP is
-    /// without loss. An EXR has the channels R, G, B (linear), A (1, or the share of hits where
-    /// image.background is transparent), Z (along the view
-    /// axis), depth.Z (along the ray), normal.X/Y/Z, position.X/Y/Z, state.Y (0 sky, 1 hit,
-    /// 2 unconverged), variance.Y (of the luminance) from two samples on, samples.Y with --until, and steps.Y with --stats. Both depths are 1e10 for sky. Its
-    /// attributes hold the preset and the camera.
+    /// PNG and EXR files carry their preset and can be rendered again; JPEG and WebP carry none.
+    /// WebP is without loss.
+    ///
+    /// An EXR has linear light in R, G and B. Alpha is 1, or the share of hits where
+    /// image.background is transparent. Z is the depth along the view axis, and depth.Z the one
+    /// along the ray: 1e10 for sky. There are normals, positions and states (0 sky, 1 hit, 2
+    /// unconverged). From two samples on there is variance.Y, that of the luminance; with --until
+    /// there is samples.Y, and with --stats steps.Y. The attributes hold the preset and the camera.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
 

@@ -133,7 +133,9 @@ impl Device {
     /// The device was lost or reported an error.
     pub fn check(&self) -> Result<(), DeviceError> {
         let polled = self.device.poll(wgpu::PollType::Poll);
-        self.trouble()?;
+        if let Some(error) = self.noted()? {
+            return Err(error);
+        }
         polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
     }
 
@@ -161,7 +163,8 @@ impl Device {
         }
     }
 
-    /// Checks that the device works. A loss is reported before any other error.
+    /// Checks that the device works. A loss is reported before any other error, for which this may
+    /// wait a second.
     ///
     /// # Errors
     /// The device was lost or reported an error.

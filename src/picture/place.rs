@@ -75,8 +75,12 @@ impl Place {
         let mut list = unfinished();
         let made = builder(&format!(".{}.", name.to_string_lossy())).tempfile_in(folder);
         let (file, held) = made.map(tempfile::NamedTempFile::into_parts).map_err(|e| {
-            let doing = format!("cannot be written in the folder `{}`", folder.display());
-            OutputError::io(path, &doing, &e)
+            let doing = format!(
+                "cannot be written in the folder `{}`; check its rights, or name another",
+                folder.display()
+            );
+            // The error itself names the temporary file.
+            OutputError::io(path, &doing, &e.kind().into())
         })?;
         list.push(held.to_path_buf());
         Ok(place(target.clone(), Some(held), file))

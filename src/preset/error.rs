@@ -28,7 +28,7 @@ pub enum PresetError {
     },
     /// Neither a built-in preset nor a file has this name.
     #[error(
-        "no preset is called `{name}`{}; the built-in presets are {}; a path of a .toml file, or of a .png that this program wrote, is a preset too",
+        "no preset is called `{name}`{}; the built-in presets are {}; a path of a .toml file, or of a .png or .exr that this program wrote, is a preset too",
         perhaps(.nearest.iter().map(String::as_str)),
         built_in()
     )]

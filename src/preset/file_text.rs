@@ -1,11 +1,15 @@
 //! The text of a preset in a TOML file, or in a picture that carries it.
 
 use std::fs::{self, File};
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
 use crate::preset::PNG_KEYWORD;
+use crate::raster::exr;
 use crate::raster::text_chunk::{self, SIGNATURE};
+
+/// The first bytes of an EXR.
+const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// Largest preset that is read: far more than any preset needs, so that a wrong file is
 /// rejected at once.
@@ -37,8 +41,14 @@ pub fn file_text(path: &Path) -> Result<String, String> {
     let mut bytes = Vec::new();
     let mut start = file.by_ref().take(SIGNATURE.len() as u64);
     start.read_to_end(&mut bytes).map_err(unreadable)?;
+    let none = "carries no preset; only a PNG or EXR that this program wrote does";
+    if bytes.starts_with(&EXR) {
+        file.rewind().map_err(unreadable)?;
+        return exr::head(&mut file, PNG_KEYWORD)?
+            .text
+            .ok_or_else(|| none.into());
+    }
     if bytes == SIGNATURE {
-        let none = "carries no preset; only a PNG that this program wrote does";
         return text_chunk::text(&mut file, PNG_KEYWORD)?.ok_or_else(|| none.into());
     }
     let mut rest = file.take(MOST_BYTES + 1);
@@ -47,7 +57,7 @@ pub fn file_text(path: &Path) -> Result<String, String> {
         return Err("is larger than 1 MiB, which no preset is; is it the right file?".into());
     }
     let text = String::from_utf8(bytes).map_err(
-        |_| "is not text in UTF-8; a preset is a TOML file, or a PNG that this program wrote",
+        |_| "is not text in UTF-8; a preset is a TOML file, or a PNG or EXR that this program wrote",
     )?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let is_of = |line: &str| MANDELBULBER.contains(&line.trim());

@@ -4,23 +4,37 @@ use crate::plan::Plan;
 use crate::preset::document::SECTIONS;
 use crate::scene::Scene;
 
-/// Every `section.key` that `--set` takes, with its help.
-pub fn keys() -> Vec<(String, &'static str)> {
+/// Every `section.key` that `--set` takes, with its help and the words that it takes, if it does.
+pub fn keys() -> Vec<(String, &'static str, Vec<String>)> {
     let first = [
         ("title", "a name of the picture, for people"),
         ("scene.kind", "what kind of scene it is"),
         ("scene.formula", "the formula of a distance scene"),
     ];
-    let mut all = first.map(|(path, help)| (path.to_string(), help)).to_vec();
+    let first = first.map(|(path, help)| (path.to_string(), help, Vec::new()));
+    let mut all = first.to_vec();
     for section in SECTIONS {
         for mut plan in Scene::all().into_iter().map(Plan::new) {
             for key in plan.keys(section).unwrap_or_default() {
                 let path = format!("{section}.{}", key.name);
-                if all.iter().all(|(known, _)| *known != path) {
-                    all.push((path, key.help));
+                if all.iter().all(|(known, ..)| *known != path) {
+                    all.push((path, key.help, words(&key.slot.expects())));
                 }
             }
         }
     }
     all
+}
+
+/// The words in quotes that a key expects, or those of a switch.
+fn words(expects: &str) -> Vec<String> {
+    match expects {
+        "true or false" => vec!["true".into(), "false".into()],
+        _ => expects
+            .split('"')
+            .skip(1)
+            .step_by(2)
+            .map(String::from)
+            .collect(),
+    }
 }

@@ -175,7 +175,10 @@ impl Source {
     fn put(&self, plan: &mut Plan, entry: &Entry) -> Result<(), PresetError> {
         if entry.section == TRACK {
             if plan.value(&entry.key).is_none() {
-                let known = keys().into_iter().map(|(path, _)| path).collect::<Vec<_>>();
+                let known = keys()
+                    .into_iter()
+                    .map(|(path, ..)| path)
+                    .collect::<Vec<_>>();
                 let near = perhaps(nearest(&entry.key, known.iter().map(String::as_str)));
                 let why = format!("the plan has no key `{}`{near}", brief(&entry.key));
                 return Err(self.at(entry, format!("track: {why}")));

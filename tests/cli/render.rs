@@ -28,6 +28,13 @@ fn a_render_is_named_after_its_preset_and_renders_again() {
     let again = "render mandelbox.png --device cpu -o";
     folder.done(&format!("{again} again.png"));
     assert_eq!(folder.bytes("mandelbox.png"), folder.bytes("again.png"));
+    // So does an EXR.
+    folder.done("render mandelbox.png --device cpu -o light.exr");
+    folder.done("render light.exr --device cpu -o again.png");
+    assert_eq!(folder.bytes("mandelbox.png"), folder.bytes("again.png"));
+    folder.fails("render missing.exr", 1, "missing.exr: cannot be read");
+    folder.write("torn.exr", &folder.bytes("light.exr")[..40]);
+    folder.fails("presets torn.exr", 1, "torn.exr: ");
     // Overrides apply to it, so that equal bytes above mean something.
     folder.done(&format!("{again} other.png --set camera.fov=31"));
     assert_ne!(folder.bytes("mandelbox.png"), folder.bytes("other.png"));

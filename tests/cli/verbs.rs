@@ -107,6 +107,10 @@ fn presets_files_and_keys_are_completed() {
     for key in ["scene.kind=", "scene.scale=", "scene.tracer="] {
         assert!(found.iter().any(|f| f == key), "{key}: {found:?}");
     }
+    let found = asked("render mandelbox --set look.mode=");
+    assert_eq!(found, ["look.mode=quick", "look.mode=path"]);
+    let found = asked("render mandelbox --set look.shadow=f");
+    assert_eq!(found, ["look.shadow=false"]);
     for line in ["bench steps bench-", "presets bench-"] {
         assert!(asked(line).iter().any(|f| f == "bench-far"), "{line}");
     }

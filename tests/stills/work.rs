@@ -375,4 +375,17 @@ fn every_preset_renders_within_the_limits_that_webgpu_promises() {
         hits += frame.census()[1];
     }
     assert!(hits > 10_000, "the pictures show nothing: {hits} hits");
+    // Cones over heightfields pay in large pictures only. The window shows them on their way.
+    let live = Extras {
+        shown: true,
+        reuse: true,
+        ..Extras::default()
+    };
+    for name in ["terrain", "mandelbox-gate"] {
+        let mut plan = load(name, &[]).unwrap().plan.one_sample();
+        plan.size = [320, 180];
+        assert!(!plan.resolved(live).levels().is_empty(), "{name}");
+        let frame = renderer.render(&plan, &Assets::default(), live, &mut |_| true);
+        assert!(frame.unwrap().census()[1] > 10_000, "{name}");
+    }
 }

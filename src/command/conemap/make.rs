@@ -55,11 +55,12 @@ pub struct Make {
     #[arg(long)]
     boxes: bool,
 
-    /// Texels that are added to each distance when the cones of walk and walk-relaxed are made
+    /// Texels that are added to each distance when the cones of walk and walk-relaxed are made [default:
+    /// 2]
     #[arg(long, value_name = "TEXELS")]
     offset: Option<f64>,
 
-    /// Steps along each ray of relaxed-search
+    /// Steps along each ray of relaxed-search [default: 128]
     #[arg(long, value_name = "COUNT")]
     search_steps: Option<u32>,
 
