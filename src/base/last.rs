@@ -9,7 +9,7 @@ pub type Last<K, V> = Arc<Mutex<Option<(K, Arc<V>)>>>;
 ///
 /// # Errors
 /// Those of `make`.
-pub fn kept_or_made<K: PartialEq, V, E>(
+pub fn last_or_new<K: PartialEq, V, E>(
     last: &Last<K, V>,
     key: K,
     make: impl FnOnce(&K) -> Result<V, E>,
@@ -27,7 +27,7 @@ pub fn kept_or_made<K: PartialEq, V, E>(
 }
 
 /// Whether the value of a key is kept. It does not wait for one that is being made.
-pub fn is_kept<K: PartialEq, V>(last: &Last<K, V>, key: &K) -> bool {
+pub fn is_last<K: PartialEq, V>(last: &Last<K, V>, key: &K) -> bool {
     let last = last.try_lock();
     last.is_ok_and(|last| last.as_ref().is_some_and(|(of, _)| of == key))
 }
@@ -41,14 +41,14 @@ mod tests {
         let last = Last::<u32, u32>::default();
         let mut made = 0;
         for (key, times) in [(1, 1), (1, 1), (2, 2), (1, 3)] {
-            let value = kept_or_made(&last.clone(), key, |k| {
+            let value = last_or_new(&last.clone(), key, |k| {
                 made += 1;
                 Ok::<u32, ()>(10 * k)
             });
             assert_eq!(value, Ok(Arc::new(10 * key)));
             assert_eq!(made, times);
         }
-        assert_eq!(kept_or_made(&last, 3, |_| Err("no")), Err("no"));
-        assert_eq!(kept_or_made(&last, 1, |_| Err("no")), Ok(Arc::new(10)));
+        assert_eq!(last_or_new(&last, 3, |_| Err("no")), Err("no"));
+        assert_eq!(last_or_new(&last, 1, |_| Err("no")), Ok(Arc::new(10)));
     }
 }

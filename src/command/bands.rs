@@ -6,13 +6,13 @@ use std::path::Path;
 use anyhow::{Result, anyhow};
 
 use crate::command::executor::Executor;
-use crate::command::kept::{Kept, Owner};
 use crate::command::output::Format;
 use crate::command::progress::Reporter;
 use crate::command::render::Render;
 use crate::command::sink::is_stdout;
 use crate::command::stats::Figures;
 use crate::command::tile::fingerprint;
+use crate::command::unfinished::{Owner, Unfinished};
 use crate::command::{failure::usage, interrupt};
 use crate::pass::progress::Progress;
 use crate::picture::{BitDepth, Layer, Place, PngHead, Shades, write_png_rows};
@@ -84,7 +84,7 @@ pub struct BigPicture<'a> {
     depth: BitDepth,
     bands: Bands,
     preset: String,
-    kept: Kept,
+    kept: Unfinished,
 }
 
 impl<'a> BigPicture<'a> {
@@ -113,7 +113,7 @@ impl<'a> BigPicture<'a> {
             layer: args.layer,
             depth,
             bands,
-            kept: Kept::open(output, owner, &lengths, args.resume)?,
+            kept: Unfinished::open(output, owner, &lengths, args.resume)?,
             preset,
         })
     }

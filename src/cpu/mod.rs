@@ -74,7 +74,7 @@ pub fn render(
     let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
     let render = Render {
         plan,
-        light: &Light::of(plan, &solid).under(plan.sky(assets)?),
+        light: &Light::of(plan, &solid).with_sky(plan.sky(assets)?),
         ray_steps: plan.ray_steps(&solid),
         extras,
         watch,

@@ -1,7 +1,7 @@
 //! Ends the samples of tiles whose error is small.
 
 use crate::pass::tone_map::Tone;
-use crate::pass::until::{bound, is_kept, squared, squared_alpha};
+use crate::pass::until::{bound, is_judged, squared, squared_alpha};
 use crate::pass::variance::variance_of;
 use crate::picture::frame::Frame;
 use crate::plan::{Plan, UNTIL_TILE};
@@ -41,7 +41,7 @@ impl Judge {
 
     /// Looks at all tiles after so many samples.
     pub fn judge(&mut self, frame: &mut Frame, samples: u32) {
-        if !is_kept(samples, self.samples) {
+        if !is_judged(samples, self.samples) {
             return;
         }
         let bound = bound(self.until, samples);

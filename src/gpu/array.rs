@@ -118,11 +118,11 @@ fn write_rows(device: &Device, texture: &wgpu::Texture, y: u32, bytes: &[u8], wi
 
 /// The arrays of the last scene, kept as long as the scene's assets stay the same.
 #[derive(Default)]
-pub struct Arrays(Vec<KeptArray>);
+pub struct Arrays(Vec<DeviceArray>);
 
 /// An array with what it was made of.
 #[derive(Clone)]
-pub struct KeptArray {
+pub struct DeviceArray {
     /// The WGSL variable.
     pub name: &'static str,
     origin: Arc<dyn Any + Send + Sync>,
@@ -142,7 +142,7 @@ impl Arrays {
         kernels: &[Arc<Kernel>],
         scene: Vec<SceneArray>,
         uploads: &mut usize,
-    ) -> Result<Vec<KeptArray>, RenderError> {
+    ) -> Result<Vec<DeviceArray>, RenderError> {
         self.0 = self.find_or_make(device, kernels, scene, uploads)?;
         Ok(self.0.clone())
     }
@@ -157,10 +157,10 @@ impl Arrays {
         kernels: &[Arc<Kernel>],
         scene: Vec<SceneArray>,
         uploads: &mut usize,
-    ) -> Result<Vec<KeptArray>, RenderError> {
+    ) -> Result<Vec<DeviceArray>, RenderError> {
         let mut found = Vec::new();
         for asked in scene {
-            let same = |kept: &KeptArray| {
+            let same = |kept: &DeviceArray| {
                 kept.name == asked.name && Arc::ptr_eq(&kept.origin, &asked.origin)
             };
             if let Some(kept) = self.0.iter().find(|kept| same(kept)) {
@@ -172,7 +172,7 @@ impl Arrays {
             let Some(reader) = reader else { continue };
             let bytes = asked.bytes();
             *uploads += bytes.len();
-            found.push(KeptArray {
+            found.push(DeviceArray {
                 name: asked.name,
                 array: Arc::new(reader.array(device, asked.name, &bytes)?),
                 origin: asked.origin,

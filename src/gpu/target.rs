@@ -9,7 +9,7 @@ use bytemuck::{Zeroable, bytes_of};
 use wgpu::BufferUsages;
 
 use crate::base::shader::Program;
-use crate::gpu::array::{Array, KeptArray};
+use crate::gpu::array::{Array, DeviceArray};
 use crate::gpu::buffer::{create, uniform};
 use crate::gpu::device::Device;
 use crate::gpu::error::{RenderError, check_room};
@@ -91,7 +91,7 @@ impl SharedBuffers {
         &'a self,
         name: &str,
         parameters: &'a [Parameter],
-        scene: &'a [KeptArray],
+        scene: &'a [DeviceArray],
         view: Option<&'a wgpu::TextureView>,
     ) -> Option<wgpu::BindingResource<'a>> {
         let shared = match name {
@@ -149,7 +149,7 @@ impl Target {
         arrange: Arc<Kernel>,
         needs: Needs,
         parameters: Parameters,
-        scene: &[KeptArray],
+        scene: &[DeviceArray],
     ) -> Result<Self, RenderError> {
         let most = device.most_bound();
         let room = |what: &str, bytes: u64| {
@@ -229,7 +229,7 @@ impl Target {
         device: &Device,
         kernels: Vec<Arc<Kernel>>,
         needs: Needs,
-        scene: &[KeptArray],
+        scene: &[DeviceArray],
     ) -> Result<(), RenderError> {
         let view = self.shared.view();
         let named = |name: &str| {
@@ -254,7 +254,7 @@ impl Target {
         needs: &Needs,
         stages: usize,
         parameters: &Parameters,
-        scene: &[KeptArray],
+        scene: &[DeviceArray],
     ) -> bool {
         let same = |own: &Parameter| {
             let found = parameters.iter().find(|(name, _)| *name == own.name);

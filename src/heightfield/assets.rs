@@ -10,7 +10,7 @@ use bytemuck::cast_slice;
 use glam::DVec2;
 
 use crate::base::key::Fault;
-use crate::base::last::{Last, is_kept, kept_or_made};
+use crate::base::last::{Last, is_last, last_or_new};
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, ShareWatch};
 use crate::heightfield::load::PatternSpec;
 use crate::heightfield::paint::{Colors, Paint};
@@ -136,10 +136,10 @@ impl Assets {
         let surface = surface_key(settings);
         let path = settings.source.folder.join(&settings.texture);
         let paint = settings.paint;
-        is_kept(&self.surfaces, &surface)
-            && is_kept(&self.cones, &cones_key(settings))
-            && paint.is_none_or(|by| is_kept(&self.paints, &paint_key(settings, by)))
-            && (!settings.is_textured() || is_kept(&self.textures, &path))
+        is_last(&self.surfaces, &surface)
+            && is_last(&self.cones, &cones_key(settings))
+            && paint.is_none_or(|by| is_last(&self.paints, &paint_key(settings, by)))
+            && (!settings.is_textured() || is_last(&self.textures, &path))
     }
 
     /// All assets of a heightfield. Cone maps that were not prepared are made on the CPU.
@@ -274,7 +274,7 @@ impl Assets {
                 note: loaded.note,
             })
         };
-        kept_or_made(&self.surfaces, surface_key(settings), make)
+        last_or_new(&self.surfaces, surface_key(settings), make)
     }
 
     fn texture(&self, settings: &HeightfieldSettings) -> Result<Option<Arc<Texture>>, Fault> {
@@ -282,7 +282,7 @@ impl Assets {
             return Ok(None);
         }
         let path = settings.source.folder.join(&settings.texture);
-        let read = kept_or_made(&self.textures, path, |path| Texture::read(path));
+        let read = last_or_new(&self.textures, path, |path| Texture::read(path));
         read.map(Some)
             .map_err(|why| Fault::new("scene.texture", why))
     }
@@ -293,7 +293,7 @@ impl Assets {
         surface: &HeightSurface,
         make: Make<'_>,
     ) -> Result<Arc<Option<Supply>>, PrepareError> {
-        kept_or_made(&self.cones, cones_key(settings), |_| {
+        last_or_new(&self.cones, cones_key(settings), |_| {
             let folder = &settings.source.folder;
             settings.tracer_settings.cones(surface, folder, make)
         })
@@ -309,7 +309,7 @@ impl Assets {
             return Ok(None);
         };
         let tracing = &settings.tracer_settings;
-        let made = kept_or_made(
+        let made = last_or_new(
             &self.paints,
             paint_key(settings, by),
             |_| -> Result<_, PrepareError> {

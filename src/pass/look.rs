@@ -200,7 +200,7 @@ impl Light {
 
     /// The light under the sky of a file.
     #[must_use]
-    pub fn under(self, sky: Option<Arc<Sky>>) -> Self {
+    pub fn with_sky(self, sky: Option<Arc<Sky>>) -> Self {
         let sky = sky.map(|sky| SkyLight::of(sky, &self.look.sky, self.world_up));
         Self { sky, ..self }
     }

@@ -18,7 +18,7 @@ use crate::plan::UNTIL_LEAST;
 const ROUNDING: f64 = 1.0 / 24.0;
 
 /// Whether the sums after so many samples are kept, to compare with the next as many.
-pub fn is_kept(samples: u32, plan_samples: u32) -> bool {
+pub fn is_judged(samples: u32, plan_samples: u32) -> bool {
     samples.is_power_of_two() && samples >= UNTIL_LEAST / 2 && samples < plan_samples
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::base::last::{Last, is_kept, kept_or_made};
+use crate::base::last::{Last, is_last, last_or_new};
 use crate::heightfield::assets::Assets as HeightfieldAssets;
 use crate::scene::sky::Sky;
 
@@ -21,11 +21,11 @@ impl Assets {
     /// # Errors
     /// As [`Sky::read`].
     pub fn sky(&self, path: PathBuf) -> Result<Arc<Sky>, String> {
-        kept_or_made(&self.skies, path, |path| Sky::read(path))
+        last_or_new(&self.skies, path, |path| Sky::read(path))
     }
 
     /// Whether the sky in a file is read. It never waits for a thread that reads it.
     pub fn has_sky(&self, path: &PathBuf) -> bool {
-        is_kept(&self.skies, path)
+        is_last(&self.skies, path)
     }
 }

@@ -1,15 +1,18 @@
 //! Pictures whose light is followed from surface to surface.
 
+use std::sync::Arc;
+
 use conemarch::picture::frame::Frame;
 use conemarch::plan::layers::Trap;
 use conemarch::plan::look::LightMode;
 use conemarch::plan::{Extras, Plan};
+use conemarch::scene::Assets;
 use glam::DVec3;
 
 use super::common::folder::Folder;
 use super::common::plans::{preset, sized};
 use super::work::bits;
-use crate::adapter::{EVERYTHING, HIT, both, on_cpu, render, render_cut};
+use crate::adapter::{self, EVERYTHING, HIT, both, on_cpu, render, render_cut};
 use conemarch::gpu::render::Cutting;
 
 /// The plan with paths.
@@ -164,4 +167,34 @@ fn quick_light_is_about_as_bright() {
             "{name}: {quick} {path}"
         );
     }
+}
+
+/// The rays of a surface share their first step. The picture is that of rays that do not.
+#[test]
+fn shared_first_steps_change_no_bit() {
+    let alone = |path: &str| {
+        let text = include_str!("../../wgsl/pass/path.wgsl");
+        let shared = "begin_opened(ray, reach, opened)";
+        assert!(text.contains(shared));
+        (path == "wgsl/pass/path.wgsl").then(|| text.replace(shared, "begin(ray, 0.0, reach)"))
+    };
+    let mut differs = 0;
+    for (name, steps) in [
+        ("mandelbox", 512),
+        ("mandelbox-gate", 5),
+        ("mandelbox-stage", 512),
+    ] {
+        let mut plan = followed(sized(name, [64, 36]), 3);
+        plan.look.bounces = 2;
+        plan.look.shadow_steps = Some(steps);
+        let mut renderer = adapter::open();
+        renderer.sources = Some(Arc::new(alone));
+        let plain = renderer.render(&plan, &Assets::default(), EVERYTHING, &mut |_| true);
+        let shared = render(&plan, EVERYTHING);
+        assert!(bits(&plain.unwrap()) == bits(&shared), "{name}");
+        // Each step counts.
+        plan.look.shadow_steps = Some(steps - 1);
+        differs += usize::from(bits(&render(&plan, EVERYTHING)) != bits(&shared));
+    }
+    assert!(differs > 0);
 }

@@ -11,6 +11,7 @@ use conemarch::heightfield::conemap::generate::Generator;
 use conemarch::heightfield::{ConeMap, Heights};
 use conemarch::picture::frame::{Frame, Traffic};
 use conemarch::picture::{Layer, Shades};
+use conemarch::plan::look::LightMode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{BUILTIN, load};
 use conemarch::scene::Assets;
@@ -71,7 +72,10 @@ pub fn plans() -> Vec<Plan> {
 #[test]
 fn slices_and_what_was_begun_before_change_no_bit() {
     let mut renderer = adapter::open();
-    let plans = [&plans()[..], &sampled()].concat();
+    let mut followed = sized("mandelbox", [70, 45]);
+    (followed.samples, followed.until) = (8, 0.05);
+    followed.look.mode = LightMode::Path;
+    let plans = [&plans()[..], &sampled(), &[followed]].concat();
     let assets = Assets::default();
     let go = &mut |_: &_| true;
     let whole: Vec<_> = plans
@@ -79,16 +83,26 @@ fn slices_and_what_was_begun_before_change_no_bit() {
         .map(|plan| bits(&renderer.render(plan, &assets, EVERYTHING, go).unwrap()))
         .collect();
     let mut random = Random::new(12);
-    let (mut finished, mut dropped) = (0, 0);
-    for _ in 0..60 {
+    let (mut finished, mut dropped, mut changed) = (0, 0, 0);
+    for _ in 0..90 {
         renderer.cutting = Cutting {
             block: [32, 64, 1024][random.index(3)],
             chunk: [1, 5, 64][random.index(3)],
         };
-        let which = random.index(plans.len());
-        let mut work = renderer.begin(&plans[which], &assets, EVERYTHING).unwrap();
+        let extras = Extras {
+            shown: random.index(2) == 0,
+            reuse: random.index(2) == 0,
+            ..EVERYTHING
+        };
+        let mut which = random.index(plans.len());
+        let mut work = renderer.begin(&plans[which], &assets, extras).unwrap();
         let patience = [3, 10_000][random.index(2)];
+        let mut changes = random.index(3);
         let frame = (0..patience).find_map(|_| {
+            if changes > 0 && random.index(3) == 0 {
+                (which, changes, changed) = (random.index(plans.len()), changes - 1, changed + 1);
+                renderer.set(&mut work, &plans[which], &assets).unwrap();
+            }
             work.advance(10.0_f64.powf(random.between(-2.0, 2.0)))
                 .unwrap();
             renderer.device.wait().unwrap();
@@ -108,8 +122,8 @@ fn slices_and_what_was_begun_before_change_no_bit() {
         }
     }
     assert!(
-        finished > 20 && dropped > 5,
-        "{finished} finished, {dropped} dropped"
+        finished > 30 && dropped > 5 && changed > 20,
+        "{finished} finished, {dropped} dropped, {changed} changed"
     );
 }
 
@@ -375,7 +389,7 @@ fn every_preset_renders_within_the_limits_that_webgpu_promises() {
         hits += frame.census()[1];
     }
     assert!(hits > 10_000, "the pictures show nothing: {hits} hits");
-    // Cones over heightfields pay in large pictures only. The window shows them on their way.
+    // With cones, in larger pictures that are shown on their way.
     let live = Extras {
         shown: true,
         reuse: true,
@@ -384,7 +398,7 @@ fn every_preset_renders_within_the_limits_that_webgpu_promises() {
     for name in ["terrain", "mandelbox-gate"] {
         let mut plan = load(name, &[]).unwrap().plan.one_sample();
         plan.size = [320, 180];
-        assert!(!plan.resolved(live).levels().is_empty(), "{name}");
+        plan.march.coarsest = Some(16);
         let frame = renderer.render(&plan, &Assets::default(), live, &mut |_| true);
         assert!(frame.unwrap().census()[1] > 10_000, "{name}");
     }

@@ -14,12 +14,14 @@ struct Sight {
     hit: Hit,
 }
 
-/// Follows a ray for `reach`. The path has so many steps left.
-fn path_sight(ray: Beam, reach: f32, left: ptr<function, u32>) -> Sight {
-    var walk = begin(ray, 0.0, reach);
+/// Follows a ray for `reach` from a point whose opening is known. The path has so many steps left.
+fn path_sight(ray: Beam, reach: f32, opened: Opening, left: ptr<function, u32>) -> Sight {
+    var walk = begin_opened(ray, reach, opened);
     var s = STATE_UNCONVERGED;
     let most = min(look.shadow_steps, *left);
-    for (var i = 0u; i < most; i++) {
+    let done = min(steps_opened(walk), most);
+    *left -= done;
+    for (var i = done; i < most; i++) {
         *left -= 1u;
         let now = walk_step(ray, &walk);
         if now != STATE_MOVING {
@@ -69,6 +71,8 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
         v = normalize(vec3<f32>(v.xy, max(v.z, 1e-3)));
         let material = material_at(min(albedo_of(at, point), vec3<f32>(1.0)), v);
         let start = point + lift * at.normal;
+        // The rays of a surface begin with the same step. The CPU repeats it: the bits are the same.
+        let opened = opening(start, grain);
         light += through * emission_of(at);
         for (var nth = 0u; nth <= lamp_count(); nth++) {
             var lamp = Lamp(look.light, far, look.softness);
@@ -86,7 +90,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
             if l.z <= 0.0 {
                 continue;
             }
-            let sight = path_sight(Beam(start, toward, 0.0, 0.0, grain, 0.0), lamp.far, &left);
+            let sight = path_sight(Beam(start, toward, 0.0, 0.0, grain, 0.0), lamp.far, opened, &left);
             if sight.state == STATE_SKY {
                 light += through * material_reflects(material, v, l).rgb * (PI * strength);
             }
@@ -98,7 +102,8 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
             let sampled = sky_toward(place, within);
             let l = sampled.xyz * frame;
             if l.z > 0.0 {
-                let sight = path_sight(Beam(start, sampled.xyz, 0.0, 0.0, grain, 0.0), reach, &left);
+                let ray = Beam(start, sampled.xyz, 0.0, 0.0, grain, 0.0);
+                let sight = path_sight(ray, reach, opened, &left);
                 if sight.state == STATE_SKY {
                     // The balance heuristic (Veach 1997): both rays may find the same light.
                     let reflected = material_reflects(material, v, l);
@@ -124,7 +129,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
             through /= stays;
         }
         let next = Beam(start, frame * l, 0.0, 0.0, grain, 0.0);
-        let sight = path_sight(next, reach, &left);
+        let sight = path_sight(next, reach, opened, &left);
         if sight.state == STATE_SKY {
             var share = 1.0;
             if SKY_IS_SAMPLED {

@@ -49,7 +49,9 @@ fn shafts(color: vec3<f32>, ray: Beam, end: f32, pixel: vec2<u32>) -> vec4<f32> 
     let toward = path_toward(sun, random_pair(seed, turn.stage.before, SHAFTS_PURPOSE + 1u));
     let start = ray.origin + t * ray.axis;
     var left = look.path_steps / SHAFTS_STEPS;
-    let sight = path_sight(Beam(start, toward, 0.0, 0.0, footprint(ray, t), 0.0), sun.far, &left);
+    let grain = footprint(ray, t);
+    let beam = Beam(start, toward, 0.0, 0.0, grain, 0.0);
+    let sight = path_sight(beam, sun.far, opening(start, grain), &left);
     var c = color - share * sky_halo(ray.axis);
     if sight.state == STATE_SKY {
         c += share * shafts_phase(dot(ray.axis, look.light)) * full;

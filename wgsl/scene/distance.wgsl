@@ -245,6 +245,37 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     return STATE_MOVING;
 }
 
+/// The first step of all rays from a point, as far as it does not depend on where they go.
+struct Opening {
+    walk: Walk,
+}
+
+/// The opening of rays from a point, whose footprint stays the same.
+fn opening(q: vec3<f32>, grain: f32) -> Opening {
+    // The first sample is at the point itself, wherever the ray goes.
+    let ray = Beam(q, vec3<f32>(1.0, 0.0, 0.0), 0.0, 0.0, grain, 0.0);
+    var walk = Walk(0.0, 0.0, 0.0, -1.0, 0.0, bounds_far());
+    walk_step(ray, &walk);
+    return Opening(walk);
+}
+
+/// A ray after its first step. If that may have ended it, or was not at the point, it is before
+/// the step.
+fn begin_opened(ray: Beam, reach: f32, opened: Opening) -> Walk {
+    var walk = begin(ray, 0.0, reach);
+    if walk.t == 0.0 && walk.end >= 0.0 && opened.walk.radius > 0.0 {
+        let end = walk.end;
+        walk = opened.walk;
+        walk.end = end;
+    }
+    return walk;
+}
+
+/// The steps of a ray that were done when it began.
+fn steps_opened(walk: Walk) -> u32 {
+    return u32(walk.radius > 0.0);
+}
+
 /// Where the ray is.
 fn walk_hit(walk: Walk) -> Hit {
     return Hit(walk.t, 0u, vec2<f32>(0.0));

@@ -117,6 +117,23 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     return STATE_HIT;
 }
 
+/// Rays from a point have nothing in common.
+struct Opening {
+    unused: u32,
+}
+
+fn opening(q: vec3<f32>, grain: f32) -> Opening {
+    return Opening(0u);
+}
+
+fn begin_opened(ray: Beam, reach: f32, opened: Opening) -> Walk {
+    return begin(ray, 0.0, reach);
+}
+
+fn steps_opened(walk: Walk) -> u32 {
+    return 0u;
+}
+
 fn walk_hit(walk: Walk) -> Hit {
     return Hit(walk.t, walk.face, vec2<f32>(walk.u, walk.v));
 }

@@ -10,7 +10,7 @@ use bytemuck::{bytes_of, cast_slice};
 use super::Shared;
 use super::job::{Job, Made};
 use crate::base::shader::{Program, Sources};
-use crate::gpu::array::KeptArray;
+use crate::gpu::array::DeviceArray;
 use crate::gpu::background::all_at_once;
 #[cfg(feature = "cli")]
 use crate::gpu::conemap::generate::Maker;
@@ -88,7 +88,7 @@ pub struct FrameInputs {
     pub parameters: Parameters,
     pub kernels: Vec<Arc<Kernel>>,
     pub arrange: Arc<Kernel>,
-    pub arrays: Vec<KeptArray>,
+    pub arrays: Vec<DeviceArray>,
 }
 
 /// The programs of a frame, and what follows from the plan besides.
@@ -215,7 +215,7 @@ impl FrameRequest {
         let (scene, needs) = (draft.scene, draft.needs);
         let marched = marched(plan, &scene);
         let sky = plan.sky(&self.assets).map_err(PrepareError::from)?;
-        let light = Light::of(plan, &scene).under(sky);
+        let light = Light::of(plan, &scene).with_sky(sky);
         let mut look = bytes_of(&light.parameters()).to_vec();
         let mut parameters = marched.clone();
         parameters.push(("look_parameters", look.clone()));

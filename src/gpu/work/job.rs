@@ -9,7 +9,7 @@ use crate::gpu::target::{Needs, Parameters, Target};
 use crate::heightfield::assets::Preparation;
 use crate::pass::layout::Layout;
 use crate::pass::turn::{FIRST_PICTURE, Stage, StageKind};
-use crate::pass::until::{bound, is_kept};
+use crate::pass::until::{bound, is_judged};
 use crate::plan::pyramid::Level;
 use crate::plan::{Extras, Pass};
 
@@ -143,7 +143,7 @@ impl Job {
             StageKind::Sketch(_) => before > 0 || (self.firsts > 0 && index < self.first_stages),
             StageKind::Pass(Pass::March(_)) => before > 0,
             StageKind::Census => self.completes(visit).is_none(),
-            StageKind::Judge => !is_kept(before + 1, self.samples),
+            StageKind::Judge => !is_judged(before + 1, self.samples),
             _ => false,
         }
     }

@@ -65,7 +65,7 @@ pub const SECANT: Cones = Cones {
 /// Cone steps, with every patch on the way solved.
 pub const CSM_EXACT: Cones = Cones {
     solves: true,
-    refine: Refine::Settle,
+    refine: Refine::Patches,
     rounds: 0,
     ..SECANT
 };
@@ -153,7 +153,7 @@ fn cones_steps(tracer: &Tracer, ray: &LocalRay, s: f64) -> u32 {
 
 impl Method for Cones {
     fn numbers(&self, settings: &TracerSettings, _pixel: f64) -> TracerParameters {
-        let settles = self.refine == Refine::Settle;
+        let settles = self.refine == Refine::Patches;
         TracerParameters {
             scale: settings.stretch.unwrap_or(self.scale),
             steps: settings.own_steps(),

@@ -20,7 +20,7 @@ pub enum Refine {
     /// Secants (regula falsi): the hit is where the line between both ends crosses.
     Secant,
     /// Bisections until the cells are known, then the exact solve of their patches.
-    Settle,
+    Patches,
 }
 
 /// Bisections of a bracket that settles. It begins with at most 2^16 cells and ends with a
@@ -46,12 +46,12 @@ pub fn refine(
     work: &mut Counts,
 ) -> Step {
     let (left, at) = match how {
-        Refine::Settle => (bracket, bracket[1]),
+        Refine::Patches => (bracket, bracket[1]),
         Refine::Binary => refine_binary(grid, bracket, rounds, work),
         Refine::Secant => refine_secant(grid, bracket, rounds, work),
     };
-    if how == Refine::Settle || grid.surface.patches() == Patches::Boxes {
-        return refine_settle(grid, left, work);
+    if how == Refine::Patches || grid.surface.patches() == Patches::Boxes {
+        return refine_patches(grid, left, work);
     }
     refine_mark(grid, at)
 }
@@ -105,7 +105,7 @@ fn refine_secant(grid: &GridRay<'_>, from: [f64; 2], rounds: u32, work: &mut Cou
     ([low, high], at)
 }
 
-fn refine_settle(grid: &mut GridRay<'_>, bracket: [f64; 2], work: &mut Counts) -> Step {
+fn refine_patches(grid: &mut GridRay<'_>, bracket: [f64; 2], work: &mut Counts) -> Step {
     let [mut low, mut high] = bracket;
     for _ in 0..SETTLE_ROUNDS {
         if grid.cell(low) == grid.cell(high) {

@@ -50,7 +50,7 @@ impl Method for WalkRelaxed {
             let grounded = next >= end && grid.trace.falls;
             // The ray meets nothing in its cell, so that the bracket may begin at the exit.
             if grounded || refine_over(grid, next.min(end)) <= 0.0 {
-                return refine(grid, [exit, next.min(end)], Refine::Settle, 0, work);
+                return refine(grid, [exit, next.min(end)], Refine::Patches, 0, work);
             }
         }
         grid.leave(&node, &over, next)

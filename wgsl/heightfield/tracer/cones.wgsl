@@ -95,7 +95,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     // At the bottom the ray is under the surface by definition.
     if (next >= end && (*trace).falls == 1u) || refine_over(o, d, next) <= 0.0 {
         if CONES_SOLVE {
-            refine_settle(o, d, trace, vec2<f32>(to, next));
+            refine_patches(o, d, trace, vec2<f32>(to, next));
         } else if CONES_SECANT {
             refine_secant(o, d, trace, vec2<f32>(s, next));
         } else {

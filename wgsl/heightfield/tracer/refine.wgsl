@@ -35,7 +35,7 @@ fn refine_binary(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
         }
     }
     if HEIGHTMAP_BOXES {
-        refine_settle(o, d, trace, vec2<f32>(low, high));
+        refine_patches(o, d, trace, vec2<f32>(low, high));
         return;
     }
     refine_mark(o, d, trace, 0.5 * (low + high));
@@ -66,14 +66,14 @@ fn refine_secant(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
         }
     }
     if HEIGHTMAP_BOXES {
-        refine_settle(o, d, trace, vec2<f32>(low, high));
+        refine_patches(o, d, trace, vec2<f32>(low, high));
         return;
     }
     refine_mark(o, d, trace, at);
 }
 
 /// Bisections until both ends lie in one cell, or nearly, then the patches between them.
-fn refine_settle(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracket: vec2<f32>) {
+fn refine_patches(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracket: vec2<f32>) {
     var low = bracket.x;
     var high = bracket.y;
     for (var i = 0u; i < SETTLE_ROUNDS; i++) {

@@ -57,7 +57,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
         let last = min(next, end);
         // At the bottom the ray is under the surface by definition.
         if (next >= end && (*trace).falls == 1u) || refine_over(o, d, last) <= 0.0 {
-            refine_settle(o, d, trace, vec2<f32>(exit.x, last));
+            refine_patches(o, d, trace, vec2<f32>(exit.x, last));
             return STATE_HIT;
         }
     }

@@ -38,7 +38,7 @@ pub struct Owner {
 
 /// The file, open and locked. If it holds no band, it goes when this is dropped.
 #[derive(Debug)]
-pub struct Kept {
+pub struct Unfinished {
     path: PathBuf,
     file: File,
     owner: Owner,
@@ -56,7 +56,7 @@ pub fn beside(picture: &Path) -> PathBuf {
     name.into()
 }
 
-impl Kept {
+impl Unfinished {
     /// Opens the file beside a picture, or makes it. `lengths` are the bytes of the bands' rows.
     ///
     /// # Errors
@@ -217,7 +217,7 @@ impl Kept {
     }
 }
 
-impl Drop for Kept {
+impl Drop for Unfinished {
     fn drop(&mut self) {
         interrupt::keeps(None);
         if self.tallies.is_empty() {
