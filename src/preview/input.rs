@@ -10,7 +10,7 @@ use crate::preview::flight::Thrust;
 use crate::preview::views::Shot;
 
 /// The keys, and what they do.
-pub const HELP: [(&str, &str); 27] = [
+pub const HELP: [(&str, &str); 28] = [
     ("W A S D, arrows", "fly forward, left, back, right"),
     ("E Q", "fly up, down"),
     ("Z X", "roll"),
@@ -32,12 +32,13 @@ pub const HELP: [(&str, &str); 27] = [
     ("K", "set a key of the present view"),
     ("Ctrl+K", "overwrite the chosen key with the present view"),
     ("Delete", "take the chosen key away; Alt+drag copies it"),
-    ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
+    ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo; Ctrl+Y redoes too"),
     ("Ctrl+S", "save the preset"),
     ("F12", "a still of the size of image.size"),
     ("Ctrl+C", "copy the command that makes this picture"),
     ("F11", "full screen"),
     ("F1", "these keys"),
+    ("Ctrl+Q", "close the window"),
 ];
 
 /// What a key asks for at once.

@@ -13,6 +13,8 @@ use conemarch::gpu::device::{Device, DeviceError};
 use conemarch::gpu::render::Renderer;
 use conemarch::pass::pick::{At, Picked};
 use conemarch::plan::{Extras, Plan};
+#[cfg(feature = "preview")]
+use conemarch::preview::pictures::Pictures;
 use conemarch::scene::Assets;
 use glam::DVec3;
 use toml::Value;
@@ -217,6 +219,61 @@ fn heights_that_do_not_fit_are_an_error_and_the_next_frame_is_right() {
     let plan = &plans()[1];
     let wanted = whole(&mut adapter::open(), plan).unwrap();
     assert!(whole(&mut renderer, plan).unwrap() == wanted);
+}
+
+/// Goes on until there is nothing to do, and gives the full picture.
+#[cfg(feature = "preview")]
+fn full(pictures: &mut Pictures) -> Result<Vec<u32>, RenderError> {
+    while pictures.is_busy() {
+        pictures.advance()?;
+    }
+    let finished = pictures.finished().filter(|finished| finished.is_full);
+    Ok(bits(finished.expect("a full picture").frame))
+}
+
+#[cfg(feature = "preview")]
+#[test]
+fn a_plan_that_fails_is_tried_once_and_again_after_a_change() {
+    let mut pictures = Pictures::new(Arc::new(within_promised_limits()));
+    let large = preset("terrain", &["scene.field=checker:8192x8192"]);
+    for _ in 0..2 {
+        pictures.want(&large);
+        let error = full(&mut pictures).unwrap_err().to_string();
+        assert!(error.contains("`heights` needs 256 MiB"), "{error}");
+        for _ in 0..3 {
+            pictures.want(&large);
+            assert!(!pictures.is_busy());
+            assert!(matches!(pictures.advance(), Ok(false)));
+        }
+        // Other texts of shaders may do.
+        pictures.again();
+    }
+    let plan = &plans()[1];
+    pictures.keep(EVERYTHING);
+    pictures.want(plan);
+    assert!(!full(&mut pictures).unwrap().is_empty());
+}
+
+#[cfg(feature = "preview")]
+#[test]
+fn pictures_on_a_device_that_was_opened_again_are_the_same() {
+    let plan = &plans()[1];
+    let shown = |pictures: &mut Pictures| {
+        pictures.keep(EVERYTHING);
+        pictures.want(plan);
+        full(pictures)
+    };
+    let mut pictures = Pictures::new(adapter::open().device);
+    let wanted = shown(&mut pictures).unwrap();
+    // At rest too, a loss is told.
+    pictures.renderer.device.device.destroy();
+    let error = pictures.advance().unwrap_err();
+    let RenderError::Device(DeviceError::Lost { .. }) = error else {
+        panic!("{error}");
+    };
+    let mut again = Pictures::new(adapter::open().device);
+    again.assets = pictures.assets.clone();
+    assert!(shown(&mut again).unwrap() == wanted);
 }
 
 fn picked(renderer: &mut Renderer, plan: &Plan, at: At) -> Picked {

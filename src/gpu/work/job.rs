@@ -90,16 +90,12 @@ pub(in crate::gpu) struct Job {
 }
 
 impl Job {
-    /// What is known of the cost of a stage that has not run yet.
-    fn first_cost(&self, kind: &StageKind) -> Cost {
-        Cost::first(self.follows_light && *kind == StageKind::Pass(Pass::Color))
-    }
-
     /// The costs of the stages, where those of the last frame say nothing of them.
     pub(super) fn first_costs(&self) -> Vec<Cost> {
+        let follows = |kind| self.follows_light && *kind == StageKind::Pass(Pass::Color);
         self.kinds
             .iter()
-            .map(|kind| self.first_cost(kind))
+            .map(|kind| Cost::first(follows(kind)))
             .collect()
     }
 
