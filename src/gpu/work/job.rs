@@ -92,7 +92,8 @@ pub(in crate::gpu) struct Job {
 impl Job {
     /// The costs of the stages, where those of the last frame say nothing of them.
     pub(super) fn first_costs(&self) -> Vec<Cost> {
-        let follows = |kind| self.follows_light && *kind == StageKind::Pass(Pass::Color);
+        let follows =
+            |kind: &StageKind| self.follows_light && *kind == StageKind::Pass(Pass::Color);
         self.kinds
             .iter()
             .map(|kind| Cost::first(follows(kind)))

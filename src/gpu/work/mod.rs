@@ -211,6 +211,16 @@ impl Work {
     /// [`RenderError::Cancelled`] if `watch` returns `false`, and those of [`Work::poll`].
     #[cfg(feature = "cli")]
     pub fn finish(mut self, watch: Watch<'_>) -> Result<Frame, RenderError> {
+        let frame = self.wait_for_frame(watch);
+        if let Err(RenderError::Device(_)) = frame {
+            // A lost device reports other errors first.
+            self.shared.device.trouble()?;
+        }
+        frame
+    }
+
+    #[cfg(feature = "cli")]
+    fn wait_for_frame(&mut self, watch: Watch<'_>) -> Result<Frame, RenderError> {
         while let Some(inputs) = self.inputs.last() {
             if !watch(&inputs.progress()) {
                 return Err(RenderError::Cancelled);
