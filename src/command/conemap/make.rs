@@ -55,8 +55,8 @@ pub struct Make {
     #[arg(long)]
     boxes: bool,
 
-    /// Texels that are added to each distance when the cones of walk and walk-relaxed are made [default:
-    /// 2]
+    /// Texels that are added to each distance in making the cones of walk and walk-relaxed
+    /// [default: 2]
     #[arg(long, value_name = "TEXELS")]
     offset: Option<f64>,
 
