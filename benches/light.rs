@@ -21,15 +21,9 @@ mod markdown;
 
 /// The marks around the table in the page.
 const MARKS: [&str; 2] = ["<!-- light -->", "<!-- /light -->"];
-const PRESETS: [&str; 5] = [
-    "mandelbox",
-    "mandelbox-gate",
-    "mandelbox-hall",
-    "mandelbox-julia",
-    "mandelbox-reef",
-];
+const PRESETS: [&str; 3] = ["mandelbox", "mandelbox-gate", "mandelbox-julia"];
 /// Warm runs, of which the median is taken.
-const RUNS: usize = 5;
+const RUNS: usize = 3;
 
 /// The program in which each ray makes its first step by itself.
 fn alone(path: &str) -> Option<String> {

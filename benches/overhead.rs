@@ -296,8 +296,8 @@ fn frames() -> Result<String> {
 }
 
 /// Renders of a preset that are cancelled, and the time within which they are.
-const CANCELS: u32 = 6;
-const CANCELLED_WITHIN: Duration = Duration::from_millis(2400);
+const CANCELS: u32 = 4;
+const CANCELLED_WITHIN: Duration = Duration::from_millis(2000);
 
 /// How soon a render that another thread cancels returns. Every preset is rendered with its own
 /// samples and light, by a renderer that has rendered nothing yet, and cancelled at moments that are
