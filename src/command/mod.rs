@@ -3,7 +3,7 @@
 //! - [`mod@line`]: the command line as a whole; [`arguments`]: parsers of arguments
 //! - [`render`], [`merge`], `preview`, [`animate`], [`mod@bench`], [`conemap`], [`presets`], [`devices`], [`completions`]: the verbs
 //! - [`executor`]: the device or the CPU that `--device` chooses
-//! - [`bands`]: big pictures, with their finished bands in a file, [`kept`]; [`tile`]: parts of a
+//! - [`bands`]: big pictures, with their finished bands in a file, [`unfinished`]; [`tile`]: parts of a
 //!   picture
 //! - [`memory`]: checks before the work that a picture fits
 //! - [`output`]: where a render writes, and how; [`sink`]: files and standard output
