@@ -11,7 +11,7 @@ const FIRST_MS: f64 = 8.0;
 /// The product of workgroups and steps of a first dispatch. At 64 steps of a fractal with few
 /// iterations it takes about `FIRST_MS` on a slow device.
 const FIRST_SLICE: u32 = 64 * 256;
-/// The same where light is followed by rays: such a dispatch takes up to a hundred times as long.
+/// The same where light is followed by rays: such a dispatch takes much longer.
 const FIRST_SLICE_OF_PATHS: u32 = 64 * 16;
 /// The largest change of a dispatch's size at once. The time of a small dispatch says little of a
 /// large one.
