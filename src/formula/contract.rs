@@ -166,6 +166,12 @@ pub trait DistanceEstimate {
         wgsl!("formula/traps_plain.wgsl")
     }
 
+    /// The WGSL module with `estimate_four`: the estimates at four points. One that computes them
+    /// side by side is faster.
+    fn four_module(&self) -> Module {
+        wgsl!("formula/four_plain.wgsl")
+    }
+
     /// See [`Evaluate::lipschitz`].
     fn lipschitz(&self) -> f64 {
         self.evaluator().lipschitz()

@@ -187,6 +187,13 @@ impl DistanceEstimate for Mandelbox {
         wgsl!("formula/traps_folds.wgsl")
     }
 
+    fn four_module(&self) -> Module {
+        match (self.estimate, self.rotated()) {
+            (Estimate::Tight, None) => wgsl!("formula/four_folds.wgsl"),
+            _ => wgsl!("formula/four_plain.wgsl"),
+        }
+    }
+
     fn bounds(&self) -> Bounds {
         let (s, l) = (self.scale, self.fold_limit);
         let rotated = self.rotated().is_some();

@@ -214,7 +214,7 @@ impl Twin for Distance {
             ),
         ];
         all.extend(self.formula.modules());
-        all
+        [all, vec![self.formula.four_module()]].concat()
     }
 
     fn uniforms(&self) -> Vec<(&'static str, Vec<u8>)> {

@@ -200,6 +200,7 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/folds.wgsl  FOLDS_JULIA=0
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
+        wgsl/formula/four_folds.wgsl
         wgsl/base/view.wgsl
         wgsl/base/perspective.wgsl
         wgsl/pass/shared.wgsl
@@ -213,6 +214,7 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/folds.wgsl  FOLDS_JULIA=0
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
+        wgsl/formula/four_folds.wgsl
         wgsl/base/view.wgsl
         wgsl/base/perspective.wgsl
         wgsl/pass/shared.wgsl
@@ -226,6 +228,7 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/folds.wgsl  FOLDS_JULIA=0
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
+        wgsl/formula/four_folds.wgsl
         wgsl/base/view.wgsl
         wgsl/base/perspective.wgsl
         wgsl/pass/shared.wgsl

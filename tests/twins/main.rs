@@ -119,7 +119,9 @@ const ITERATIONS: u32 = 6;
 fn pair(formula: &Formula, pairs: &mut Pairs, q: &Numbers, a: &Numbers) {
     let (p, [clear, trial]) = (three(q[0]), [q[2][0], q[2][1]].map(f64::from));
     let evaluator = formula.evaluator();
-    pairs.add("estimate", a[0][0], evaluator.value(p, ITERATIONS).0);
+    let value = evaluator.value(p, ITERATIONS).0;
+    pairs.add("estimate", a[0][0], value);
+    pairs.add("of_four", a[0][2], value);
     pairs.add("step", a[2][0], evaluator.step(p, ITERATIONS, clear).radius);
     pairs.add("ball", a[2][1], evaluator.ball(p, ITERATIONS, trial).radius);
     pairs.add("cone", a[2][2], evaluator.cone(p, ITERATIONS, trial).radius);
@@ -134,12 +136,14 @@ fn formulas_agree() {
         let most = f64::from(ITERATIONS);
         let asked = questions(1, |random| {
             let [clear, trial] = [0.1, 1.0].map(|most| most * random.unit());
-            let room = four(DVec3::new(clear, trial, 0.0), 0.0);
+            let nth = (4.0 * random.unit()).floor().min(3.0);
+            let room = four(DVec3::new(clear, trial, nth), 0.0);
             [four(random.cube(reach), most), [0.0; 4], room]
         });
         let [estimate, ball, trap] = allowed(&formula);
         let quantities = [
             ("estimate", 0.01, estimate),
+            ("of_four", 0.01, estimate),
             ("step", 0.01, estimate),
             ("ball", 0.01, ball),
             ("cone", 0.01, estimate),

@@ -38,12 +38,11 @@ override FOLDS_JULIA: bool;
 @group(0) @binding(1) var<storage, read> folds_parameters: FoldsUniform;
 var<private> folds: FoldsUniform;
 
-/// A point after the box fold, its squared length, and the factor of the ball fold over the
-/// squared outer radius.
+/// A point after the box fold, its squared length, and the factor of the ball fold and the scale.
 struct Fold {
     b: real3,
     square: real,
-    m: real,
+    factor: real,
 }
 
 fn formula_load() {
@@ -68,16 +67,17 @@ fn fold(z: real3) -> Fold {
     let limit = real(folds.fold_limit);
     let b = real(2.0) * clamp(z, real3(-limit), real3(limit)) - z;
     let square = dot(b, b);
-    return Fold(b, square, real(1.0) / clamp(square, real(folds.min2), real(folds.fixed2)));
+    let scaled = real(folds.scale) * real(folds.fixed2);
+    return Fold(b, square, scaled / clamp(square, real(folds.min2), real(folds.fixed2)));
 }
 
 fn fold_next(f: Fold, c: real3) -> real3 {
-    return (real(folds.scale) * real(folds.fixed2) * f.m) * rotate(f.b) + c;
+    return f.factor * rotate(f.b) + c;
 }
 
 /// By how much lengths grow.
 fn fold_growth(f: Fold) -> real {
-    return abs(real(folds.scale) * real(folds.fixed2)) * f.m;
+    return abs(f.factor);
 }
 
 fn fold_k(c: real3) -> real {

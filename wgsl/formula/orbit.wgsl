@@ -55,7 +55,7 @@ fn growth_follows(grown: ptr<function, Growth>, z: real3, f: Fold) {
     );
     (*grown).free = min((*grown).free, clearance / (*grown).norm);
     let mirror = select(real3(real(1.0)), real3(real(-1.0)), beyond > real3(real(0.0)));
-    let scale = real(folds.scale) * real(folds.fixed2) * f.m;
+    let scale = f.factor;
     (*grown).jacobian = jacobian_next((*grown).jacobian, mirror, scale);
     (*grown).norm = jacobian_norm((*grown).jacobian);
     (*grown).scalar = abs(scale) * (*grown).scalar + real(1.0);

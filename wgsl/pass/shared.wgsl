@@ -11,6 +11,9 @@ const STATE_UNCONVERGED = 2u;
 /// Not finished: the next dispatch goes on. A frame never contains this state.
 const STATE_MOVING = 3u;
 
+/// Distances along a normal at which occlusion asks for the free room.
+const ROOMS = 5u;
+
 /// A cone between two steps.
 struct Advance {
     /// Every ray of the cone is proven free up to here.

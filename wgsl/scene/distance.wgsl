@@ -74,10 +74,30 @@ fn widened(inside: f32, outside: f32) -> f32 {
     return select(inside, max(inside, outside), outside > 0.0);
 }
 
+/// Four points.
+struct Points {
+    x: real4,
+    y: real4,
+    z: real4,
+}
+
 /// The value of the field.
 fn field_value(q: vec3<f32>) -> f32 {
     let inside = f32(estimate(scene_point(q), distance_scene.iterations));
     return widened(inside, bounds_distance(q));
+}
+
+/// The values of the field at four points, given relative to q.
+fn field_values(q: vec3<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4<f32> {
+    let p = scene_point(q);
+    let at = Points(p.x + real4(x), p.y + real4(y), p.z + real4(z));
+    let inside = vec4<f32>(estimate_four(at, distance_scene.iterations));
+    return vec4<f32>(
+        widened(inside.x, bounds_distance(q + vec3<f32>(x.x, y.x, z.x))),
+        widened(inside.y, bounds_distance(q + vec3<f32>(x.y, y.y, z.y))),
+        widened(inside.z, bounds_distance(q + vec3<f32>(x.z, y.z, z.z))),
+        widened(inside.w, bounds_distance(q + vec3<f32>(x.w, y.w, z.w))),
+    );
 }
 
 /// The value of the field, and the radius of a ball in which it should exceed `clear`. Where rays
@@ -302,17 +322,24 @@ fn room(q: vec3<f32>, enough: f32) -> f32 {
     return max(0.0, field_value(q));
 }
 
+/// The free room at ROOMS distances from a point, of which each is twice the one before.
+fn rooms(q: vec3<f32>, axis: vec3<f32>, nearest: f32) -> array<f32, ROOMS> {
+    let h = nearest * vec4<f32>(1.0, 2.0, 4.0, 8.0);
+    let near = max(field_values(q, h * axis.x, h * axis.y, h * axis.z), vec4<f32>(0.0));
+    let far = 16.0 * nearest;
+    return array<f32, ROOMS>(near.x, near.y, near.z, near.w, room(q + far * axis, far));
+}
+
 /// The normal is the gradient over the corners of a tetrahedron half a pixel wide, the pigment
 /// comes from the orbit.
 fn surface(ray: Beam, hit: Hit) -> Surface {
     let q = ray.origin + hit.t * ray.axis;
     let h = 0.5 * footprint(ray, hit.t) + distance_scene.far * 1e-7;
-    let a = vec3<f32>(1.0, -1.0, -1.0);
-    let b = vec3<f32>(-1.0, -1.0, 1.0);
-    let c = vec3<f32>(-1.0, 1.0, -1.0);
-    let d = vec3<f32>(1.0, 1.0, 1.0);
-    let g = a * field_value(q + h * a) + b * field_value(q + h * b)
-        + c * field_value(q + h * c) + d * field_value(q + h * d);
+    let x = vec4<f32>(1.0, -1.0, -1.0, 1.0);
+    let y = vec4<f32>(-1.0, -1.0, 1.0, 1.0);
+    let z = vec4<f32>(-1.0, 1.0, -1.0, 1.0);
+    let f = field_values(q, h * x, h * y, h * z);
+    let g = vec3<f32>(dot(f, x), dot(f, y), dot(f, z));
     let n = length(g);
     // A point without a gradient faces the viewer.
     var normal = -ray.axis;

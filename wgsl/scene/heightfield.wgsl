@@ -193,6 +193,17 @@ fn room(q: vec3<f32>, enough: f32) -> f32 {
     return mix(empty_radius(p, rest), gap, HEIGHTFIELD_GUESS);
 }
 
+/// The free room at ROOMS distances from a point, of which each is twice the one before.
+fn rooms(q: vec3<f32>, axis: vec3<f32>, nearest: f32) -> array<f32, ROOMS> {
+    var all: array<f32, ROOMS>;
+    var h = nearest;
+    for (var i = 0u; i < ROOMS; i++) {
+        all[i] = room(q + h * axis, h);
+        h *= 2.0;
+    }
+    return all;
+}
+
 /// The world direction of a local normal.
 fn to_world(v: vec3<f32>) -> vec3<f32> {
     return heightfield.texel * (v.x * heightfield.row_x + v.y * heightfield.row_y)

@@ -158,6 +158,17 @@ fn room(q: vec3<f32>, enough: f32) -> f32 {
     return clearance(q);
 }
 
+/// The free room at ROOMS distances from a point, of which each is twice the one before.
+fn rooms(q: vec3<f32>, axis: vec3<f32>, nearest: f32) -> array<f32, ROOMS> {
+    var all: array<f32, ROOMS>;
+    var h = nearest;
+    for (var i = 0u; i < ROOMS; i++) {
+        all[i] = room(q + h * axis, h);
+        h *= 2.0;
+    }
+    return all;
+}
+
 fn surface(ray: Beam, hit: Hit) -> Surface {
     var normal = slab.normal;
     if hit.id == 0u {
