@@ -11,7 +11,7 @@ use crate::heightfield::conemap::generate::generator::{GenerateError, Generator,
 use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::plan::Plan;
-use crate::scene::{Assets, Scene};
+use crate::scene::Assets;
 
 /// Why there is no frame, on any executor.
 #[derive(Debug, Error)]
@@ -64,7 +64,7 @@ pub fn prepare(
         let pass = pass.into();
         watch(&Progress { pass, done })
     };
-    if let Scene::Heightfield(settings) = &plan.scene {
+    if let Some(settings) = plan.scene.heightfield() {
         let pass = format!("heights of {}", settings.source.field);
         assets
             .heightfield

@@ -28,7 +28,7 @@ use crate::base::named::named_enum;
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::keys;
-use crate::scene::{AnySolid, Scene, Task, Viewpoint};
+use crate::scene::{AnySolid, Scene, Viewpoint};
 use crate::time::clock::Timing;
 use crate::time::track::Track;
 use camera::Camera;
@@ -51,10 +51,6 @@ pub const UNTIL_TILE: u32 = WINDOW_STEP;
 
 /// The fewest samples of a tile that ends before others: two halves of four.
 pub const UNTIL_LEAST: u32 = 8;
-
-/// Over a heightfield, cones pay from so many pixels on. Over the built-in ones, rays alone are
-/// faster at 160 x 90, neither at 320 x 180, and cones at 640 x 360.
-const CONE_PIXELS: u32 = 50_000;
 
 named_enum! {
     /// What is behind the hits.
@@ -182,7 +178,7 @@ impl Plan {
         self.march.check()?;
         self.look.check(self.scene.most_shadow_steps())?;
         Fault::unless(
-            !self.look.layers.are_on() || matches!(self.scene, Scene::Distance(_)),
+            !self.look.layers.are_on() || self.scene.formula().is_some(),
             self.look.layers.first_on().unwrap_or("look.trap"),
             "only a formula has orbits that traps measure; over other scenes use trap = \"auto\" and no layers",
         )?;
@@ -193,7 +189,7 @@ impl Plan {
         )?;
         let proves = !self.march.stepping().proven || self.scene.sharpest() == self.scene;
         Fault::unless(
-            proves || !matches!(self.scene, Scene::Distance(_)),
+            proves || self.scene.formula().is_none(),
             "march.mode",
             "there is a proof only for scene.estimate = \"tight\"; use that, or mode safe",
         )?;
@@ -305,18 +301,14 @@ impl Plan {
 
     /// Whether cones save more time than they take.
     fn cones_pay(&self) -> bool {
-        match &self.scene {
-            Scene::Distance(settings) => {
-                let probe = Probe {
-                    view: self.view(),
-                    size: self.size,
-                    steps: self.march.ray_steps(None),
-                };
-                probe.run(&settings.seen(&self.viewpoint()))
-            }
-            Scene::Heightfield(_) => self.size[0] * self.size[1] >= CONE_PIXELS,
-            _ => true,
-        }
+        let Some(solid) = self.scene.without_assets(&self.viewpoint()) else {
+            return self.size[0] * self.size[1] >= self.scene.cone_pixels();
+        };
+        solid.run(Probe {
+            view: self.view(),
+            size: self.size,
+            steps: self.march.ray_steps(None),
+        })
     }
 }
 

@@ -15,7 +15,7 @@ use crate::pass::progress::Progress;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::{Extras, Plan};
 use crate::preview::picture::Picture;
-use crate::scene::{Assets, Scene};
+use crate::scene::Assets;
 
 /// Milliseconds of work that are submitted at once. What was submitted must end before another plan
 /// begins, and a software device lets the host wait for it.
@@ -161,7 +161,7 @@ impl Pictures {
         let mut small = plan.one_sample();
         let divisor = DIVISORS[self.divisor];
         small.size = plan.size.map(|n| n.div_ceil(divisor).max(1));
-        let optional = matches!(plan.scene, Scene::Distance(_)) && plan.march.may_drop_cones();
+        let optional = plan.scene.formula().is_some() && plan.march.may_drop_cones();
         // Who looks at the levels wants to see some.
         if optional && !self.extras.levels {
             small.march.coarsest = Some(1);

@@ -97,6 +97,10 @@ impl SceneSettings for DistanceSettings {
     /// The estimate's noise in f32 is about 2e-8 of the coordinates (docs/method.md, 6), and
     /// the coordinates of any orbit are as large as the bounds. A footprint below a hundred
     /// times this noise is damaged.
+    fn without_assets(&self, from: &Viewpoint) -> Option<AnySolid> {
+        Some(AnySolid::Distance(self.seen(from)))
+    }
+
     fn precision_warning(&self, from: &Viewpoint) -> Option<String> {
         let finest = self.finest_footprint(from);
         let floor = 2e-6 * self.formula.bounds().half.max_element();

@@ -95,6 +95,10 @@ macro_rules! scenes {
     };
 }
 
+/// Over a heightfield, cones pay from so many pixels on. Over the built-in ones, rays alone are
+/// faster at 160 x 90, neither at 320 x 180, and cones at 640 x 360.
+const CONE_PIXELS: u32 = 50_000;
+
 scenes![
     /// A distance-estimated formula.
     Distance: DistanceSettings => Distance,
@@ -121,6 +125,11 @@ impl Scene {
             Self::Heightfield(settings) => Some(settings),
             _ => None,
         }
+    }
+
+    /// The fewest pixels of a picture in which cones pay, whatever the view.
+    pub fn cone_pixels(&self) -> u32 {
+        self.heightfield().map_or(0, |_| CONE_PIXELS)
     }
 
     /// The same kind of scene with its defaults.

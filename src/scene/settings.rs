@@ -61,6 +61,11 @@ pub trait SceneSettings {
         self.solid(from, assets)
     }
 
+    /// The scene, if it needs no assets: a few of its rays tell whether cones pay.
+    fn without_assets(&self, _from: &Viewpoint) -> Option<AnySolid> {
+        None
+    }
+
     /// The Lipschitz constant of the distance estimate. Steps divide by it.
     fn lipschitz(&self) -> f64 {
         1.0

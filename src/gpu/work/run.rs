@@ -191,6 +191,10 @@ impl Run {
         for (index, (stage, cost)) in stages.iter_mut().zip(&self.reusable.costs).enumerate() {
             [stage.chunk, stage.most] = self.job.steps;
             stage.slice = cost.slice;
+            // A second round of a small stage would take longer than all its steps.
+            if stage.tiles.saturating_mul(stage.limit) <= stage.slice {
+                stage.chunk = stage.limit;
+            }
             stage.generation = self.generation(block);
             self.job.sample(block, index, stage);
             // A frame that goes on from the one before keeps its cells, which were counted then.
