@@ -11,17 +11,22 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, ensure};
+use as_sharp::as_sharp;
+use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::render::Renderer;
+use conemarch::measure::set::{self, sharpness};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
-use conemarch::preset;
+use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 use one_sample::one_sample;
 use serde_json::Value;
 use tempfile::TempDir;
 
+#[path = "common/as_sharp.rs"]
+mod as_sharp;
 #[path = "common/markdown.rs"]
 mod markdown;
 #[path = "common/one_sample.rs"]
@@ -34,6 +39,10 @@ const MARKS: [&str; 2] = [
 ];
 /// Processes of each build per row; each has warm runs of its own.
 const RUNS: usize = 3;
+/// Today's settings of the march.
+const TODAY: [&str; 2] = ["march.coarsest=auto", "march.shell=0.2"];
+/// The factor on the steps to the set.
+const STRIDE: f64 = 0.1;
 /// Presets whose second frame is looked at.
 const LIVE: [&str; 3] = ["mandelbox", "mandelbox-gate", "terrain"];
 
@@ -158,9 +167,9 @@ fn small(args: &[String], presets: &Path) -> Result<String> {
 /// and with those of today.
 fn large(args: &[String], presets: &Path) -> Result<String> {
     let scalar = ["--set", "scene.estimate=scalar"];
-    let today = ["--set", "march.coarsest=auto", "--set", "march.shell=0.2"];
-    let mut rows = Vec::new();
-    let mut ratios = Vec::new();
+    let today = TODAY.map(|setting| ["--set", setting]).concat();
+    let (mut rows, mut sharp_rows) = (Vec::new(), Vec::new());
+    let (mut ratios, mut gains) = (Vec::new(), Vec::new());
     for (preset, _) in preset::BUILTIN {
         let file = presets.join(preset).with_extension("toml");
         if !file.exists() {
@@ -169,12 +178,16 @@ fn large(args: &[String], presets: &Path) -> Result<String> {
         // Heightfields have no estimate.
         let has_formula = std::fs::read_to_string(&file)?.contains("formula");
         let same = scalar.get(..if has_formula { 2 } else { 0 });
+        let detail = has_formula.then(|| detail_before(&file)).transpose()?;
+        let detail = detail.map(|d| format!("march.detail={d:.3}"));
+        let as_sharp = detail.as_ref().map(|d| ["--set", d]);
         let runs = [
             (&args[0], &[][..]),
             (&args[1], same.unwrap_or_default()),
             (&args[1], &today[..]),
+            (&args[0], as_sharp.as_ref().map_or(&[][..], |d| d)),
         ];
-        let mut all = [vec![], vec![], vec![]];
+        let mut all = [vec![], vec![], vec![], vec![]];
         for _ in 0..RUNS {
             for (times, (program, settings)) in all.iter_mut().zip(runs) {
                 times.push(run(program, &file, "1280x720", settings)?);
@@ -186,8 +199,8 @@ fn large(args: &[String], presets: &Path) -> Result<String> {
             times[RUNS / 2]
         };
         let [old, same, new] = [0, 1, 2].map(|of| median(of, |t| t.marched));
-        let [whole_old, whole_same, whole] =
-            [0, 1, 2].map(|of| median(of, |t| t.marched + t.colored));
+        let [whole_old, whole_same, whole, whole_sharp] =
+            [0, 1, 2, 3].map(|of| median(of, |t| t.marched + t.colored));
         let own = [
             same / old,
             new / old,
@@ -199,20 +212,60 @@ fn large(args: &[String], presets: &Path) -> Result<String> {
             "{preset} | {old:.0} | {same:.0} | {new:.0} | {a:.2} | {b:.2} | {whole_old:.0} | {whole_same:.0} | {whole:.0} | {c:.2} | {d:.2}",
         ));
         ratios.push(own);
+        let detail = detail.as_deref().unwrap_or("the same");
+        let gain = whole_sharp / whole;
+        sharp_rows.push(format!(
+            "{preset} | {} | {whole_sharp:.0} | {whole:.0} | {gain:.2}",
+            detail.trim_start_matches("march.detail=")
+        ));
+        gains.push([gain]);
     }
-    let mean = |of: usize| {
-        let logs: f64 = ratios.iter().map(|own| own[of].ln()).sum();
-        (logs / ratios.len() as f64).exp()
-    };
-    let [a, b, c, d] = [0, 1, 2, 3].map(mean);
+    let [a, b, c, d] = means(&ratios);
+    let [gain] = means(&gains);
+    sharp_rows.push(format!("geometric mean | | | | {gain:.2}"));
     rows.push(format!(
         "geometric mean | | | | {a:.2} | {b:.2} | | | | {c:.2} | {d:.2}"
     ));
-    Ok(markdown::table(
+    let equal = markdown::table(
         "march and trace, 1280 x 720 | before, ms | same estimate | now | same / before | now / before | whole frame before | same estimate | now | same / before | now / before",
         "lr",
         rows,
-    ))
+    );
+    let sharp = markdown::table(
+        "whole frames as sharp, 1280 x 720 | detail before | before, ms | now, ms | times faster",
+        "lr",
+        sharp_rows,
+    );
+    Ok(format!("{equal}\n{sharp}"))
+}
+
+/// The geometric mean of each figure.
+fn means<const N: usize>(rows: &[[f64; N]]) -> [f64; N] {
+    std::array::from_fn(|of| {
+        let logs: f64 = rows.iter().map(|own| own[of].ln()).sum();
+        (logs / rows.len() as f64).exp()
+    })
+}
+
+/// The `detail` with which the old estimate shows as sharp a picture of a preset as today's.
+fn detail_before(file: &Path) -> Result<f64> {
+    let load = |settings: &[&str]| -> Result<Plan> {
+        let settings: Result<Vec<_>, _> = settings.iter().map(|s| Override::read(s)).collect();
+        let mut plan = preset::load(file, &settings?)?.plan.one_sample();
+        plan.size = [640, 360];
+        Ok(plan)
+    };
+    let (now, before) = (load(&TODAY)?, load(&["scene.estimate=scalar"])?);
+    let (mut executor, _) = Executor::open(&Choice::Auto)?;
+    let assets = Assets::default();
+    let extras = Extras {
+        depth_only: true,
+        ..Extras::default()
+    };
+    let mut render = |plan: &Plan| Ok(executor.render(plan, &assets, extras, &mut |_| true)?);
+    let set = set::sample(&now, &assets, STRIDE)?;
+    let seen = sharpness(&render(&now)?, &set, &now);
+    as_sharp(&before, &set, seen.before_set.median, render)
 }
 
 /// From nothing to a file: whole processes.

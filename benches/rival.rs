@@ -8,15 +8,18 @@
 //! Times are medians of warm runs in turns.
 
 use anyhow::{Context, Result};
+use as_sharp::as_sharp;
 use conemarch::base::outcome::Counts;
 use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::Choice;
-use conemarch::measure::set::{self, BeforeSet, SetSample, Sharpness, sharpness};
+use conemarch::measure::set::{self, BeforeSet, Sharpness, sharpness};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 
+#[path = "common/as_sharp.rs"]
+mod as_sharp;
 #[path = "common/markdown.rs"]
 #[allow(dead_code, reason = "other programs use the rest")]
 mod markdown;
@@ -25,9 +28,6 @@ mod markdown;
 const RUNS: usize = 5;
 /// The factor on the steps to the set.
 const STRIDE: f64 = 0.1;
-/// Rounds of halving in the search of a `detail`, from the range LEAST to 1.
-const ROUNDS: u32 = 7;
-const LEAST: f64 = 0.2;
 /// What is compared, and the changes of the preset.
 const PLANS: [(&str, &[&str]); 5] = [
     ("rival", &["march.mode=ray-relaxed", "march.clip=on"]),
@@ -79,21 +79,6 @@ impl Bench {
         Ok(self.executor.render(plan, &self.assets, extras, watch)?)
     }
 
-    /// The `detail` of a plan with which half of the pixels are as far before the set as said.
-    fn detail(&mut self, plan: &Plan, set: &SetSample, median: f64) -> Result<f64> {
-        let (mut low, mut high) = (LEAST, 1.0_f64);
-        let mut plan = plan.clone();
-        for _ in 0..ROUNDS {
-            plan.march.detail = (low * high).sqrt();
-            let frame = self.render(&plan, false)?;
-            match sharpness(&frame, set, &plan).before_set.median > median {
-                true => high = plan.march.detail,
-                false => low = plan.march.detail,
-            }
-        }
-        Ok((low * high).sqrt())
-    }
-
     fn preset(&mut self, name: &str, size: [u32; 2]) -> Result<Vec<Measured>> {
         let mut plans = Vec::new();
         for (_, changes) in PLANS {
@@ -104,7 +89,8 @@ impl Bench {
         }
         let set = set::sample(&plans[1], &self.assets, STRIDE)?;
         let safe = sharpness(&self.render(&plans[1], false)?, &set, &plans[1]);
-        plans[4].march.detail = self.detail(&plans[4], &set, safe.before_set.median)?;
+        let median = safe.before_set.median;
+        plans[4].march.detail = as_sharp(&plans[4], &set, median, |plan| self.render(plan, false))?;
         let mut all = Vec::new();
         for plan in &plans {
             let frame = self.render(plan, true)?;
