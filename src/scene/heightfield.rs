@@ -253,6 +253,7 @@ impl Twin for Heightfield {
                 "HEIGHTFIELD_WALL" = HEIGHTFIELD_WALL,
                 "HIT_CARRIES_MARK" = 1.0
             ),
+            wgsl!("scene/one_by_one.wgsl"),
         ];
         all.push(self.made.colors.module());
         all.extend(self.made.tracer.modules());

@@ -128,6 +128,7 @@ impl Twin for Slab {
         vec![
             self.rule.module(),
             wgsl!("scene/slab.wgsl", "HIT_CARRIES_MARK" = 1.0),
+            wgsl!("scene/one_by_one.wgsl"),
         ]
     }
 

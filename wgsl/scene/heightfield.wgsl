@@ -101,23 +101,6 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     return s;
 }
 
-/// Rays from a point have nothing in common.
-struct Opening {
-    unused: u32,
-}
-
-fn opening(q: vec3<f32>, grain: f32) -> Opening {
-    return Opening(0u);
-}
-
-fn begin_opened(ray: Beam, reach: f32, opened: Opening) -> Walk {
-    return begin(ray, 0.0, reach);
-}
-
-fn steps_opened(walk: Walk) -> u32 {
-    return 0u;
-}
-
 fn walk_hit(walk: Walk) -> Hit {
     return trace_hit(walk.trace);
 }
@@ -191,17 +174,6 @@ fn room(q: vec3<f32>, enough: f32) -> f32 {
     let gap = surface_gap(p);
     let rest = (enough - HEIGHTFIELD_GUESS * gap) / (1.0 - HEIGHTFIELD_GUESS);
     return mix(empty_radius(p, rest), gap, HEIGHTFIELD_GUESS);
-}
-
-/// The free room at ROOMS distances from a point, of which each is twice the one before.
-fn rooms(q: vec3<f32>, axis: vec3<f32>, nearest: f32) -> array<f32, ROOMS> {
-    var all: array<f32, ROOMS>;
-    var h = nearest;
-    for (var i = 0u; i < ROOMS; i++) {
-        all[i] = room(q + h * axis, h);
-        h *= 2.0;
-    }
-    return all;
 }
 
 /// The world direction of a local normal.
