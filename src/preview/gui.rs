@@ -172,6 +172,7 @@ impl Live {
                 self.document.begin();
             }
             self.document.change(|now| *now = plan);
+            self.show_moment();
         }
         if asked.timeline.moved {
             self.play.playing = false;

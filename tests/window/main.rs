@@ -167,6 +167,7 @@ fn the_timeline_shows_the_frames_of_the_film() {
     let (desktop, folder) = (Desktop::new(), Folder::new());
     folder.write("film.toml", FILM);
     folder.done("animate film.toml -o f-%02d.png --frames 0..7");
+    folder.done("animate film.toml -o f-%02d.png --frames 19..19");
     let view = Preview::open(&desktop, &folder.0, &format!("film.toml {SIZE}"));
     view.key("Tab");
     view.key("t");
@@ -188,8 +189,10 @@ fn the_timeline_shows_the_frames_of_the_film() {
     view.wait_for("the end of the film", |shot| *shot == end);
     // A key of another view at the end.
     view.hold("d", 300);
-    view.at_rest();
+    let flown = view.at_rest();
     view.key("k");
+    // It shows the timeline.
+    view.key("t");
     view.key("ctrl+s");
     sleep(Duration::from_millis(500));
     let saved = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
@@ -197,6 +200,23 @@ fn the_timeline_shows_the_frames_of_the_film() {
     assert!(saved.tracks[0].keys[1].value != [17.0, 10.0, 12.0]);
     // The still of the file stays.
     assert_eq!(saved.camera.eye.to_array(), [12.0, -14.0, 3.0]);
+    // A step back takes the key away, and another one the flight. Both come back.
+    let shows_flown = || view.wait_for("the view of the flight", |shot| *shot == flown);
+    view.key("ctrl+z");
+    shows_flown();
+    view.key("ctrl+z");
+    view.wait_for("the end of the film again", |shot| *shot == end);
+    view.key("ctrl+shift+z");
+    shows_flown();
+    view.key("ctrl+shift+z");
+    // Under another playhead they go back to the moment there, not to that of the steps.
+    folder.done("animate film.toml -o g-%02d.png --frames 19..19");
+    let keyed = picture(&folder, "g-19.png");
+    view.key("comma");
+    view.wait_for("a frame before the key", |shot| *shot == keyed);
+    view.key("ctrl+z");
+    view.key("ctrl+z");
+    shows(19);
     view.close();
 }
 
