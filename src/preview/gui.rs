@@ -179,12 +179,7 @@ impl Live {
             self.show_moment();
         }
         if let Some(restore) = asked.restore {
-            let offered = self.offered.take();
-            match offered.filter(|_| restore) {
-                Some(plan) => self.document.change(|now| *now = plan),
-                None => self.watch_file(),
-            }
-            self.paint_soon(Duration::ZERO);
+            self.take_offer(restore);
         }
     }
 }
