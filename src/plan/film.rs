@@ -36,7 +36,7 @@ fn value_of(kind: &Kind, numbers: &[f64]) -> Option<Value> {
 }
 
 /// The part of a camera that a track of [`POSE`] sets.
-fn field<'a>(camera: &'a mut Camera, of: &str) -> &'a mut DVec3 {
+pub fn field<'a>(camera: &'a mut Camera, of: &str) -> &'a mut DVec3 {
     match of {
         "camera.eye" => &mut camera.eye,
         "camera.target" => &mut camera.target,

@@ -10,8 +10,6 @@ use winit::keyboard::{KeyCode, PhysicalKey};
 use winit::window::Fullscreen;
 
 use crate::base::outcome::State;
-use crate::base::view::footprint;
-use crate::measure::truth;
 use crate::picture::Layer;
 use crate::plan::{Extras, Plan};
 use crate::preset::{self, SECTIONS};
@@ -159,6 +157,8 @@ impl Live {
             Action::Play => {
                 let over = self.play.beat >= self.document.plan.time.length;
                 self.play.playing = !self.play.playing;
+                // The time before it is none of the film's.
+                self.ticked = Instant::now();
                 if self.play.playing && over {
                     self.play.beat = 0.0;
                 }
@@ -209,7 +209,7 @@ impl Live {
         match self.document.save(Path::new("."), plan) {
             Ok(path) => {
                 // It was kept under the name that it had.
-                keep::drop(self.options.kept.as_deref(), &before);
+                keep::drop(self.options.kept.as_deref(), &before, self.slot);
                 self.watch_file();
                 self.tell(format!("saved to {}", path.display()), false);
             }
@@ -285,7 +285,7 @@ impl Live {
     }
 
     /// The pixel under the cursor.
-    fn pixel(&self) -> [u32; 2] {
+    pub fn pixel(&self) -> [u32; 2] {
         let [w, h] = self.stage.screen.size();
         [
             (self.cursor.x.max(0.0) as u32).min(w - 1),
@@ -305,7 +305,7 @@ impl Live {
         }
         let plan = self.shown();
         match button {
-            MouseButton::Left if self.modifiers.state().alt_key() => self.explain(&plan),
+            MouseButton::Left if self.modifiers.state().alt_key() => self.ask(plan),
             MouseButton::Left => {
                 let met = ground::met(&plan, self.assets(), self.pixel());
                 let hit = met.filter(|met| met.state == State::Hit);
@@ -326,43 +326,6 @@ impl Live {
             }
             _ => {}
         }
-    }
-
-    /// Tells what there is at the pixel under the cursor, and by how much its depth is wrong.
-    fn explain(&mut self, plan: &Plan) {
-        let pixel = self.pixel();
-        let met = ground::met(plan, self.assets(), pixel);
-        let exact = ground::met(&truth::asked(plan), self.assets(), pixel);
-        let (Some(met), Some(exact)) = (met, exact) else {
-            self.tell("the scene is not ready yet", false);
-            return;
-        };
-        let [x, y] = pixel;
-        let index = (y * plan.size[0] + x) as usize;
-        let finished = self
-            .pictures
-            .finished()
-            .filter(|f| f.plan.size == plan.size);
-        let shown = finished
-            .as_ref()
-            .and_then(|f| f.frame.depth.get(index).copied());
-        let error = match (shown, exact.state) {
-            (Some(t), State::Hit) if t.is_finite() => {
-                let ray = finished
-                    .map_or(plan.view(), |f| f.plan.view())
-                    .view_ray(pixel);
-                let off = (f64::from(t) - exact.distance) / footprint(&ray, exact.distance);
-                format!("{off:+.3} footprints from the truth")
-            }
-            (None, _) => "no full picture yet".into(),
-            _ => format!("the truth is {:?}", exact.state).to_lowercase(),
-        };
-        let state = format!("{:?}", met.state).to_lowercase();
-        let text = format!(
-            "pixel {x}, {y}: {state} at {:.6}, {error}, {} evaluations by a ray alone",
-            met.distance, met.evaluations
-        );
-        self.tell(text, false);
     }
 
     fn moved(&mut self, to: PhysicalPosition<f64>) {

@@ -18,14 +18,17 @@ pub struct Document {
     pub path: Option<PathBuf>,
     /// The plan as it is now.
     pub plan: Plan,
+    /// The beat of its film that is shown.
+    pub beat: f64,
     /// The plan in the file.
     saved: Plan,
-    past: Vec<Plan>,
-    future: Vec<Plan>,
+    /// Plans, each with the beat at which it was left.
+    past: Vec<(Plan, f64)>,
+    future: Vec<(Plan, f64)>,
     /// Steps in the past when the plan was saved.
     saved_at: usize,
     /// The plan before the gesture under way: a drag, or a flight.
-    before: Option<Plan>,
+    before: Option<(Plan, f64)>,
 }
 
 impl Document {
@@ -36,6 +39,7 @@ impl Document {
             path,
             saved: plan.clone(),
             plan,
+            beat: 0.0,
             past: Vec::new(),
             future: Vec::new(),
             saved_at: 0,
@@ -55,7 +59,8 @@ impl Document {
 
     /// Begins a gesture, unless one is under way. All changes until its end are one step.
     pub fn begin(&mut self) {
-        self.before.get_or_insert_with(|| self.plan.clone());
+        let now = || (self.plan.clone(), self.beat);
+        self.before.get_or_insert_with(now);
     }
 
     /// Ends the gesture.
@@ -63,7 +68,7 @@ impl Document {
         let Some(before) = self.before.take() else {
             return;
         };
-        if before != self.plan {
+        if before.0 != self.plan {
             if self.past.len() < self.saved_at {
                 // The saved plan was undone, and is out of reach now.
                 self.saved_at = usize::MAX;
@@ -87,24 +92,22 @@ impl Document {
         }
     }
 
-    /// Takes a step back. Returns whether there was one.
-    pub fn undo(&mut self) -> bool {
+    /// Takes a step back. Returns the beat at which its plan was left, if there was one.
+    pub fn undo(&mut self) -> Option<f64> {
         self.end();
-        let Some(plan) = self.past.pop() else {
-            return false;
-        };
-        self.future.push(std::mem::replace(&mut self.plan, plan));
-        true
+        let (plan, beat) = self.past.pop()?;
+        let left = std::mem::replace(&mut self.plan, plan);
+        self.future.push((left, self.beat));
+        Some(beat)
     }
 
-    /// Takes a step back again. Returns whether there was one.
-    pub fn redo(&mut self) -> bool {
+    /// Takes a step back again. Returns the beat at which its plan was left, if there was one.
+    pub fn redo(&mut self) -> Option<f64> {
         self.end();
-        let Some(plan) = self.future.pop() else {
-            return false;
-        };
-        self.past.push(std::mem::replace(&mut self.plan, plan));
-        true
+        let (plan, beat) = self.future.pop()?;
+        let left = std::mem::replace(&mut self.plan, plan);
+        self.past.push((left, self.beat));
+        Some(beat)
     }
 
     /// Takes in the file as another program has written it. It is a step that can be undone.
@@ -176,15 +179,21 @@ mod tests {
         doc.change(|_| {});
         let last = doc.plan.clone();
         assert!(doc.is_changed());
-        assert!(doc.undo() && doc.plan.look.fog == 0.0 && doc.plan.camera.fov == 43.0);
-        assert!(doc.undo() && doc.plan == first && !doc.is_changed());
-        assert!(!doc.undo());
-        assert!(doc.redo() && doc.redo() && !doc.redo());
+        assert_eq!(doc.undo(), Some(0.0));
+        assert!(doc.plan.look.fog == 0.0 && doc.plan.camera.fov == 43.0);
+        doc.beat = 2.0;
+        assert_eq!(doc.undo(), Some(0.0));
+        assert!(doc.plan == first && !doc.is_changed());
+        assert_eq!(doc.undo(), None);
+        assert_eq!(
+            [doc.redo(), doc.redo(), doc.redo()],
+            [Some(2.0), Some(0.0), None]
+        );
         assert_eq!(doc.plan, last);
         // A change forgets what was undone.
         doc.undo();
         doc.change(|plan| plan.camera.fov = 50.0);
-        assert!(!doc.redo());
+        assert_eq!(doc.redo(), None);
     }
 
     #[test]

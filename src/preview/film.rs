@@ -8,18 +8,22 @@ impl Live {
     /// Shows the moment of the film under the playhead.
     pub fn show_moment(&mut self) {
         let beat = self.play.beat;
+        self.document.beat = beat;
         if let Some(wrong) = pose_at(&mut self.document.plan, beat) {
             self.warn(wrong);
         }
         self.paint_soon(PANEL);
     }
 
-    /// Undoes or redoes a step. If it changed tracks, the moment under the playhead is another one.
-    pub fn go_back(&mut self, step: fn(&mut Document) -> bool) {
-        let before = self.document.plan.clone();
-        // A step has the values of the moment at which it was made.
-        let film = shows_film(&before, self.play.beat);
-        if step(&mut self.document) && (film || before.tracks != self.document.plan.tracks) {
+    /// Undoes or redoes a step. Under another playhead than that of the step, its film is shown at
+    /// the present one, unless it showed another view than that of the film.
+    pub fn go_back(&mut self, step: fn(&mut Document) -> Option<f64>) {
+        let tracks = self.document.plan.tracks.clone();
+        let Some(beat) = step(&mut self.document) else {
+            return;
+        };
+        let plan = &self.document.plan;
+        if beat != self.play.beat && (tracks != plan.tracks || shows_film(plan, beat)) {
             self.show_moment();
         }
     }

@@ -172,18 +172,14 @@ impl Live {
                 self.document.begin();
             }
             self.document.change(|now| *now = plan);
+            self.show_moment();
         }
         if asked.timeline.moved {
             self.play.playing = false;
             self.show_moment();
         }
         if let Some(restore) = asked.restore {
-            let offered = self.offered.take();
-            match offered.filter(|_| restore) {
-                Some(plan) => self.document.change(|now| *now = plan),
-                None => self.watch_file(),
-            }
-            self.paint_soon(Duration::ZERO);
+            self.take_offer(restore);
         }
     }
 }

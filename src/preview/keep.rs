@@ -8,8 +8,11 @@ use crate::plan::Plan;
 use crate::preset;
 use crate::preview::document::{Document, write};
 
+/// The most works that are kept of one document.
+const SLOTS: u32 = 9;
+
 /// The file for a document: named after the preset, and after its folder if it is in a file.
-fn path(folder: &Path, document: &Document) -> PathBuf {
+fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
     let of = document
         .path
         .as_ref()
@@ -19,36 +22,45 @@ fn path(folder: &Path, document: &Document) -> PathBuf {
         None => document.name.clone(),
     };
     let plain = |c: char| if c.is_alphanumeric() { c } else { '_' };
-    folder.join(format!(
-        "unsaved-{}.toml",
-        place.chars().map(plain).collect::<String>()
-    ))
+    let place: String = place.chars().map(plain).collect();
+    // Work that nobody has taken yet is not written over.
+    let number = match slot {
+        0 => String::new(),
+        n => format!("-{n}"),
+    };
+    folder.join(format!("unsaved-{place}{number}.toml"))
 }
 
 /// Keeps the document's plan.
 ///
 /// # Errors
 /// The folder cannot be written.
-pub fn keep(folder: Option<&Path>, document: &Document) -> Result<(), OutputError> {
+pub fn keep(folder: Option<&Path>, document: &Document, slot: u32) -> Result<(), OutputError> {
     let Some(folder) = folder else { return Ok(()) };
     let _ = fs::create_dir_all(folder);
     write(
-        &path(folder, document),
+        &path(folder, document, slot.min(SLOTS - 1)),
         preset::write(&document.plan).as_bytes(),
     )
 }
 
 /// Forgets what was kept.
-pub fn drop(folder: Option<&Path>, document: &Document) {
+pub fn drop(folder: Option<&Path>, document: &Document, slot: u32) {
     if let Some(folder) = folder {
         // Nothing may have been kept.
-        let _ = fs::remove_file(path(folder, document));
+        let _ = fs::remove_file(path(folder, document, slot));
     }
 }
 
-/// What was kept of a document and differs from it.
-pub fn find(folder: Option<&Path>, document: &Document) -> Option<Plan> {
-    let text = fs::read_to_string(path(folder?, document)).ok()?;
+/// What was kept last of a document and differs from it, with its slot.
+pub fn find(folder: Option<&Path>, document: &Document) -> Option<(u32, Plan)> {
+    let folder = folder?;
+    let mut slots = (0..SLOTS).rev();
+    slots.find_map(|slot| Some((slot, read(folder, document, slot)?)))
+}
+
+fn read(folder: &Path, document: &Document, slot: u32) -> Option<Plan> {
+    let text = fs::read_to_string(path(folder, document, slot)).ok()?;
     let mut plan = preset::read(&text, "unsaved work").ok()?;
     if let Some(parent) = document.path.as_ref().and_then(|path| path.parent()) {
         plan.set_folder(parent);
@@ -67,14 +79,19 @@ mod tests {
         let at = Some(folder.path());
         let scene = Scene::all().into_iter().next().expect("a scene");
         let mut document = Document::new("box".into(), None, Plan::new(scene));
-        keep(at, &document).expect("kept");
+        keep(at, &document, 0).expect("kept");
         assert_eq!(find(at, &document), None);
         document.plan.camera.fov = 33.0;
-        keep(at, &document).expect("kept");
-        let changed = document.plan.clone();
+        keep(at, &document, 0).expect("kept");
+        let older = document.plan.clone();
+        document.plan.camera.fov = 34.0;
+        keep(at, &document, 1).expect("kept");
+        let newer = document.plan.clone();
         document.plan.camera.fov = 40.0;
-        assert_eq!(find(at, &document), Some(changed));
-        drop(at, &document);
+        assert_eq!(find(at, &document), Some((1, newer)));
+        drop(at, &document, 1);
+        assert_eq!(find(at, &document), Some((0, older)));
+        drop(at, &document, 0);
         assert_eq!(find(at, &document), None);
         assert_eq!(find(None, &document), None);
     }

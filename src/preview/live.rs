@@ -14,16 +14,17 @@ use crate::plan::{Extras, Plan};
 use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
 use crate::preview::flight::Flight;
+use crate::preview::ground;
 use crate::preview::input::{Drag, thrust};
 use crate::preview::meter::{Figures, Meter};
 use crate::preview::pictures::Pictures;
 use crate::preview::play::Play;
+use crate::preview::question::Question;
 use crate::preview::reload::{Watched, files_in, sources};
 use crate::preview::screen::Shown;
 use crate::preview::still::Still;
 use crate::preview::views::Shot;
 use crate::preview::window::{Options, REST, Stage};
-use crate::preview::{ground, keep};
 use crate::scene::Assets;
 
 /// How long the loop sleeps while the device works, or the camera flies.
@@ -88,8 +89,11 @@ pub struct Live {
     pub closed: bool,
     pub notice: Option<Notice>,
     pub still: Option<Still>,
-    /// Unsaved work of an earlier session, until it is taken or dropped.
-    pub offered: Option<Plan>,
+    pub question: Option<Question>,
+    /// Unsaved work of an earlier session with its slot, until it is taken or dropped.
+    pub offered: Option<(u32, Plan)>,
+    /// Where unsaved work of this session is kept.
+    pub slot: u32,
     pub options: Options,
     pub meter: Meter,
     /// The wish of a picture that is not on the screen yet, and whether it is a full one.
@@ -97,7 +101,7 @@ pub struct Live {
     /// When the window was drawn last, and the panel painted.
     drawn: Instant,
     painted: Instant,
-    ticked: Instant,
+    pub ticked: Instant,
     looked: Instant,
     pub preset_file: Watched,
     pub shader_files: Watched,
@@ -132,7 +136,6 @@ impl Live {
             options.path.clone(),
             preset.plan.clone(),
         );
-        let offered = keep::find(options.kept.as_deref(), &document);
         let mut live = Self {
             stage,
             pictures,
@@ -162,7 +165,9 @@ impl Live {
             closed: false,
             notice: None,
             still: None,
-            offered,
+            question: None,
+            offered: None,
+            slot: 0,
             meter: Meter::default(),
             taken: None,
             drawn: now,
@@ -176,6 +181,7 @@ impl Live {
             losses: 0,
             options,
         };
+        live.offer();
         live.show_moment();
         live
     }
@@ -268,7 +274,8 @@ impl Live {
             self.stage.window.request_redraw();
         }
         self.meter.turn(now);
-        let busy = moving || self.pictures.is_busy() || self.still.is_some();
+        let asks = self.still.is_some() || self.question.is_some();
+        let busy = moving || self.pictures.is_busy() || asks;
         Ok(match self.panel_due {
             _ if busy => BUSY,
             Some(due) => due.saturating_duration_since(Instant::now()).min(REST),
@@ -322,6 +329,7 @@ impl Live {
             Ok(true) => self.take(),
             Err(e) => self.failed(e)?,
         }
+        self.answer_question();
         if !self.pictures.is_busy()
             && let Some(still) = &mut self.still
             && let Some(said) = still.advance()

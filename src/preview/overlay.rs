@@ -74,14 +74,14 @@ pub fn status(ctx: &Context, free: Rect, status: &Status) {
     });
 }
 
-/// Offers unsaved work of an earlier session.
+/// Offers unsaved work of another time.
 pub fn offer(ctx: &Context, name: &str, restore: &mut Option<bool>) {
     egui::Window::new("Unsaved work")
         .anchor(Align2::CENTER_TOP, [0.0, 20.0])
         .collapsible(false)
         .resizable(false)
         .show(ctx, |ui| {
-            ui.label(format!("The last session left unsaved work on {name}."));
+            ui.label(format!("There is unsaved work on {name}."));
             ui.horizontal(|ui| {
                 if ui.button("Restore").clicked() {
                     *restore = Some(true);

@@ -1,8 +1,7 @@
 //! The moment of the film that is shown.
 
 use crate::plan::Plan;
-use crate::plan::camera::Camera;
-use crate::plan::film::{POSE, numbers_of};
+use crate::plan::film::{POSE, field, numbers_of};
 use crate::time::track::{Track, TrackKey};
 
 /// Two keys nearer than this are one, in beats.
@@ -206,14 +205,14 @@ pub fn with_still(plan: &Plan, saved: &Plan, beat: f64) -> Plan {
         }
     }
     let camera = |plan: &Plan| [plan.camera.eye, plan.camera.target, plan.camera.up];
-    if plan.tracks.iter().any(|track| is_pose(&track)) && camera(plan) == camera(&moment) {
-        let [eye, target, up] = camera(saved);
-        still.camera = Camera {
-            eye,
-            target,
-            up,
-            ..still.camera
-        };
+    if camera(plan) == camera(&moment) {
+        let mut own = still.camera.clone();
+        for track in plan.tracks.iter().filter(is_pose) {
+            *field(&mut own, &track.of) = *field(&mut saved.camera.clone(), &track.of);
+        }
+        if own.check().is_ok() {
+            still.camera = own;
+        }
     }
     still
 }
@@ -331,5 +330,12 @@ mod tests {
         // Another view is a new still.
         plan.camera.eye.x = 6.0;
         assert_eq!(with_still(&plan, &saved, 3.0), plan);
+        // A target without a track belongs to every moment.
+        plan.tracks.retain(|track| track.of == "camera.eye");
+        plan.camera.target.z = 2.0;
+        assert_eq!(pose_at(&mut plan, 3.0), None);
+        let kept = with_still(&plan, &saved, 3.0);
+        assert_eq!(kept.camera.eye, saved.camera.eye);
+        assert_eq!(kept.at(3.0), plan.at(3.0));
     }
 }

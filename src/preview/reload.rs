@@ -38,7 +38,10 @@ impl Watched {
     pub fn vanished(&mut self) -> Option<PathBuf> {
         let gone = self.files.iter().find(|file| written(file).is_none());
         self.missing = if gone.is_some() { self.missing + 1 } else { 0 };
-        gone.filter(|_| self.missing == VANISHED).cloned()
+        let gone = gone.filter(|_| self.missing == VANISHED).cloned()?;
+        // The same file may come back.
+        self.seen.fill(None);
+        Some(gone)
     }
 
     /// Whether any was written since the last question. One that is gone for now did not change:
@@ -90,12 +93,13 @@ mod tests {
         assert!(!watched.changed());
         fs::write(&file, "1").expect("written");
         assert!(watched.changed() && !watched.changed());
-        fs::remove_file(&file).expect("removed");
+        let aside = folder.path().join("b.toml");
+        fs::rename(&file, &aside).expect("renamed");
         assert!(!watched.changed());
         let said: Vec<bool> = (0..6).map(|_| watched.vanished().is_some()).collect();
         assert_eq!(said, [false, false, false, true, false, false]);
-        fs::write(&file, "2").expect("written");
-        assert!(watched.vanished().is_none() && watched.changed());
+        fs::rename(&aside, &file).expect("renamed");
+        assert!(watched.vanished().is_none() && watched.changed() && !watched.changed());
         fs::remove_file(&file).expect("removed");
         assert_eq!(files_in(folder.path()), Vec::<PathBuf>::new());
     }

@@ -137,6 +137,12 @@ impl Screen {
         })
     }
 
+    /// Leaves the surface of a lost device as it is. A submission that failed may still hold an image
+    /// of it, and wgpu would panic.
+    pub fn abandon(self) {
+        std::mem::forget(self.surface);
+    }
+
     /// The device that draws.
     pub fn device(&self) -> &Arc<Device> {
         &self.device

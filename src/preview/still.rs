@@ -4,6 +4,8 @@ use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
+use crate::gpu::RenderError;
+use crate::gpu::device::DeviceError;
 use crate::gpu::render::Renderer;
 use crate::gpu::work::Work;
 use crate::picture::frame::Frame;
@@ -49,6 +51,17 @@ impl Still {
         })
     }
 
+    /// The same on another device, unless the picture is made already.
+    ///
+    /// # Errors
+    /// The device failed or has no room.
+    pub fn again(self, renderer: &mut Renderer, assets: &Assets) -> Result<Self, String> {
+        match self.work {
+            Some(_) => Self::begin(renderer, self.plan, assets, self.path),
+            None => Ok(self),
+        }
+    }
+
     /// How much is done.
     pub fn done(&self) -> f64 {
         self.work.as_ref().map_or(1.0, |work| work.progress().done)
@@ -61,6 +74,8 @@ impl Still {
             match advanced {
                 Ok(None) => return None,
                 Ok(Some(frame)) => self.write(frame),
+                // The window opens the device again, and then this begins again.
+                Err(RenderError::Device(DeviceError::Lost { .. })) => return None,
                 Err(e) => return Some(Err(e.to_string())),
             }
             self.work = None;

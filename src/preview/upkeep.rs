@@ -25,6 +25,7 @@ impl Live {
             self.warn(error.to_string());
             return Ok(());
         };
+        self.keep_now();
         self.losses += 1;
         if self.losses > MOST_LOSSES {
             return Err(lost.into());
@@ -33,10 +34,13 @@ impl Live {
         let mut pictures = Pictures::new(self.stage.screen.device().clone());
         pictures.assets = self.pictures.assets.clone();
         self.pictures = pictures;
+        self.question = None;
         // The new device has no textures of the panel.
         let device = &self.stage.screen.device().device;
         let most = device.limits().max_texture_dimension_2d as usize;
+        let memory = self.ctx.memory(Clone::clone);
         self.ctx = egui::Context::default();
+        self.ctx.memory_mut(|new| *new = memory);
         self.gui = egui_winit::State::new(
             self.ctx.clone(),
             egui::ViewportId::ROOT,
@@ -53,6 +57,14 @@ impl Live {
             format!("the device was lost and is open again{shaders}"),
             false,
         );
+        // A still begins again.
+        if let Some(still) = self.still.take() {
+            let pictures = &mut self.pictures;
+            match still.again(&mut pictures.renderer, &pictures.assets) {
+                Ok(still) => self.still = Some(still),
+                Err(why) => self.tell(why, true),
+            }
+        }
         Ok(())
     }
 
@@ -93,7 +105,7 @@ impl Live {
     /// After the document was saved: its file is the one to watch.
     pub fn watch_file(&mut self) {
         self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
-        keep::drop(self.options.kept.as_deref(), &self.document);
+        keep::drop(self.options.kept.as_deref(), &self.document, self.slot);
         (self.unkept, self.kept) = (None, None);
     }
 
@@ -110,7 +122,7 @@ impl Live {
                 self.play = Default::default();
                 self.keep_now();
                 self.document = Document::new(preset.name, path, preset.plan);
-                self.offered = keep::find(self.options.kept.as_deref(), &self.document);
+                self.offer();
                 self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
                 (self.unkept, self.kept) = (None, None);
                 self.show_moment();
@@ -129,11 +141,39 @@ impl Live {
         }
     }
 
-    /// Keeps unsaved work, unless older work is still offered.
+    /// Offers unsaved work that was kept. New work is kept beside it.
+    pub fn offer(&mut self) {
+        self.offered = keep::find(self.options.kept.as_deref(), &self.document);
+        self.slot = self.offered.as_ref().map_or(0, |(slot, _)| slot + 1);
+    }
+
+    /// Takes or discards the work that is offered. What was kept beside it goes in its place.
+    pub fn take_offer(&mut self, restore: bool) {
+        let Some((slot, plan)) = self.offered.take() else {
+            return;
+        };
+        let kept = self.options.kept.as_deref();
+        keep::drop(kept, &self.document, self.slot);
+        self.slot = slot;
+        if restore {
+            self.document.change(|now| *now = plan);
+        } else {
+            keep::drop(kept, &self.document, slot);
+        }
+        self.kept = None;
+        self.keep_now();
+        if !restore && !self.document.is_changed() {
+            // There may be older work.
+            self.offer();
+        }
+        self.paint_soon(Duration::ZERO);
+    }
+
+    /// Keeps unsaved work.
     pub fn keep_now(&mut self) {
-        if self.document.is_changed() && self.offered.is_none() {
+        if self.document.is_changed() {
             // A cache that cannot be written is no reason to disturb.
-            let _ = keep::keep(self.options.kept.as_deref(), &self.document);
+            let _ = keep::keep(self.options.kept.as_deref(), &self.document, self.slot);
             (self.unkept, self.kept) = (None, Some(self.document.plan.clone()));
         }
     }

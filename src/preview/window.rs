@@ -154,7 +154,8 @@ impl Stage {
     pub fn reopen(&mut self) -> Result<(), PreviewError> {
         let surface = surface_of(self.adapters.instance(), &self.window)?;
         let device = Device::open(&self.adapter)?;
-        self.screen = Screen::new(surface, device, &self.adapter, size_of(&self.window))?;
+        let screen = Screen::new(surface, device, &self.adapter, size_of(&self.window))?;
+        std::mem::replace(&mut self.screen, screen).abandon();
         Ok(())
     }
 }

@@ -141,14 +141,6 @@ fn tracks_of_one_camera_do_not_spoil_each_other() {
 }
 
 #[test]
-fn a_scene_may_turn_more_than_once() {
-    let text = "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n[[track]]\nkey = \"scene.rotation\"\nbetween = \"linear\"\nkeys = [[0, [0, 0, 0]], [8, [0, 0, 2880]]]\n";
-    let plan = read(text, "turns").unwrap();
-    let turned = |beat: f64| plan.at(beat).unwrap().value("scene.rotation").unwrap();
-    assert_eq!(turned(7.0), toml::Value::from(vec![0.0, 0.0, 2520.0]));
-}
-
-#[test]
 fn values_between_two_keys_may_not_fit() {
     let text = "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n[[track]]\nkey = \"scene.scale\"\nkeys = [[0, 2], [10, -2]]\n";
     let plan = read(text, "film").unwrap();
@@ -256,4 +248,51 @@ fn wrong_films_are_refused_before_the_first_frame() {
         said(&without)
     );
     assert_eq!(folder.files(), ["film.toml"]);
+}
+
+#[test]
+fn a_setting_turns_beyond_360_degrees_and_a_camera_too_by_keys_on_its_way() {
+    let folder = Folder::new();
+    let film = r#"
+[scene]
+kind = "distance"
+formula = "mandelbox"
+[image]
+size = [48, 32]
+[time]
+length = 4
+fps = 1
+[[track]]
+key = "scene.rotation"
+between = "linear"
+keys = [[0, [0, 0, -90]], [4, [0, 0, 810]]]
+"#;
+    folder.write("film.toml", film);
+    folder.done("animate film.toml -o f-%d.png");
+    folder.write("still.toml", film.split("[time]").next().unwrap());
+    for (frame, degrees) in [(2, 360), (3, 585)] {
+        let set = format!("--set scene.rotation=[0,0,{degrees}]");
+        folder.done(&format!("render still.toml {set} -o s.png"));
+        let shown = pixels(folder.bytes(&format!("f-{frame}.png"))).1;
+        assert!(shown == pixels(folder.bytes("s.png")).1, "{degrees}");
+    }
+    // Twice round the target, with a key after each 120 degrees.
+    let eye = |i: u32| {
+        let (sin, cos) = (f64::from(i) * 120.0).to_radians().sin_cos();
+        format!("[{i}, [{}, {}, 1]]", 3.0 * cos, 3.0 * sin)
+    };
+    let keys = (0..=6).map(eye).collect::<Vec<_>>().join(", ");
+    let text =
+        format!("[scene]\nkind = \"slab\"\n[[track]]\nkey = \"camera.eye\"\nkeys = [{keys}]\n");
+    let plan = read(&text, "film").unwrap();
+    let angle = |beat: f64| {
+        let eye = plan.at(beat).unwrap().camera.eye;
+        assert!((eye.truncate().length() - 3.0).abs() < 1e-9);
+        eye.y.atan2(eye.x)
+    };
+    let steps = (0..60).map(|i| angle(0.1 * f64::from(i + 1)) - angle(0.1 * f64::from(i)));
+    let steps: Vec<f64> = steps.map(|d| d.rem_euclid(std::f64::consts::TAU)).collect();
+    assert!(steps.iter().all(|step| *step < 0.3), "{steps:?}");
+    let turns = steps.iter().sum::<f64>() / std::f64::consts::TAU;
+    assert!((turns - 2.0).abs() < 1e-9, "{turns}");
 }

@@ -24,6 +24,11 @@ pub struct Desktop {
 impl Desktop {
     /// Starts both on a free display.
     pub fn new() -> Self {
+        Self::of("1280x800")
+    }
+
+    /// The same with a screen of a size.
+    pub fn of(size: &str) -> Self {
         let mut server = start(
             Command::new("Xvfb")
                 .args([
@@ -32,7 +37,7 @@ impl Desktop {
                     "-noreset",
                     "-screen",
                     "0",
-                    "1280x800x24",
+                    &format!("{size}x24"),
                     "-nolisten",
                     "tcp",
                 ])
@@ -44,7 +49,11 @@ impl Desktop {
         let display = format!(":{}", line.trim());
         let manager = start(
             Command::new("openbox")
-                .arg("--sm-disable")
+                .args(["--sm-disable", "--config-file"])
+                .arg(concat!(
+                    env!("CARGO_MANIFEST_DIR"),
+                    "/tests/window/openbox.xml"
+                ))
                 .env("DISPLAY", &display)
                 .stdout(Stdio::null()),
         );
@@ -148,6 +157,11 @@ pub struct Preview<'a> {
 impl<'a> Preview<'a> {
     /// Opens it in a folder, with the words of a line.
     pub fn open(desktop: &'a Desktop, folder: &Path, line: &str) -> Self {
+        Self::start(desktop, Self::command(desktop, folder, line))
+    }
+
+    /// The command that does.
+    pub fn command(desktop: &Desktop, folder: &Path, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_conemarch"));
         command
             .arg("preview")
@@ -158,6 +172,11 @@ impl<'a> Preview<'a> {
             .env("XDG_RUNTIME_DIR", folder)
             .env("XDG_CACHE_HOME", folder.join("cache"))
             .stdin(Stdio::null());
+        command
+    }
+
+    /// Runs the command.
+    pub fn start(desktop: &'a Desktop, mut command: Command) -> Self {
         let process = command.spawn().expect("the program");
         let window = desktop.window();
         let preview = Self {
@@ -208,6 +227,13 @@ impl<'a> Preview<'a> {
         self.xdotool(&format!("keyup {key}"));
     }
 
+    /// Clicks on a pixel of the window.
+    pub fn click(&self, x: u32, y: u32) {
+        self.point(x, y);
+        sleep(Duration::from_millis(300));
+        self.xdotool("click 1");
+    }
+
     /// Moves the pointer to a pixel of the window.
     pub fn point(&self, x: u32, y: u32) {
         self.xdotool(&format!("mousemove --window {} {x} {y}", self.window));
@@ -237,6 +263,14 @@ impl<'a> Preview<'a> {
     pub fn resize(&self, width: u32, height: u32) {
         let line = format!("windowsize {} {width} {height}", self.window);
         self.xdotool(&line);
+    }
+
+    /// Hides the window, or shows it again.
+    pub fn hide(&self, hidden: bool) {
+        match hidden {
+            true => self.tool("windowminimize"),
+            false => self.focus(),
+        }
     }
 
     /// What the window shows now.
