@@ -29,6 +29,9 @@ pub struct Surface {
     pub pigment: DVec3,
 }
 
+/// Distances along a normal at which occlusion asks for the free room.
+pub const ROOMS: usize = 5;
+
 /// A scene in f64. Its WGSL twin has functions of the same names. Points `q` are relative to
 /// the eye. A function that takes `work` adds its cost to it.
 pub trait Solid: Sync {
@@ -64,6 +67,14 @@ pub trait Solid: Sync {
     /// clearance. Where it is more than `enough`, any number from `enough` on will do.
     fn room(&self, q: DVec3, _enough: f64) -> f64 {
         self.clearance(q)
+    }
+
+    /// The free room at [`ROOMS`] distances from a point, of which each is twice the one before.
+    fn rooms(&self, q: DVec3, axis: DVec3, nearest: f64) -> [f64; ROOMS] {
+        std::array::from_fn(|i| {
+            let h = nearest * f64::from(1 << i);
+            self.room(q + h * axis, h)
+        })
     }
 
     /// Normal and pigment of a hit.
