@@ -193,7 +193,7 @@ impl Run {
             stage.slice = cost.slice;
             // A second round of a small stage would take longer than all its steps.
             if stage.tiles.saturating_mul(stage.limit) <= stage.slice {
-                stage.chunk = stage.limit;
+                stage.chunk = stage.chunk.max(stage.limit);
             }
             stage.generation = self.generation(block);
             self.job.sample(block, index, stage);
