@@ -62,11 +62,12 @@ impl Cost {
         self.last.map_or(first + ROUNDS, |last| last + 1)
     }
 
-    /// Learns from a stage that so far took so many dispatches of so many milliseconds, which
-    /// should be about `aim_ms`.
-    pub fn learn(&mut self, each_ms: f64, dispatches: u32, stage: &Stage, aim_ms: f64) {
-        // The last dispatch of a round is shorter than the others.
-        let slower = 0.3 * each_ms + 0.7 * self.dispatch_ms;
+    /// Learns from a stage that so far took so many dispatches, `ran` of them in a submission, of so
+    /// many milliseconds each, which should be about `aim_ms`.
+    pub fn learn(&mut self, each_ms: f64, [dispatches, ran]: [u32; 2], stage: &Stage, aim_ms: f64) {
+        // The last dispatch of a round is shorter than the others. Of several, it counts little.
+        let weight = if ran > 2 { 0.8 } else { 0.3 };
+        let slower = weight * each_ms + (1.0 - weight) * self.dispatch_ms;
         self.dispatch_ms = each_ms.max(slower).max(1e-3);
         self.last = Some(dispatches);
         let shorter = each_ms > 1.33 * aim_ms && self.slice > stage.chunk;

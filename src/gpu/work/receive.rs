@@ -150,7 +150,8 @@ impl Run {
             .zip(head.dispatches);
         for (i, ((cost, stage), dispatches)) in costs.enumerate() {
             if (first..=last).contains(&i) && dispatches > self.told[i] {
-                cost.learn(each, dispatches, &stage, self.reusable.aim_ms);
+                let ran = dispatches - self.told[i];
+                cost.learn(each, [dispatches, ran], &stage, self.reusable.aim_ms);
             }
         }
         self.told = head.dispatches;
