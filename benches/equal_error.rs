@@ -1,12 +1,9 @@
 //! Light by paths at equal error, of `safe` and of rays alone:
-//! `cargo bench --bench equal_error -- --write`.
+//! `cargo bench --bench equal_error`. It takes ten minutes or more on two cores.
 //!
 //! The *rival* is mode `ray-relaxed` with `clip` on, as in `rival.rs`. Errors are those of a small
 //! picture against one of many samples. Times are medians of warm runs in turns. The error falls
-//! with the number of samples, so a time is multiplied by the error that remains. `--write` puts the
-//! table into docs/benchmarks.md.
-
-use std::path::Path;
+//! with the number of samples, so a time is multiplied by the error that remains.
 
 use anyhow::{Context, Result};
 use conemarch::gpu::adapters::{Adapters, Choice};
@@ -19,10 +16,9 @@ use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 
 #[path = "common/markdown.rs"]
+#[allow(dead_code, reason = "other programs use the rest")]
 mod markdown;
 
-/// The marks around the table in the page.
-const MARKS: [&str; 2] = ["<!-- equal error -->", "<!-- /equal error -->"];
 const PRESETS: [&str; 5] = [
     "mandelbox",
     "mandelbox-gate",
@@ -33,7 +29,7 @@ const PRESETS: [&str; 5] = [
 /// The settings of `safe`, and of the rival.
 const MODES: [&[&str]; 2] = [&[], &["march.mode=ray-relaxed", "march.clip=on"]];
 /// The size and the samples of the pictures whose errors are measured, and of their reference.
-const SMALL: [u32; 2] = [160, 90];
+const SMALL: [u32; 2] = [80, 45];
 const TESTED: u32 = 64;
 const REFERENCE: u32 = 4096;
 /// Those of the pictures that are timed.
@@ -142,11 +138,5 @@ fn main() -> Result<()> {
         rows,
     );
     println!("{table}");
-    if std::env::args().any(|a| a == "--write") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/benchmarks.md");
-        let mut page = std::fs::read_to_string(&path)?;
-        markdown::replace(&mut page, MARKS, &format!("\n{table}\n"))?;
-        std::fs::write(path, page)?;
-    }
     Ok(())
 }
