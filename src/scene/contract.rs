@@ -69,7 +69,7 @@ pub trait Solid: Sync {
         self.clearance(q)
     }
 
-    /// The free room at [`ROOMS`] distances from a point, of which each is twice the one before.
+    /// The free room at five distances from a point, of which each is twice the one before.
     fn rooms(&self, q: DVec3, axis: DVec3, nearest: f64) -> [f64; ROOMS] {
         std::array::from_fn(|i| {
             let h = nearest * f64::from(1 << i);
