@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use anyhow::{Result, anyhow};
+use bytemuck::{cast_slice, pod_collect_to_vec};
 
 use crate::command::executor::Executor;
 use crate::command::output::Format;
@@ -15,7 +16,8 @@ use crate::command::tile::fingerprint;
 use crate::command::unfinished::{Owner, Unfinished};
 use crate::command::{failure::usage, interrupt};
 use crate::pass::progress::Progress;
-use crate::picture::{BitDepth, Layer, Place, PngHead, Shades, write_png_rows};
+use crate::picture::frame::Frame;
+use crate::picture::{BitDepth, Bloom, Gathered, Layer, Place, PngHead, Shades, write_png_rows};
 use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Plan, WINDOW_STEP};
 use crate::preset;
@@ -105,7 +107,10 @@ impl<'a> BigPicture<'a> {
             device,
             picture: fingerprint(plan, assets, &more),
         };
-        let row = head((plan, args.layer, depth), &preset).row_bytes();
+        let row = match keeps_light(plan, args.layer) {
+            true => plan.size[0] as usize * light_bytes(plan),
+            false => head((plan, args.layer, depth), &preset).row_bytes(),
+        };
         let length = |band| bands.block(band).size[1] as usize * row;
         let lengths: Vec<usize> = (0..bands.count()).map(length).collect();
         Ok(Self {
@@ -154,7 +159,10 @@ impl<'a> BigPicture<'a> {
             plan.window = Some(self.bands.block(band));
             let frame = executor.picture(&plan, assets, extras, &mut watch)?;
             let own = Figures::of(&frame);
-            let rows = Shades::new(self.layer, &frame, &plan).rows(self.depth);
+            let rows = match keeps_light(&plan, self.layer) {
+                true => light(&frame),
+                false => Shades::new(self.layer, &frame, &plan).rows(self.depth),
+            };
             drop(frame);
             self.kept.append(rows, own.tally)?;
             match &mut figures {
@@ -172,15 +180,40 @@ impl<'a> BigPicture<'a> {
 
     fn write(&mut self, place: &mut Place) -> Result<()> {
         let mut progress = Reporter::start("writing the picture");
-        let all = self.bands.count();
+        let (all, bands) = (self.bands.count(), self.bands);
+        let bloom = self.bloom(&mut progress)?;
         let head = head((self.plan, self.layer, self.depth), &self.preset);
-        let kept = &mut self.kept;
+        let (kept, plan) = (&mut self.kept, self.plan);
         let rows = (0..all).map(|band| {
             progress.report(band as f64 / all as f64, "encoding");
             interrupt::check()?;
-            kept.rows(band)
+            let rows = kept.rows(band)?;
+            Ok(match &bloom {
+                None => rows,
+                Some(bloom) => {
+                    let frame = lit(&rows, bands.block(band), plan);
+                    let part = (Layer::Color, &frame, plan);
+                    Shades::of_part(part, Some(bloom.clone())).rows(head.depth)
+                }
+            })
         });
         place.write(|to| write_png_rows(to, &head, rows))
+    }
+
+    /// The bloom of the picture, from the light of all bands, if its look has any.
+    fn bloom(&mut self, progress: &mut Reporter) -> Result<Option<Bloom>> {
+        if !keeps_light(self.plan, self.layer) {
+            return Ok(None);
+        }
+        let mut gathered = Gathered::new(self.plan);
+        for band in 0..self.bands.count() {
+            progress.report(0.0, "spreading light");
+            interrupt::check()?;
+            let rows = self.kept.rows(band)?;
+            let frame = lit(&rows, self.bands.block(band), self.plan);
+            gathered.iter_mut().for_each(|all| all.add(&frame.radiance));
+        }
+        Ok(gathered.map(Gathered::blurred))
     }
 
     /// Ends a picture that `handed` over, or failed to.
@@ -191,6 +224,34 @@ impl<'a> BigPicture<'a> {
         handed.map_err(|e| self.kept.context(e))?;
         self.kept.remove();
         Ok(())
+    }
+}
+
+/// Whether bands keep light: with bloom, each pixel's colour needs all of them.
+fn keeps_light(plan: &Plan, layer: Layer) -> bool {
+    layer == Layer::Color && plan.look.bloom > 0.0
+}
+
+/// Bytes of a pixel's light, with its alpha if there is any.
+fn light_bytes(plan: &Plan) -> usize {
+    if Layer::Color.has_alpha(plan) { 16 } else { 12 }
+}
+
+/// The light of a band as bytes: that of all pixels, and then their alpha if there is any.
+fn light(frame: &Frame) -> Vec<u8> {
+    [cast_slice(&frame.radiance), cast_slice(&frame.alpha)].concat()
+}
+
+/// The light of a band from its bytes.
+fn lit(bytes: &[u8], band: Block, plan: &Plan) -> Frame {
+    let pixels = bytes.len() / light_bytes(plan);
+    let (light, alpha) = bytes.split_at(12 * pixels);
+    Frame {
+        size: band.size,
+        origin: band.origin,
+        radiance: pod_collect_to_vec(light),
+        alpha: pod_collect_to_vec(alpha),
+        ..Frame::default()
     }
 }
 

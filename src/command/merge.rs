@@ -14,7 +14,7 @@ use crate::command::sink::{Parcel, Sink, shown, spared};
 use crate::command::tile::Note;
 use crate::command::{interrupt, memory};
 use crate::picture::frame::Frame;
-use crate::picture::{Layer, Named, PngHead, Shades, write_exr_channels, write_png_rows};
+use crate::picture::{Gathered, Layer, Named, PngHead, Shades, write_exr_channels, write_png_rows};
 use crate::plan::Plan;
 use crate::preset::{self, PNG_KEYWORD};
 use crate::raster::exr::{PartHead, all_channels, channel, light, part_head};
@@ -98,10 +98,20 @@ pub fn run(args: &Merge) -> Result<()> {
     let mut parcel = Parcel::default();
     match (format, &mut sink) {
         (Format::Png, sink) => {
+            // With bloom, each pixel's colour needs the light of all parts.
+            let mut gathered = Gathered::new(&plan);
+            if let Some(all) = &mut gathered {
+                for row in &rows {
+                    tell(0)?;
+                    all.add(&light_of(row, &plan)?.radiance);
+                }
+            }
+            let bloom = gathered.map(Gathered::blurred);
             let lines = rows.iter().enumerate().map(|(nth, row)| {
                 tell(nth)?;
                 let frame = light_of(row, &plan)?;
-                Ok(Shades::new(Layer::Color, &frame, &plan).rows(head.depth))
+                let part = (Layer::Color, &frame, &plan);
+                Ok(Shades::of_part(part, bloom.clone()).rows(head.depth))
             });
             match sink {
                 Sink::File(place) => place.write(|to| write_png_rows(to, &head, lines))?,

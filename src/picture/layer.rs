@@ -10,6 +10,7 @@ use crate::base::outcome::State;
 use crate::base::parallel::for_each_part;
 use crate::pass::tone::{byte, level};
 use crate::pass::tone_map::Tone;
+use crate::picture::bloom::Bloom;
 use crate::picture::frame::{Frame, in_image};
 use crate::plan::{Background, Extras, Plan};
 use crate::raster::png::{self, BitDepth};
@@ -122,15 +123,31 @@ const HIT: DVec3 = DVec3::new(0.82, 0.82, 0.82);
 const UNCONVERGED: DVec3 = DVec3::new(1.0, 0.0, 1.0);
 
 impl<'a> Shades<'a> {
-    /// A layer of a frame that was rendered with [`Layer::extras`] from a plan.
+    /// A layer of a frame that was rendered with [`Layer::extras`] from a plan. A part of a picture
+    /// has no bloom: see [`Shades::of_part`].
     pub fn new(layer: Layer, frame: &'a Frame, plan: &Plan) -> Self {
+        let bloom = match layer {
+            Layer::Color => Bloom::of(frame, plan),
+            _ => None,
+        };
+        Self::of_part((layer, frame, plan), bloom)
+    }
+
+    /// The same of a part of a picture, with the bloom of the whole one, if its look has any.
+    pub fn of_part((layer, frame, plan): (Layer, &'a Frame, &Plan), bloom: Option<Bloom>) -> Self {
         let shade: Box<dyn Fn(usize) -> DVec3 + Sync + 'a> = match layer {
             Layer::Color => {
                 let tone = Tone::of(&plan.look);
                 // The light of the hits is straight: not multiplied by their share.
                 let share = |i: usize| frame.alpha.get(i).map_or(1.0, |a| f64::from(*a));
                 let least = f64::MIN_POSITIVE;
-                Box::new(move |i| tone.shown(vector(frame.radiance[i]) / share(i).max(least)))
+                let light = move |i| vector(frame.radiance[i]) / share(i).max(least);
+                match bloom {
+                    None => Box::new(move |i| tone.shown(light(i))),
+                    Some(bloom) => {
+                        Box::new(move |i| tone.shown(bloom.over(light(i), frame.pixel(i))))
+                    }
+                }
             }
             Layer::Depth => {
                 let depth = |t: &f32| DVec3::splat(f64::from(*t));

@@ -2,11 +2,13 @@
 //! or not at all.
 //!
 //! - [`frame`]: what a render yields; `layer`: a layer of it as pixels
+//! - `bloom`: light that a lens spreads over the picture
 //! - `stereo`: two frames side by side
 //! - `png`, `exr`, `web` (JPEG and WebP): files of pictures
 //! - `place`: a file that appears whole or not at all; `folder`: where it goes
 //! - `error`: why a picture cannot be written
 
+mod bloom;
 mod error;
 mod exr;
 #[cfg(feature = "cli")]
@@ -19,6 +21,7 @@ mod png;
 mod stereo;
 mod web;
 
+pub use bloom::{Bloom, Gathered};
 pub use error::OutputError;
 pub use exr::{FAR, Named, write_exr, write_exr_channels, write_exr_part};
 #[cfg(feature = "cli")]

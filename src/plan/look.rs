@@ -135,6 +135,7 @@ settings! {
         tone: ToneMap = ToneMap::Filmic, word(&ToneMap::WORDS), "how light becomes display values: a filmic curve of each channel, AgX, AgX with more contrast, the neutral map that keeps palettes true, a fit of ACES, or none, which clips" => Tone;
         white: f64 = DAYLIGHT, number(1500.0, 15000.0), "temperature in kelvins of the light that appears white; a lower one makes the picture bluer" => Tone;
         saturation: f64 = 1.0, number(0.0, 4.0), "strength of the colours before the tone map, 0 for grey" => Tone;
+        bloom: f64 = 0.0, number(0.0, 1.0), "share of the light that the lens spreads over the picture, so that bright places shine; 0 for none, 0.04 is a good lens, 0.2 a misty one; an EXR has none" => Tone;
         flag_unconverged: bool = false, switch(),
             "whether pixels are magenta if their ray or their shadow ray reached its step limit; the default is true for heightfields";
         /// A sky in a file.

@@ -313,12 +313,14 @@ impl Live {
         }
         let extras = self.shot.extras();
         let figures = self.visible.figures;
-        self.pictures.keep(Extras {
+        let is_plain = self.shot == Shot::Layer(Layer::Color) && !figures;
+        let kept = Extras {
             time: figures,
             count: figures || extras.count,
-            unread: self.shot == Shot::Layer(Layer::Color) && !figures,
+            unread: is_plain && plan.look.bloom == 0.0,
             ..extras
-        });
+        };
+        self.pictures.keep(kept, is_plain);
         let (before, wish) = (self.pictures.is_busy(), self.pictures.wish());
         self.pictures.want(&plan);
         if self.pictures.wish() != wish {
@@ -355,7 +357,7 @@ impl Live {
         };
         let view = finished.plan.view();
         match (self.shot, finished.texture) {
-            (Shot::Layer(Layer::Color), Some(texture)) => {
+            (Shot::Layer(Layer::Color), Some(texture)) if finished.plan.look.bloom == 0.0 => {
                 self.stage.screen.hold(texture, view);
             }
             (shot, _) => {

@@ -58,6 +58,8 @@ pub struct Pictures {
     /// Heights, maps and textures.
     pub assets: Assets,
     extras: Extras,
+    /// Whether nothing but colours is asked for.
+    is_plain: bool,
     /// What is wanted, counted from 1.
     wish: u64,
     /// The wish that cannot be rendered.
@@ -84,6 +86,7 @@ impl Pictures {
             renderer: Renderer::sharing(device),
             assets: Assets::default(),
             extras: Self::extras_of(Extras::default()),
+            is_plain: false,
             wish: 0,
             failed: None,
             plan: None,
@@ -106,9 +109,11 @@ impl Pictures {
         }
     }
 
-    /// Keeps other layers from now on.
-    pub fn keep(&mut self, extras: Extras) {
+    /// Keeps other layers from now on. If nothing but colours is asked for, the picture may have
+    /// several samples.
+    pub fn keep(&mut self, extras: Extras, is_plain: bool) {
         let extras = Self::extras_of(extras);
+        self.is_plain = is_plain;
         if extras != self.extras {
             self.extras = extras;
             self.forget();
@@ -172,7 +177,7 @@ impl Pictures {
     /// The full picture's plan. If a fine one follows, it need not have its details. Layers but the
     /// colour are those of one sample.
     fn full_plan(&self, plan: &Plan) -> Plan {
-        match plan.samples > 1 && self.extras.unread {
+        match plan.samples > 1 && self.is_plain {
             true => plan.one_sample(),
             false => Plan {
                 samples: 1,
@@ -256,7 +261,7 @@ impl Pictures {
     fn is_coarse(&self) -> bool {
         let samples = self.plan.as_ref().map_or(1, |plan| plan.samples);
         // Layers but the colour are those of one sample, and so are the figures of passes.
-        samples > 1 && self.extras.unread && !self.moving && !self.fine.is_made(self.wish)
+        samples > 1 && self.is_plain && !self.moving && !self.fine.is_made(self.wish)
     }
 
     /// Goes on with the fine picture. Returns whether there is more of it to show.
@@ -278,7 +283,8 @@ impl Pictures {
         let pixels = u64::from(plan.size[0]) * u64::from(plan.size[1]);
         let is_one_block = pixels <= u64::from(self.renderer.cutting.block).pow(2);
         let is_finer = done >= self.refined + FINER && done * f64::from(plan.samples) > 2.0;
-        let more = finished || (is_one_block && is_finer);
+        // What the host reads, it reads at the end.
+        let more = finished || (self.extras.unread && is_one_block && is_finer);
         if more {
             self.refined = done;
         }
@@ -320,7 +326,7 @@ impl Pictures {
             wish: *wish,
             is_full,
             texture: shown.work.as_ref()?.picture(),
-            frame: picture.frame.as_ref()?,
+            frame: shown.frame.as_ref().or(picture.frame.as_ref())?,
             plan,
         })
     }

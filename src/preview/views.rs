@@ -43,6 +43,13 @@ impl Shot {
     /// The bytes of the picture, four to a pixel, row by row.
     pub fn bytes(self, frame: &Frame, plan: &Plan) -> Vec<u8> {
         match self {
+            Self::Layer(Layer::Color) => {
+                let shades = Shades::new(Layer::Color, frame, plan);
+                let bytes = shades.bytes();
+                let channels = bytes.len() / frame.radiance.len().max(1);
+                let opaque = |p: &[u8]| [p[0], p[1], p[2], *p.get(3).unwrap_or(&255)];
+                bytes.chunks(channels.max(1)).flat_map(opaque).collect()
+            }
             Self::Layer(layer) => {
                 let shades = Shades::new(layer, frame, plan);
                 bytes(frame, |i| shades.at(i))

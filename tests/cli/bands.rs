@@ -55,6 +55,14 @@ fn bands_give_the_bytes_of_the_picture_made_at_once() {
             "90x140 --samples 32 --until 0.04 --set camera.aperture=0.02",
         ),
         ("mandelbox", "131x139 --set march.coarsest=64"),
+        (
+            "mandelbox",
+            "90x140 --depth 16 --set look.bloom=0.3 --set image.background=transparent",
+        ),
+        (
+            "mandelbox",
+            "90x140 --set look.bloom=0.3 --set camera.stereo=pair",
+        ),
         ("mandelbox", "90x200 --layer state"),
         (
             "terrain",

@@ -52,6 +52,22 @@ fn joined_parts_have_the_bytes_of_the_whole_picture() {
     assert!(piped.stdout == folder.bytes("whole.png"));
 }
 
+/// The light of all parts spreads over each.
+#[test]
+fn joined_parts_bloom_as_the_picture_does() {
+    let folder = Folder::new();
+    let bloom = "--set look.bloom=0.3 --set image.background=transparent";
+    let picture = format!("mandelbox --device cpu --size 150x139 {bloom}");
+    let names = parts(&folder, &picture, [2, 2]).join(" ");
+    for file in ["png", "webp"] {
+        folder.done(&format!("render {picture} -o whole.{file}"));
+        folder.done(&format!("merge {names} -o joined.{file}"));
+        let [whole, joined] =
+            ["whole", "joined"].map(|name| folder.bytes(&format!("{name}.{file}")));
+        assert!(whole == joined, "{file}");
+    }
+}
+
 /// Tiles of the picture end alone, so a part ends them as the picture does.
 #[test]
 fn parts_end_their_samples_as_the_picture_does() {

@@ -249,7 +249,7 @@ fn a_plan_that_fails_is_tried_once_and_again_after_a_change() {
         pictures.again();
     }
     let plan = &plans()[1];
-    pictures.keep(EVERYTHING);
+    pictures.keep(EVERYTHING, false);
     pictures.want(plan);
     assert!(!full(&mut pictures).unwrap().is_empty());
 }
@@ -259,7 +259,7 @@ fn a_plan_that_fails_is_tried_once_and_again_after_a_change() {
 fn pictures_on_a_device_that_was_opened_again_are_the_same() {
     let plan = &plans()[1];
     let shown = |pictures: &mut Pictures| {
-        pictures.keep(EVERYTHING);
+        pictures.keep(EVERYTHING, false);
         pictures.want(plan);
         full(pictures)
     };

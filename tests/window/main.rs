@@ -108,24 +108,28 @@ fn at_rest_the_window_shows_the_picture_of_the_file() {
 
 #[test]
 fn a_picture_of_many_samples_follows_at_rest() {
-    let (desktop, folder) = (Desktop::new(), Folder::new());
-    let line = format!("mandelbox {SIZE} --set image.samples=6");
-    let view = Preview::open(&desktop, &folder.0, &line);
-    view.key("Tab");
-    for samples in [1, 6] {
-        let file = format!("{samples}.png");
-        folder.done(&format!(
-            "render mandelbox {SIZE} --samples {samples} -o {file}"
-        ));
+    // The light of a picture with bloom is spread on the host.
+    for bloom in ["0", "0.3"] {
+        let (desktop, folder) = (Desktop::new(), Folder::new());
+        let look = format!("{SIZE} --set look.bloom={bloom}");
+        let line = format!("mandelbox {look} --set image.samples=6");
+        let view = Preview::open(&desktop, &folder.0, &line);
+        view.key("Tab");
+        for samples in [1, 6] {
+            let file = format!("{samples}.png");
+            folder.done(&format!(
+                "render mandelbox {look} --samples {samples} -o {file}"
+            ));
+        }
+        let [one, six] = ["1.png", "6.png"].map(|file| picture(&folder, file));
+        assert!(one != six);
+        view.wait_for("six samples", |shot| *shot == six);
+        // Another look is shown at once, and refined again.
+        view.hold("w", 300);
+        view.key("Home");
+        view.wait_for("six samples again", |shot| *shot == six);
+        view.close();
     }
-    let [one, six] = ["1.png", "6.png"].map(|file| picture(&folder, file));
-    assert!(one != six);
-    view.wait_for("six samples", |shot| *shot == six);
-    // Another look is shown at once, and refined again.
-    view.hold("w", 300);
-    view.key("Home");
-    view.wait_for("six samples again", |shot| *shot == six);
-    view.close();
 }
 
 #[test]

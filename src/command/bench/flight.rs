@@ -158,10 +158,11 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
     let mut pictures = Pictures::new(renderer.device.clone());
     drop(renderer);
     pictures.assets = assets;
-    pictures.keep(Extras {
+    let colors = Extras {
         unread: true,
         ..Extras::default()
-    });
+    };
+    pictures.keep(colors, true);
     let mut flown = Flown {
         pictures,
         progress,
