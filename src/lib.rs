@@ -25,12 +25,12 @@
 //! # The map of the house
 //!
 //! Each module is a room with one purpose, and its own page lists what is in it. A room uses
-//! only rooms on its own floor and on the floors below. From the ground up:
+//! only rooms on the floors below. From the ground up:
 //!
 //! | floor | room | what is in it |
 //! |---|---|---|
 //! | 1 | [`base`] | keys of presets, WGSL programs, rays and cones |
-//! | 1 | [`raster`] | image files as numbers: PNG, EXR, TIFF |
+//! | 1 | [`raster`] | image files as numbers: PNG, EXR, TIFF, HDR |
 //! | 2 | [`formula`] | shapes given by an estimate of the distance to them |
 //! | 2 | [`heightfield`] | height maps, cone maps, and the tracers that use them |
 //! | 2 | [`time`] | when the frames of a film are, and what settings are at a moment |

@@ -187,6 +187,41 @@ fn without_the_command_line_nothing_reads_files_waits_or_starts_threads() {
     }
 }
 
+/// Modules of a folder that its page does not name.
+fn unnamed_modules(path: &str, text: &str) -> Vec<String> {
+    let page: String = text
+        .lines()
+        .filter(|line| line.starts_with("//!"))
+        .collect();
+    let code = code(text);
+    let modules = code.lines().filter_map(|line| {
+        let declared = line.strip_suffix(';')?;
+        let words: Vec<&str> = declared.split(' ').collect();
+        (words.len() <= 3).then_some(())?;
+        let [.., "mod", name] = words[..] else {
+            return None;
+        };
+        Some(name.to_string())
+    });
+    let is_named = |name: &str| {
+        ["`", "mod@"]
+            .iter()
+            .any(|sign| page.contains(&format!("{sign}{name}`")))
+    };
+    let missing = modules.filter(|name| path.ends_with("/mod.rs") && !is_named(name));
+    missing
+        .map(|name| format!("{path}: its page does not name `{name}`"))
+        .collect()
+}
+
+#[test]
+fn the_page_of_a_folder_names_what_is_in_it() {
+    let room = "//! - [`a`], [`mod@b`]\npub mod a;\nmod b;\npub(crate) mod c;\nfn d() {}\n";
+    let found = ["src/r/mod.rs: its page does not name `c`"];
+    assert_eq!(unnamed_modules("src/r/mod.rs", room), found);
+    assert_kept(unnamed_modules);
+}
+
 /// A Rust file that has a twin names the WGSL file at its own path, and that file exists.
 fn broken_twins(path: &str, text: &str) -> Vec<String> {
     let twin = path.replace("src/", "wgsl/").replace(".rs", ".wgsl");

@@ -3,11 +3,12 @@
 //! - [`mod@array`]: arrays of numbers that a device keeps from frame to frame
 //! - [`key`]: the keys of presets
 //! - [`shader`]: WGSL programs joined from files
-//! - [`view`]: the camera's rays and cones, in each [`projection`]
+//! - [`view`]: the camera's rays and cones, in each [`projection`]: `perspective`, `orthographic`,
+//!   `fisheye` and `equirectangular`; `angle`: its cosine and sine
 //! - [`cone`]: how far an empty ball carries a cone
 //! - [`outcome`]: what a pixel is, and what it cost
 //! - [`filter`]: where the samples of a pixel are; [`random`]: numbers for their light
-//! - [`srgb`]: linear colours to and from sRGB
+//! - [`srgb`], [`oklab`]: linear colours to and from sRGB and Oklab
 //! - [`last`]: values that take long to make
 //! - [`named`]: enums whose variants are chosen by a word
 //! - [`mod@clock`]: time; [`parallel`]: work over all cores

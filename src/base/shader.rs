@@ -22,8 +22,8 @@ pub struct Module {
     pub source: Cow<'static, str>,
     /// Name and value of every override constant of the file; booleans as 0 or 1.
     pub constants: Vec<(&'static str, f64)>,
-    /// Whether it computes what its stand-in does, bit for bit, while its parameters are zero. Then
-    /// a program may keep it when a slider passes through zero.
+    /// Whether it computes what its stand-in does while its parameters are zero. Then a program may
+    /// keep it when a slider passes through zero.
     pub neutral: bool,
 }
 
@@ -84,16 +84,6 @@ pub enum ShaderError {
         message: String,
         /// The program's entry point.
         entry: &'static str,
-    },
-    /// An override constant has no value, or a value has no constant.
-    #[error("program `{entry}`: override constant `{name}` is {fault}")]
-    Constant {
-        /// The program's entry point.
-        entry: &'static str,
-        /// The constant.
-        name: String,
-        /// `missing` or `unknown`.
-        fault: &'static str,
     },
 }
 
@@ -156,8 +146,11 @@ impl Program {
         let source = self.source();
         let module = naga::front::wgsl::parse_str(&source).map_err(|e| {
             let line = e.location(&source).map_or(1, |l| l.line_number as usize);
-            self.text_error(line, e.message().to_string())
+            self.fault(self.locate(line), e.message().to_string())
         })?;
+        if module.entry_points.iter().all(|e| e.name != self.entry) {
+            return Err(self.fault(self.entry_at(), "the entry point is missing".into()));
+        }
         let mut validator =
             naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
         let info = validator.validate(&module).map_err(|e| {
@@ -167,14 +160,29 @@ impl Program {
             let line = fault.map_or(1, |(s, _)| s.location(&source).line_number as usize);
             let cause = std::error::Error::source(e.as_inner())
                 .map_or_else(String::new, |c| format!(": {c}"));
-            self.text_error(line, format!("{}{cause}", e.as_inner()))
+            self.fault(self.locate(line), format!("{}{cause}", e.as_inner()))
         })?;
-        self.check_constants(&module)?;
+        self.check_constants(&source, &module)?;
         Ok((module, info))
     }
 
-    fn text_error(&self, line: usize, message: String) -> ShaderError {
-        let (path, line) = self.locate(line);
+    /// The file and the line of a span of the joined text.
+    pub fn place(&self, source: &str, span: naga::Span) -> (&'static str, usize) {
+        self.locate(span.location(source).line_number as usize)
+    }
+
+    /// The file and the line of the entry point; where it is missing, those of the file of its name.
+    pub fn entry_at(&self) -> (&'static str, usize) {
+        let head = format!("fn {}(", self.entry);
+        let line = self.source().lines().position(|line| line.contains(&head));
+        let file = format!("/{}.wgsl", self.entry);
+        let own = self.modules.iter().find(|m| m.path.ends_with(&file));
+        let own = own.or(self.modules.last()).map_or("", |m| m.path);
+        line.map_or((own, 1), |line| self.locate(line + 1))
+    }
+
+    /// An error in a line of a file.
+    pub fn fault(&self, (path, line): (&'static str, usize), message: String) -> ShaderError {
         ShaderError::Text {
             path: path.to_string(),
             line,
@@ -183,20 +191,26 @@ impl Program {
         }
     }
 
-    fn check_constants(&self, module: &naga::Module) -> Result<(), ShaderError> {
-        let declared = module.overrides.iter();
-        let declared: BTreeSet<_> = declared.filter_map(|(_, o)| o.name.as_deref()).collect();
+    fn check_constants(&self, source: &str, module: &naga::Module) -> Result<(), ShaderError> {
+        let mut declared = BTreeSet::new();
         let given: BTreeSet<_> = self.constants().into_iter().map(|(name, _)| name).collect();
-        let missing = declared.difference(&given).map(|name| (name, "missing"));
-        let unknown = given.difference(&declared).map(|name| (name, "unknown"));
-        let mut faults = missing.chain(unknown);
-        faults.next().map_or(Ok(()), |(name, fault)| {
-            Err(ShaderError::Constant {
-                entry: self.entry,
-                name: (*name).to_string(),
-                fault,
-            })
-        })
+        for (handle, constant) in module.overrides.iter() {
+            let name = constant.name.as_deref().unwrap_or_default();
+            declared.insert(name);
+            if !given.contains(name) {
+                let at = self.place(source, module.overrides.get_span(handle));
+                let message = format!("nothing gives the override constant `{name}` a value");
+                return Err(self.fault(at, message));
+            }
+        }
+        for module in &self.modules {
+            let names = module.constants.iter().map(|(name, _)| name);
+            if let Some(name) = names.into_iter().find(|name| !declared.contains(*name)) {
+                let message = format!("the override constant `{name}` is missing");
+                return Err(self.fault((module.path, 1), message));
+            }
+        }
+        Ok(())
     }
 
     /// A listing of modules and constants, for `--explain`. It leaves out the stand-ins,

@@ -11,7 +11,7 @@ use crate::command::arguments::{bits, noise, pixel_samples, size};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::output::Format;
-use crate::command::print::say;
+use crate::command::print::{counted, say};
 use crate::command::progress::Reporter;
 use crate::command::render::{at_fault, loaded, moment};
 use crate::command::sink::{Parcel, Sink, ending, folder_of, spared};
@@ -26,7 +26,7 @@ use crate::scene::Assets;
 /// What `animate` takes.
 #[derive(Args, Debug)]
 pub struct Animate {
-    /// A built-in preset, a .toml file, or a .png that this program wrote, with [[track]]s
+    /// A built-in preset, a .toml file, or a .png or .exr that this program wrote, with [[track]]s
     #[arg(value_name = "PRESET", add = completions::presets())]
     preset: PathBuf,
 
@@ -145,7 +145,12 @@ pub fn run(args: &Animate) -> Result<()> {
             args.preset.display()
         )));
     }
-    let text = args.output.to_str().unwrap_or_default();
+    let text = args.output.to_str().ok_or_else(|| {
+        usage(format!(
+            "-o `{}` is not UTF-8; give the frames a name in UTF-8",
+            args.output.display()
+        ))
+    })?;
     let pattern = Pattern::read(text).map_err(|why| usage(format!("-o `{text}` {why}")))?;
     if ending(&args.output) != "png" {
         return Err(usage(format!(
@@ -198,9 +203,10 @@ pub fn run(args: &Animate) -> Result<()> {
         .collect();
     render(args, &pattern, &missing, &assets)?;
     let kept = frames.len() - missing.len();
+    let made = counted(missing.len(), "frame");
     say(&match kept {
-        0 => format!("{} frames", missing.len()),
-        _ => format!("{} frames; {kept} were there already", missing.len()),
+        0 => made,
+        _ => format!("{made}; {kept} there already"),
     });
     match &args.video {
         Some(video) => join(&film, &pattern, [first, last], video),
@@ -229,13 +235,13 @@ fn render(
     for (done, (frame, plan)) in missing.iter().enumerate() {
         let mut watch = |now: &Progress| {
             let share = (done as f64 + now.done) / missing.len() as f64;
-            progress.report(share, &format!("frame {frame}, {}", now.pass))
+            progress.report_part(now, share, &format!("frame {frame}, {}", now.pass))
         };
         let rendered = executor.picture(plan, assets, extras, &mut watch);
         let rendered = rendered.with_context(|| {
             format!(
-                "{done} of {} frames are written; the same command goes on",
-                missing.len()
+                "{done} of {} written; the same command goes on",
+                counted(missing.len(), "frame")
             )
         })?;
         let mut content = Vec::new();

@@ -154,7 +154,7 @@ impl<'a> BigPicture<'a> {
                 // The rest of the time follows from what is rendered now.
                 let share = ((band - first) as f64 + now.done) / (all - first) as f64;
                 let detail = format!("band {} of {all}, {}", band + 1, now.pass);
-                progress.report(share, &detail)
+                progress.report_part(now, share, &detail)
             };
             plan.window = Some(self.bands.block(band));
             let frame = executor.picture(&plan, assets, extras, &mut watch)?;

@@ -19,6 +19,35 @@ use crate::preset::{BUILTIN, keys};
 /// The variable by which a script asks.
 const VARIABLE: &str = "CONEMARCH_COMPLETE";
 
+/// Bash breaks words at `=` and `:`. This joins them again, and takes from the answers what stands
+/// before the last sign.
+const BASH: &str = r#"
+_conemarch() {
+    local -a joined=()
+    local i word glue="" at=0
+    for i in "${!COMP_WORDS[@]}"; do
+        word="${COMP_WORDS[i]}"
+        if [[ $i -gt 1 && ( -n $glue || $word == [=:]* ) ]]; then
+            joined[at]+="$word"
+        else
+            at=${#joined[@]}
+            joined[at]="$word"
+        fi
+        glue=""
+        [[ $word == *[=:] ]] && glue=1
+        [[ $i -eq $COMP_CWORD ]] && break
+    done
+    local -a COMP_WORDS=("${joined[@]}")
+    local COMP_CWORD=$at current="${joined[at]}"
+    _clap_complete_conemarch "$1" "$current" "$3"
+    local before="${current%"${current##*[=:]}"}"
+    COMPREPLY=("${COMPREPLY[@]#"$before"}")
+}
+asked=$(complete -p conemarch)
+eval "${asked/_clap_complete_conemarch/_conemarch}"
+unset asked
+"#;
+
 /// What `completions` takes.
 #[derive(Args, Debug)]
 pub struct Completions {
@@ -36,6 +65,9 @@ pub fn run(args: &Completions) -> Result<()> {
     if let Some(shell) = Shells::builtins().completer(&args.shell) {
         let name = "conemarch";
         shell.write_registration(VARIABLE, name, name, name, &mut script)?;
+        if shell.name() == "bash" {
+            script.extend(BASH.bytes());
+        }
     }
     print(&script)
 }

@@ -107,7 +107,10 @@ impl Executor {
         let mut view = |nth: usize| {
             let half = &mut |now: &Progress| {
                 watch(&Progress {
-                    done: 0.5 * (nth as f64 + now.done),
+                    done: match now.is_step {
+                        true => now.done,
+                        false => 0.5 * (nth as f64 + now.done),
+                    },
                     ..now.clone()
                 })
             };

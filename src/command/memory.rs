@@ -1,6 +1,7 @@
 //! Checks before the work begins that a picture fits into memory.
 
 use std::fs;
+use std::path::Path;
 
 use anyhow::{Result, anyhow};
 use indicatif::BinaryBytes;
@@ -16,16 +17,57 @@ const UNKNOWN: u64 = 16 << 30;
 /// Vulkan a picture of 64 x 36 takes 102 to 122 MiB in all.
 const FIXED: u64 = 128 << 20;
 
-/// Bytes that are available now for pixels and maps: what the system says, within the limit of the
-/// control group if there is one.
+/// Bytes that are available now for pixels and maps.
 fn available() -> u64 {
-    let read = |file: &str| fs::read_to_string(file).ok();
-    let free = read("/proc/meminfo").and_then(|text| line("MemAvailable:", &text));
-    let group = |file| -> Option<u64> { read(file)?.trim().parse().ok() };
-    let used = group("/sys/fs/cgroup/memory.current").unwrap_or(0);
-    let rest = group("/sys/fs/cgroup/memory.max").map(|most| most.saturating_sub(used));
-    let all = free.unwrap_or(UNKNOWN).min(rest.unwrap_or(u64::MAX));
-    all.saturating_sub(FIXED)
+    free(&|file| fs::read_to_string(file).ok()).saturating_sub(FIXED)
+}
+
+/// Bytes that are free: the least of what the system, the control groups of the process, and its
+/// address space leave. `read` reads a file.
+fn free(read: &dyn Fn(&Path) -> Option<String>) -> u64 {
+    let of = |file: &str, name: &str| line(name, &read(Path::new(file))?);
+    let system = of("/proc/meminfo", "MemAvailable:").unwrap_or(UNKNOWN);
+    let limits = read(Path::new("/proc/self/limits")).unwrap_or_default();
+    let most = number("Max address space", &limits);
+    let taken = of("/proc/self/status", "VmSize:").unwrap_or(0);
+    let space = most.map(|most| most.saturating_sub(taken));
+    let groups = read(Path::new("/proc/self/cgroup")).unwrap_or_default();
+    let groups = groups.lines().filter_map(|group| left_by(group, read));
+    groups.chain(space).fold(system, u64::min)
+}
+
+/// Bytes that a control group of the process and those above it leave, of a line like
+/// `0::/user/job`, or `4:memory:/job` of version 1. Files that are kept in memory go when others
+/// need it.
+fn left_by(group: &str, read: &dyn Fn(&Path) -> Option<String>) -> Option<u64> {
+    let mut parts = group.splitn(3, ':').skip(1);
+    let (controllers, path) = (parts.next()?, parts.next()?);
+    let (root, most, used, files) = match controllers {
+        "" => ("", "memory.max", "memory.current", "inactive_file"),
+        _ if controllers.split(',').any(|c| c == "memory") => (
+            "memory",
+            "memory.limit_in_bytes",
+            "memory.usage_in_bytes",
+            "total_inactive_file",
+        ),
+        _ => return None,
+    };
+    let left = |group: &Path| {
+        let folder = Path::new("/sys/fs/cgroup").join(root);
+        let folder = folder.join(group.strip_prefix("/").unwrap_or(group));
+        let value = |file| -> Option<u64> { read(&folder.join(file))?.trim().parse().ok() };
+        let stat = read(&folder.join("memory.stat")).unwrap_or_default();
+        let files = number(files, &stat).unwrap_or(0);
+        let used = value(used).unwrap_or(0).saturating_sub(files);
+        Some(value(most)?.saturating_sub(used))
+    };
+    Path::new(path).ancestors().filter_map(left).min()
+}
+
+/// The first number behind a name in a list of the system.
+fn number(name: &str, text: &str) -> Option<u64> {
+    let line = text.lines().find_map(|l| l.strip_prefix(name))?;
+    line.split_whitespace().next()?.parse().ok()
 }
 
 /// Bytes of memory that the process has, if the system tells.
@@ -173,6 +215,38 @@ mod tests {
         let text = "MemTotal:  9 kB\nMemAvailable:     2048 kB\n";
         assert_eq!(line("MemAvailable:", text), Some(2 << 20));
         assert_eq!(line("MemAvailable:", "nothing"), None);
+    }
+
+    #[test]
+    fn the_least_of_all_limits_counts() {
+        let mib = |n: u64| (n << 20).to_string();
+        let files = |more: &[(&str, String)]| {
+            let mut files = vec![(
+                "/proc/meminfo".to_string(),
+                "MemAvailable: 9437184 kB".into(),
+            )];
+            files.extend(more.iter().map(|(f, text)| (f.to_string(), text.clone())));
+            free(&move |path| {
+                let file = files.iter().find(|(file, _)| Path::new(file) == path);
+                file.map(|(_, text)| text.clone())
+            }) >> 20
+        };
+        assert_eq!(files(&[]), 9216);
+        let space = format!("Max address space  {}  unlimited  bytes\n", mib(1000));
+        let limits = ("/proc/self/limits", space);
+        let status = ("/proc/self/status", "VmSize:  102400 kB\n".into());
+        assert_eq!(files(&[limits, status]), 900);
+        // A job within a user's group, which is smaller, and holds files.
+        let own = ("/proc/self/cgroup", "0::/user/job\n".to_string());
+        let job = ("/sys/fs/cgroup/user/job/memory.max", "max".into());
+        let most = ("/sys/fs/cgroup/user/memory.max", mib(500));
+        let used = ("/sys/fs/cgroup/user/memory.current", mib(300));
+        let stat = format!("anon 5\ninactive_file {}\n", mib(200));
+        let stat = ("/sys/fs/cgroup/user/memory.stat", stat);
+        assert_eq!(files(&[own, job, most, used, stat]), 400);
+        let own = ("/proc/self/cgroup", "5:cpu:/a\n4:memory:/a\n".to_string());
+        let most = ("/sys/fs/cgroup/memory/a/memory.limit_in_bytes", mib(70));
+        assert_eq!(files(&[own, most]), 70);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use clap::{Args, ValueHint};
 
 use crate::command::failure::usage;
 use crate::command::output::{Format, Options};
-use crate::command::print::say;
+use crate::command::print::{counted, say};
 use crate::command::progress::Reporter;
 use crate::command::sink::{Parcel, Sink, shown, spared};
 use crate::command::tile::Note;
@@ -155,17 +155,13 @@ pub fn run(args: &Merge) -> Result<()> {
     }
     parcel.hand_over()?;
     for (device, count) in devices {
-        let parts = if count == 1 {
-            "1 part".into()
-        } else {
-            format!("{count} parts")
-        };
-        say(&format!("{parts} by {device}"));
+        say(&format!("{} by {device}", counted(count, "part")));
     }
     let [w, h] = plan.size;
     say(&format!(
-        "{}  {w} x {h}  of {count} parts",
-        shown(&args.output)
+        "{}  {w} x {h}  of {}",
+        shown(&args.output),
+        counted(count, "part")
     ));
     Ok(())
 }

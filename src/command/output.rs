@@ -10,6 +10,7 @@ use clap::{Args, value_parser};
 
 use crate::command::arguments::bits;
 use crate::command::failure::usage;
+use crate::command::print::say;
 use crate::command::render::Render;
 use crate::command::sink::{ending, is_stdout};
 use crate::picture::frame::Frame;
@@ -209,17 +210,28 @@ pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<Pa
     let is_png = open(&file).is_ok_and(|opened| opened.format == raster::open::Format::Png);
     let picture = preset::find(&file).ok().filter(|_| is_png);
     let written = |path: &Path| fs::metadata(path).and_then(|m| m.modified()).ok();
-    // A file that is not older than the picture was edited, or is the picture. An older one is another
-    // preset.
-    let edited = preset::file(&args.preset).is_some_and(|own| written(&own) >= written(&file));
-    let may_differ = args.set.is_empty() && edited;
-    let why = match picture {
+    // A preset file that is not older than the picture was edited. An older one is another preset.
+    let edited = |own: PathBuf| ending(&own) == "toml" && written(&own) >= written(&file);
+    let may_differ = args.set.is_empty() && preset::file(&args.preset).is_some_and(edited);
+    let name = file.display();
+    // Whoever wrote the text may have left out defaults.
+    let is_same = |old: &str| {
+        let own = preset::write(plan);
+        old == own || preset::read(old, "").is_ok_and(|old| preset::write(&old) == own)
+    };
+    let why = match &picture {
         None => "is no picture of this program",
         Some(_) if layer_of(&file) != Some(args.layer) => "shows another layer",
-        Some(old) if !may_differ && old.text != preset::write(plan) => "has other settings",
-        Some(_) => return Ok(file),
+        Some(old) if is_same(&old.text) => return Ok(file),
+        Some(_) if may_differ => {
+            let own = args.preset.display();
+            say(&format!(
+                "`{name}` has other settings and is replaced, as `{own}` is newer"
+            ));
+            return Ok(file);
+        }
+        Some(_) => "has other settings",
     };
-    let name = file.display();
     Err(usage(format!(
         "`{name}` exists and {why}; name the new picture with -o"
     )))

@@ -35,6 +35,11 @@ fn write(bytes: &[u8]) -> io::Result<()> {
     out.write_all(bytes).and_then(|()| out.flush())
 }
 
+/// `1 frame`, `2 frames`.
+pub fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 /// Writes text to standard error: for tables while standard output carries a file.
 pub fn tell(text: &str) {
     let _ = write!(io::stderr(), "{text}");

@@ -37,6 +37,8 @@ struct Now {
     since: (Instant, f64),
     share: f64,
     detail: String,
+    /// Whether the share is that of one step, after which others follow.
+    is_step: bool,
 }
 
 /// Where it is shown.
@@ -57,6 +59,7 @@ impl Reporter {
             since: (Instant::now(), 0.0),
             share: 0.0,
             detail: String::new(),
+            is_step: false,
         }));
         let shown = match io::stderr().is_terminal() {
             true => Shown::Bar(bar(what)),
@@ -67,15 +70,34 @@ impl Reporter {
 
     /// What an executor calls while it renders.
     pub fn watch(&mut self) -> impl FnMut(&Progress) -> bool + '_ {
-        |now| self.report(now.done, &now.pass)
+        |now| self.report_part(now, now.done, &now.pass)
+    }
+
+    /// Shows how far a render has come that is part of a work: a step of it, or else the share of
+    /// the whole work that is done, with a detail. Returns whether to go on.
+    pub fn report_part(&mut self, now: &Progress, share: f64, detail: &str) -> bool {
+        match now.is_step {
+            true => self.report_step(now.done, &now.pass),
+            false => self.report(share, detail),
+        }
     }
 
     /// Shows that a share of the work, 0..1, is done. `detail` says what is done now, like
     /// the name of a pass; it may be empty. Returns whether to go on: no interrupt came.
     pub fn report(&mut self, share: f64, detail: &str) -> bool {
+        self.show(share, detail, false)
+    }
+
+    /// Shows that a share of one step is done, after which others follow.
+    pub fn report_step(&mut self, share: f64, detail: &str) -> bool {
+        self.show(share, detail, true)
+    }
+
+    fn show(&mut self, share: f64, detail: &str, is_step: bool) -> bool {
         if let Shown::Bar(bar) = &self.shown {
             bar.set_position((share * BAR_STEPS) as u64);
-            bar.set_message(detail.to_string());
+            let of = if is_step { "of this step: " } else { "" };
+            bar.set_message(format!("{of}{detail}"));
         }
         let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
         // A cone map comes before a picture, and a truth is done again in finer steps. What
@@ -85,6 +107,7 @@ impl Reporter {
         }
         now.share = share;
         now.detail = detail.into();
+        now.is_step = is_step;
         !interrupt::asked()
     }
 }
@@ -106,7 +129,7 @@ impl Drop for Reporter {
 
 fn bar(what: &str) -> ProgressBar {
     let bar = ProgressBar::new(BAR_STEPS as u64).with_prefix(what.to_string());
-    let template = "{prefix}  {bar:40} {percent:>3} %  {msg}  {eta} left";
+    let template = "{prefix}  {bar:40} {percent:>3} %  {eta} left  {msg}";
     // The default style shows the same numbers.
     let style = ProgressStyle::with_template(template);
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -128,12 +151,22 @@ fn lines(now: Arc<Mutex<Now>>) -> (Sender<()>, JoinHandle<()>) {
 }
 
 impl Now {
-    /// `rendering: 43 % (trace), about 12 s left`, so long after the share last fell.
+    /// `rendering: 43 % (trace), about 12 s left`, so long after the share last fell; where no share
+    /// is known, `converting (reading): 12 s so far`.
     fn line(&self, elapsed: Duration) -> String {
-        let mut line = format!("{}: {:.0} %", self.what, 100.0 * self.share);
-        if !self.detail.is_empty() {
-            line += &format!(" ({})", self.detail);
+        let percent = format!("{:.0} %", 100.0 * self.share);
+        let (what, detail) = (&self.what, &self.detail);
+        let about = match detail.is_empty() {
+            true => String::new(),
+            false => format!(" ({detail})"),
+        };
+        if self.share == 0.0 {
+            return format!("{what}{about}: {} s so far", elapsed.as_secs());
         }
+        let mut line = match self.is_step {
+            true => format!("{what}: {detail}, {percent}"),
+            false => format!("{what}: {percent}{about}"),
+        };
         let done = self.share - self.since.1;
         if done > 0.0 {
             let left = elapsed.as_secs_f64() * (1.0 - self.share) / done;
@@ -141,6 +174,9 @@ impl Now {
                 s if s < 100.0 => format!(", about {s:.0} s left"),
                 s => format!(", about {:.0} min left", s / 60.0),
             };
+            if self.is_step {
+                line += " of this step";
+            }
         }
         line
     }
@@ -152,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_line_says_what_is_done_and_what_is_left() {
-        let of = |from, share, detail: &str, s| {
+        let of = |is_step, from, share, detail: &str, s| {
             let (what, detail) = ("making".into(), detail.into());
             let since = (Instant::now(), from);
             let now = Now {
@@ -160,15 +196,21 @@ mod tests {
                 since,
                 share,
                 detail,
+                is_step,
             };
             now.line(Duration::from_secs(s))
         };
-        assert_eq!(of(0.0, 0.25, "", 4), "making: 25 %, about 12 s left");
+        assert_eq!(of(false, 0.0, 0.25, "", 4), "making: 25 %, about 12 s left");
         assert_eq!(
-            of(0.0, 0.5, "a", 600),
+            of(false, 0.0, 0.5, "a", 600),
             "making: 50 % (a), about 10 min left"
         );
-        assert_eq!(of(0.5, 0.75, "", 4), "making: 75 %, about 4 s left");
-        assert_eq!(of(0.5, 0.5, "b", 9), "making: 50 % (b)");
+        assert_eq!(of(false, 0.5, 0.75, "", 4), "making: 75 %, about 4 s left");
+        assert_eq!(of(false, 0.5, 0.5, "b", 9), "making: 50 % (b)");
+        assert_eq!(
+            of(true, 0.0, 0.5, "a", 6),
+            "making: a, 50 %, about 6 s left of this step"
+        );
+        assert_eq!(of(false, 0.0, 0.0, "c", 7), "making (c): 7 s so far");
     }
 }

@@ -32,7 +32,7 @@ use crate::scene::Assets;
 /// What `render` takes.
 #[derive(Args, Debug)]
 pub struct Render {
-    /// A built-in preset, a .toml file, or a .png that this program wrote
+    /// A built-in preset, a .toml file, or a .png or .exr that this program wrote
     #[arg(value_name = "PRESET", add = completions::presets())]
     pub(crate) preset: PathBuf,
 
@@ -41,8 +41,8 @@ pub struct Render {
     /// Without -o the picture goes to the current folder as NAME.png, with --set as
     /// NAME-camera.fov=60.png, with another --size as NAME-640x360.png, with --samples as
     /// NAME-samples=16.png, with --until likewise, and with another --layer as NAME.depth.png. Only a
-    /// picture of the same layer and settings is replaced, or one that is older than a preset's
-    /// file.
+    /// picture of the same layer and settings is replaced, or one that is older than the preset's
+    /// .toml file.
     ///
     /// PNG and EXR files carry their preset and can be rendered again; JPEG and WebP carry none.
     /// WebP is without loss.

@@ -72,14 +72,9 @@ pub fn fingerprint(plan: &Plan, assets: &Assets, more: &str) -> String {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part);
     }
-    hash.update(plan.contents(assets));
+    hash.update(assets.contents(plan));
     // The cones of a file decide the steps of a ray.
-    let named = plan.scene.heightfield().map(|settings| settings.files());
-    let maps = named
-        .into_iter()
-        .flatten()
-        .filter(|(key, _)| *key == "scene.map");
-    for (_, path) in maps {
+    for path in plan.scene.map_files() {
         hash.update(std::fs::read(path).unwrap_or_default());
     }
     hash.finalize().iter().map(|b| format!("{b:02x}")).collect()

@@ -1,7 +1,7 @@
 //! The CPU executor: the passes of a Plan in f64, with rows spread over all cores.
 //!
-//! It renders where a machine has no adapter, it makes the truths, and the GPU is compared
-//! with it.
+//! It renders where a machine has no adapter, makes the truths, and is what the GPU is compared with.
+//! `sample` has single pixels, and `until` ends tiles.
 
 mod sample;
 mod until;
@@ -74,7 +74,7 @@ pub fn render(
     let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
     let render = Render {
         plan,
-        light: &Light::of(plan, &solid).with_sky(plan.sky(assets)?),
+        light: &Light::of(plan, &solid).with_sky(assets.sky(plan)?),
         ray_steps: plan.ray_steps(&solid),
         extras,
         watch,
@@ -382,10 +382,9 @@ impl Bands<'_> {
             for (i, value) in made.into_iter().enumerate() {
                 keep(first * width + i, value);
             }
-            let progress = Progress {
-                pass: self.pass.clone(),
-                done: self.before + self.share * last as f64 / height as f64,
-            };
+            let mut progress = Progress::default();
+            progress.pass.clone_from(&self.pass);
+            progress.done = self.before + self.share * last as f64 / height as f64;
             if !(self.watch)(&progress) {
                 return Err(FrameError::Cancelled);
             }

@@ -1,6 +1,8 @@
 //! A device, and how its loss is noticed.
 
+use std::pin::pin;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::task::{Context, Poll, Waker};
 
 use thiserror::Error;
 use wgpu::{Adapter, AdapterInfo, Features};
@@ -64,6 +66,8 @@ pub struct Device {
     /// Milliseconds since any fixed time.
     pub(super) clock: Clock,
     trouble: Arc<Mutex<Option<DeviceError>>>,
+    /// Four bytes, which are written to ask whether the device is there.
+    probe: wgpu::Buffer,
     /// Held by the thread that submits, or that configures a surface.
     turn: Mutex<()>,
 }
@@ -92,6 +96,12 @@ impl Device {
             let (name, why) = (name.clone(), words.join(" "));
             note(&slot, DeviceError::Reported { name, why });
         }));
+        let probe = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("probe"),
+            size: 4,
+            usage: wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
         let timed = device.features().contains(Features::TIMESTAMP_QUERY);
         Self {
             tick_ns: timed.then(|| queue.get_timestamp_period()),
@@ -102,8 +112,18 @@ impl Device {
             opened: None,
             clock,
             trouble,
+            probe,
             turn: Mutex::default(),
         }
+    }
+
+    /// Whether the device is lost already, though it has not told so. It tells that once it has
+    /// nothing more to do, and reports other errors before. A browser answers too late, and then
+    /// this is `false`.
+    fn is_gone(&self) -> bool {
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        self.queue.write_buffer(&self.probe, 0, &[0; 4]);
+        now(scope.pop()).flatten().is_some()
     }
 
     /// Does something while no other thread submits. wgpu fails if a surface is configured at the
@@ -139,6 +159,18 @@ impl Device {
         polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
     }
 
+    /// The same, and asks the device whether it is lost.
+    ///
+    /// # Errors
+    /// The device was lost or reported an error.
+    pub(super) fn check_well(&self) -> Result<(), DeviceError> {
+        self.check()?;
+        match self.is_gone() {
+            true => Err(self.note_loss("it was destroyed")),
+            false => Ok(()),
+        }
+    }
+
     /// Whether this program has opened the device, so that it can open it again.
     pub(super) fn is_opened_here(&self) -> bool {
         #[cfg(feature = "cli")]
@@ -149,48 +181,55 @@ impl Device {
 
     /// Forgets a reported error. A loss stays.
     pub(super) fn forget_reported(&self) {
-        if let Ok(mut slot) = self.trouble.lock()
-            && matches!(*slot, Some(DeviceError::Reported { .. }))
+        if let Ok(Some(DeviceError::Reported { .. })) = self.noted()
+            && let Ok(mut slot) = self.trouble.lock()
         {
             *slot = None;
         }
     }
 
-    pub(super) fn lost(&self, why: impl Into<String>) -> DeviceError {
+    pub(super) fn lost(&self, why: impl AsRef<str>) -> DeviceError {
+        let words: Vec<&str> = why.as_ref().split_whitespace().collect();
         DeviceError::Lost {
             name: self.info.name.clone(),
-            why: why.into(),
+            why: words.join(" "),
         }
     }
 
-    /// Checks that the device works. A loss is reported before any other error, for which this may
-    /// wait a second.
+    fn note_loss(&self, why: &str) -> DeviceError {
+        let error = self.lost(why);
+        note(&self.trouble, error.clone());
+        error
+    }
+
+    /// Checks that the device works. A loss is reported before any other error.
     ///
     /// # Errors
     /// The device was lost or reported an error.
     pub fn trouble(&self) -> Result<(), DeviceError> {
-        let Some(error) = self.noted()? else {
-            return Ok(());
-        };
-        #[cfg(feature = "cli")]
-        if matches!(error, DeviceError::Reported { .. }) {
-            // A loss is noted once the device has nothing more to do.
-            let _ = self.device.poll(wgpu::PollType::Wait {
-                submission_index: None,
-                timeout: Some(std::time::Duration::from_secs(1)),
-            });
-            if let Some(later) = self.noted()? {
-                return Err(later);
-            }
-        }
-        Err(error)
+        self.noted()?.map_or(Ok(()), Err)
     }
 
     fn noted(&self) -> Result<Option<DeviceError>, DeviceError> {
         // The lock is poisoned if a callback panicked.
         let slot = self.trouble.lock();
         let slot = slot.map_err(|_| self.lost("its error report was interrupted"))?;
-        Ok(slot.clone())
+        let noted = slot.clone();
+        drop(slot);
+        Ok(match noted {
+            Some(DeviceError::Reported { why, .. }) if self.is_gone() => Some(self.note_loss(&why)),
+            other => other,
+        })
+    }
+}
+
+/// The answer of a future that is ready at once, as an error scope is outside of browsers. In a
+/// browser the device reports the error later.
+pub(super) fn now<T>(future: impl Future<Output = T>) -> Option<T> {
+    let mut context = Context::from_waker(Waker::noop());
+    match pin!(future).poll(&mut context) {
+        Poll::Ready(answer) => Some(answer),
+        Poll::Pending => None,
     }
 }
 

@@ -4,16 +4,14 @@
 //! by the names of the WGSL variables, so they cannot be swapped.
 
 use std::borrow::Cow;
-use std::pin::pin;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::task::{Context, Poll, Waker};
 
 use thiserror::Error;
 use wgpu::naga::{self, AddressSpace, ImageClass, ScalarKind, StorageAccess};
 
 use crate::base::shader::{Program, ShaderError};
 use crate::gpu::array::Array;
-use crate::gpu::device::Device;
+use crate::gpu::device::{Device, now};
 use crate::gpu::error::RenderError;
 
 /// Why a kernel could not be compiled or bound.
@@ -23,8 +21,12 @@ pub enum KernelError {
     #[error(transparent)]
     Shader(#[from] ShaderError),
     /// The driver refused the pipeline.
-    #[error("the device `{device}` refused the program `{entry}`: {why}")]
+    #[error("{path}:{line}: the device `{device}` refused the program `{entry}`: {why}")]
     Refused {
+        /// The file of the entry point.
+        path: &'static str,
+        /// Its line, from 1.
+        line: usize,
         /// Its name.
         device: String,
         /// The program.
@@ -33,8 +35,12 @@ pub enum KernelError {
         why: String,
     },
     /// A variable of the program has no buffer.
-    #[error("the program `{entry}` needs a buffer for `{name}`")]
+    #[error("{path}:{line}: the program `{entry}` needs a buffer for `{name}`, and there is none")]
     Unbound {
+        /// The file that declares the variable.
+        path: &'static str,
+        /// Its line, from 1.
+        line: usize,
         /// The program.
         entry: &'static str,
         /// The variable.
@@ -48,6 +54,8 @@ struct Binding {
     index: u32,
     name: String,
     kind: Kind,
+    /// The file and the line that declare it.
+    at: (&'static str, usize),
 }
 
 /// The format of a picture on the device: the bytes of sRGB.
@@ -120,11 +128,21 @@ impl Kernel {
             capabilities |= naga::valid::Capabilities::FLOAT64;
         }
         let (module, info) = program.validate(capabilities)?;
-        let bindings = bindings_of(&module, info.get_entry_point(0));
+        let bindings = bindings_of(program, &module, info.get_entry_point(0));
         let strides = strides_of(&module);
-        let scope = gpu.push_error_scope(wgpu::ErrorFilter::Validation);
         let label = Some(program.entry);
         let groups = bindings.iter().map(|b| b.group + 1).max().unwrap_or(0);
+        let most = gpu.limits().max_bind_groups;
+        if let Some(b) = bindings.iter().find(|b| b.group >= most) {
+            let message = format!(
+                "`{}` is in group {}, and the last one is {}",
+                b.name,
+                b.group,
+                most - 1
+            );
+            return Err(program.fault(b.at, message).into());
+        }
+        let scope = gpu.push_error_scope(wgpu::ErrorFilter::Validation);
         let layout_of = |group| {
             let of_group = bindings.iter().filter(|b| b.group == group);
             let entries: Vec<_> = of_group.map(layout_entry).collect();
@@ -154,10 +172,15 @@ impl Kernel {
             cache: None,
         });
         if let Some(error) = now(scope.pop()).flatten() {
+            let (path, line) = program.entry_at();
+            let why = error.to_string();
+            let words: Vec<&str> = why.split_whitespace().collect();
             return Err(KernelError::Refused {
+                path,
+                line,
                 device: device.info.name.clone(),
                 entry: program.entry,
-                why: error.to_string(),
+                why: words.join(" "),
             });
         }
         Ok(Self {
@@ -199,7 +222,10 @@ impl Kernel {
         resource: impl Fn(&str) -> Option<wgpu::BindingResource<'a>>,
     ) -> Result<Vec<wgpu::BindGroup>, KernelError> {
         let entry = |b: &Binding| {
+            let (path, line) = b.at;
             let found = resource(&b.name).ok_or_else(|| KernelError::Unbound {
+                path,
+                line,
                 entry: self.entry,
                 name: b.name.clone(),
             });
@@ -275,18 +301,13 @@ impl Kernel {
     }
 }
 
-/// The answer of a future that is ready at once, as an error scope is outside of browsers. In a
-/// browser the device reports the error later.
-fn now<T>(future: impl Future<Output = T>) -> Option<T> {
-    let mut context = Context::from_waker(Waker::noop());
-    match pin!(future).poll(&mut context) {
-        Poll::Ready(answer) => Some(answer),
-        Poll::Pending => None,
-    }
-}
-
 /// The variables that an entry point reaches.
-fn bindings_of(module: &naga::Module, entry: &naga::valid::FunctionInfo) -> Vec<Binding> {
+fn bindings_of(
+    program: &Program,
+    module: &naga::Module,
+    entry: &naga::valid::FunctionInfo,
+) -> Vec<Binding> {
+    let source = program.source();
     let of = |(handle, v): (naga::Handle<naga::GlobalVariable>, &naga::GlobalVariable)| {
         let at = v.binding.filter(|_| !entry[handle].is_empty())?;
         let kind = match (&module.types[v.ty].inner, v.space) {
@@ -310,6 +331,7 @@ fn bindings_of(module: &naga::Module, entry: &naga::valid::FunctionInfo) -> Vec<
             index: at.binding,
             name: v.name.clone().unwrap_or_default(),
             kind,
+            at: program.place(&source, module.global_variables.get_span(handle)),
         })
     };
     module.global_variables.iter().filter_map(of).collect()

@@ -188,12 +188,12 @@ impl Renderer {
 
     fn reopen_if_lost(&mut self) -> Result<(), RenderError> {
         #[cfg(feature = "cli")]
-        if self.device.check().is_err() && self.device.is_opened_here() {
+        if self.device.check_well().is_err() && self.device.is_opened_here() {
             let fresh = Self::new(self.device.reopen()?);
             self.device = fresh.device;
             self.shared = fresh.shared;
         }
-        Ok(self.device.check()?)
+        Ok(self.device.check_well()?)
     }
 
     /// Renders a plan: [`Renderer::begin`] and [`Work::finish`]. It waits.

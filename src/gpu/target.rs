@@ -237,11 +237,16 @@ impl Target {
                 .named(name, &self.parameters, scene, view.as_ref())
         };
         let olds = self.needs.programs.iter().zip(&needs.programs);
-        for ((bound, kernel), (old, new)) in self.stages.iter_mut().zip(kernels).zip(olds) {
-            if old != new {
-                bound.groups = kernel.bind(device, named)?;
-                bound.kernel = kernel;
-            }
+        let changed = kernels.into_iter().zip(olds).enumerate();
+        let changed = changed.filter(|(_, (_, (old, new)))| old != new);
+        let bind = |(stage, (kernel, _)): (usize, (Arc<Kernel>, _))| {
+            Ok::<_, RenderError>((stage, kernel.bind(device, named)?, kernel))
+        };
+        // If one fails, all stay.
+        let bound: Vec<_> = changed.map(bind).collect::<Result<_, _>>()?;
+        for (stage, groups, kernel) in bound {
+            let stage = &mut self.stages[stage];
+            (stage.groups, stage.kernel) = (groups, kernel);
         }
         self.needs = needs;
         Ok(())

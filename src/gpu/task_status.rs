@@ -19,7 +19,7 @@ impl TaskStatus {
             unwanted: AtomicBool::new(false),
             progress: Mutex::new(Progress {
                 pass: first.into(),
-                done: 0.0,
+                ..Progress::default()
             }),
         }
     }

@@ -81,14 +81,24 @@ impl HeightfieldSettings {
 
     /// The named files, each with the key that names it.
     pub fn files(&self) -> Vec<(&'static str, PathBuf)> {
+        let path = |(reads, name): (bool, &String)| reads.then(|| self.source.folder.join(name));
+        let heights = path((self.reads_heights(), &self.source.field));
+        let texture = path((self.is_textured(), &self.texture));
         let named = [
-            (self.reads_heights(), "scene.field", &self.source.field),
-            (self.reads_cones(), "scene.map", &self.tracer_settings.map),
-            (self.is_textured(), "scene.texture", &self.texture),
+            ("scene.field", heights),
+            ("scene.map", self.map_file()),
+            ("scene.texture", texture),
         ];
-        let file =
-            |(read, key, name): (bool, _, _)| read.then(|| (key, self.source.folder.join(name)));
-        named.into_iter().filter_map(file).collect()
+        let there = named
+            .into_iter()
+            .filter_map(|(key, path)| Some((key, path?)));
+        there.collect()
+    }
+
+    /// The file of the cone map, if one is named.
+    pub fn map_file(&self) -> Option<PathBuf> {
+        let name = &self.tracer_settings.map;
+        self.reads_cones().then(|| self.source.folder.join(name))
     }
 
     /// The generators of the cone maps that it needs: the tracer's and the paint's.

@@ -63,7 +63,7 @@ pub struct Sharpness {
 /// A named file cannot be read.
 pub fn sample(plan: &Plan, assets: &Assets, stride: f64) -> Result<SetSample, RenderError> {
     let mut finer = asked(plan);
-    finer.scene = finer.scene.sharpest();
+    finer.scene = finer.scene.sharpest().unwrap_or(finer.scene);
     finer.march.detail *= SHARPER;
     finer.march.stride = Some(stride);
     let [width, height] = plan.size.map(|n| n as usize);

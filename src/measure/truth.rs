@@ -83,7 +83,11 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
     loop {
         let watch = &mut |now: &Progress| {
             let pass = format!("round {round} of at most {MOST_ROUNDS}, {}", now.pass);
-            watch(&Progress { pass, ..*now })
+            watch(&Progress {
+                pass,
+                done: now.done,
+                is_step: true,
+            })
         };
         plan.march.stride = Some(stride);
         let frame = cpu::render(&plan, assets, Extras::default(), watch)?;
@@ -92,6 +96,7 @@ pub fn truth(plan: &Plan, assets: &Assets, watch: Watch<'_>) -> Result<Truth, Re
         let check = Progress {
             pass: "check".into(),
             done: 1.0,
+            is_step: true,
         };
         if !watch(&check) {
             return Err(RenderError::Cancelled);
@@ -151,7 +156,7 @@ impl Cache {
         let mut hash = Sha256::new();
         hash.update(self.program);
         hash.update(preset::write(&asked(plan)));
-        hash.update(plan.contents(assets));
+        hash.update(assets.contents(plan));
         let name: String = hash.finalize().iter().map(|b| format!("{b:02x}")).collect();
         self.folder.join(format!("truth-{name}"))
     }

@@ -56,7 +56,7 @@ features![
     Fog: wgsl!("pass/fog.wgsl").neutral(), wgsl!("pass/fog_off.wgsl"),
         |look| look.fog > 0.0;
     /// Fog that thins out with the height.
-    FogHeight: wgsl!("pass/fog_height.wgsl").neutral(), wgsl!("pass/fog_height_off.wgsl"),
+    FogHeight: wgsl!("pass/fog_height.wgsl"), wgsl!("pass/fog_height_off.wgsl"),
         |look| look.fog_height > 0.0;
     /// Light of the air near the surface.
     Glow: wgsl!("pass/glow.wgsl").neutral(), wgsl!("pass/glow_off.wgsl"),

@@ -9,6 +9,7 @@
 //!   [`path`] with [`material`] and [`shafts`]; [`lamp`], [`sky`] and [`emission`] for both
 //! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone_map`], [`tone`]: from light to display values, and from these to the bytes of a picture
+//! - [`until`]: which tiles have enough samples; [`variance`]: how much the samples of a pixel differ
 //! - [`features`]: the parts of a look that can be absent
 //! - [`progress`]: how far a render has come; `explain`: its programs, without a GPU
 //!

@@ -62,19 +62,22 @@ pub fn prepare(
 ) -> Result<Vec<(Preparation, f64)>, PrepareError> {
     let mut tell = |pass: &str, done| {
         let pass = pass.into();
-        watch(&Progress { pass, done })
+        watch(&Progress {
+            pass,
+            done,
+            is_step: true,
+        })
     };
-    if let Some(settings) = plan.scene.heightfield() {
-        let pass = format!("heights of {}", settings.source.field);
-        assets
-            .heightfield
-            .make_heights(settings, &mut |done| tell(&pass, done))?;
+    if let Some(field) = plan.scene.heights() {
+        let pass = format!("heights of {field}");
+        let watch = &mut |done| tell(&pass, done);
+        plan.scene.make_heights(assets, watch)?;
     }
     if let Some(path) = plan.look.sky.path().filter(|path| !assets.has_sky(path)) {
         if !tell(&format!("sky of {}", path.display()), 0.0) {
             return Err(GenerateError::Cancelled.into());
         }
-        plan.sky(assets)?;
+        assets.sky(plan)?;
     }
     let mut taken = Vec::new();
     let make = &mut |generator, heights: &Heights, patches, options: &Options| {

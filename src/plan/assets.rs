@@ -1,4 +1,4 @@
-//! The files and assets of a plan: those of its scene, and its sky.
+//! The files that a plan names, and the assets that serve it: those of its scene, and its sky.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,36 +20,40 @@ impl Plan {
         let sky = self.look.sky.path().map(|path| ("look.sky_file", path));
         self.scene.files().into_iter().chain(sky).collect()
     }
+}
 
-    /// Reads the named files and checks that they fit.
+/// What is asked for is read once, when it is asked for first, unless it was loaded before.
+impl Assets {
+    /// Reads the files that a plan names, and checks that they fit.
     ///
     /// # Errors
     /// The key of a file that cannot be read or does not fit.
-    pub fn load(&self, assets: &Assets) -> Result<(), Fault> {
-        self.scene.load(assets)?;
-        self.sky(assets).map(|_| ())
+    pub fn load(&self, plan: &Plan) -> Result<(), Fault> {
+        plan.scene.load(self)?;
+        self.sky(plan).map(|_| ())
     }
 
-    /// The sky of the file, if one is named.
+    /// The sky of the file that a plan names, if it names one.
     ///
     /// # Errors
     /// It cannot be read or does not fit.
-    pub fn sky(&self, assets: &Assets) -> Result<Option<Arc<Sky>>, Fault> {
-        let read = self.look.sky.path().map(|path| assets.sky(path));
+    pub fn sky(&self, plan: &Plan) -> Result<Option<Arc<Sky>>, Fault> {
+        let read = plan.look.sky.path().map(|path| self.sky_in(path));
         read.transpose()
             .map_err(|why| Fault::new("look.sky_file", why))
     }
 
-    /// Whether all assets are loaded and made. It never waits for a thread that does it.
-    pub fn has_assets(&self, assets: &Assets) -> bool {
-        let sky = self.look.sky.path();
-        self.scene.has_assets(assets) && sky.is_none_or(|path| assets.has_sky(&path))
+    /// Whether a plan finds all that it needs loaded and made. It never waits for a thread that
+    /// does it.
+    pub fn serve(&self, plan: &Plan) -> bool {
+        let sky = plan.look.sky.path();
+        plan.scene.has_assets(self) && sky.is_none_or(|path| self.has_sky(&path))
     }
 
-    /// The numbers in the named files. They decide a picture as the settings do.
-    pub fn contents(&self, assets: &Assets) -> Vec<u8> {
-        let mut all = self.scene.contents(assets);
-        if let Ok(Some(sky)) = self.sky(assets) {
+    /// The numbers in the files that a plan names. They decide a picture as the settings do.
+    pub fn contents(&self, plan: &Plan) -> Vec<u8> {
+        let mut all = plan.scene.contents(self);
+        if let Ok(Some(sky)) = self.sky(plan) {
             all.extend(sky.texel_bytes());
         }
         all

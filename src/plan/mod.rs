@@ -2,10 +2,11 @@
 //!
 //! A [`Plan`] is everything that decides a picture, as one plain value. It can be printed,
 //! compared, written as a preset and tested without a GPU. It reads no file and makes no
-//! map: [`crate::scene::Assets`] do.
+//! map: [`Assets`](crate::scene::Assets) do.
 //!
 //! - [`camera`], [`march`], [`look`] with [`layers`], [`lamps`] and [`sky`]: the sections of a preset beside `[scene]`
 //! - [`film`]: the plan at a moment of its film; [`stereo`]: the plans of two eyes
+//! - `assets`: the files that a plan names, and the assets that serve it
 //! - `cones`: whether cones pay; [`pyramid`]: the cone levels, and the blocks of a large image
 
 mod assets;
@@ -167,7 +168,7 @@ impl Plan {
         Some(keys)
     }
 
-    /// Checks that all settings fit together. No file is read: [`Plan::load`] does that.
+    /// Checks that all settings fit together. No file is read: [`Assets::load`] does that.
     ///
     /// # Errors
     /// The first value that does not fit, with a valid alternative.
@@ -183,11 +184,12 @@ impl Plan {
             "only a formula has orbits that traps measure; over other scenes use trap = \"auto\" and no layers",
         )?;
         Fault::unless(
-            self.look.glow == 0.0 || self.scene.heightfield().is_none(),
+            self.look.glow == 0.0 || self.scene.tells_distance(),
             "look.glow",
             "only formulas tell the distance that the glow follows; over heightfields use glow 0, and fog with fog_height for mist",
         )?;
-        let proves = !self.march.stepping().proven || self.scene.sharpest() == self.scene;
+        let proves =
+            !self.march.stepping().proven || self.scene.sharpest().is_none_or(|s| s == self.scene);
         Fault::unless(
             proves || self.scene.formula().is_none(),
             "march.mode",
@@ -371,7 +373,9 @@ pub struct Extras {
     /// Read no layer back. The frame has figures only; the picture on the device is complete.
     pub unread: bool,
     /// Start from what the last frame left on the device: if only the look differs, from its
-    /// rays, and if only tone and exposure differ, from its colours. Programs stay when the number of a
-    /// feature becomes zero.
+    /// rays, and if only tone and exposure differ, from its colours.
     pub reuse: bool,
+    /// Keep the programs of the last frame when the number of a feature becomes zero. The last bits of
+    /// light may differ then: compilers round each program as they like.
+    pub held: bool,
 }

@@ -6,14 +6,10 @@ use std::path::Path;
 
 use crate::preset::PNG_KEYWORD;
 use crate::raster::exr;
-use crate::raster::text_chunk::{self, SIGNATURE};
+use crate::raster::text_chunk::{self, MOST_TEXT, SIGNATURE};
 
 /// The first bytes of an EXR.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-
-/// Largest preset that is read: far more than any preset needs, so that a wrong file is
-/// rejected at once.
-const MOST_BYTES: u64 = 1 << 20;
 
 /// Lines in the settings files of another renderer, which are no presets.
 const MANDELBULBER: [&str; 2] = ["# Mandelbulber settings file", "[main_parameters]"];
@@ -51,9 +47,9 @@ pub fn file_text(path: &Path) -> Result<String, String> {
     if bytes == SIGNATURE {
         return text_chunk::text(&mut file, PNG_KEYWORD)?.ok_or_else(|| none.into());
     }
-    let mut rest = file.take(MOST_BYTES + 1);
+    let mut rest = file.take(MOST_TEXT as u64 + 1);
     rest.read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > MOST_BYTES {
+    if bytes.len() > MOST_TEXT {
         return Err("is larger than 1 MiB, which no preset is; is it the right file?".into());
     }
     let text = String::from_utf8(bytes).map_err(

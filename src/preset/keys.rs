@@ -2,17 +2,24 @@
 
 use crate::plan::Plan;
 use crate::preset::document::SECTIONS;
+use crate::preset::read::kinds;
 use crate::scene::Scene;
 
 /// Every `section.key` that `--set` takes, with its help and the words that it takes, if it does.
 pub fn keys() -> Vec<(String, &'static str, Vec<String>)> {
+    let scenes = Scene::all();
+    let formulas = scenes.iter().filter_map(|scene| scene.formula());
     let first = [
-        ("title", "a name of the picture, for people"),
-        ("scene.kind", "what kind of scene it is"),
-        ("scene.formula", "the formula of a distance scene"),
+        ("title", "a name of the picture, for people", vec![]),
+        ("scene.kind", "what kind of scene it is", kinds()),
+        (
+            "scene.formula",
+            "the formula of a distance scene",
+            formulas.collect(),
+        ),
     ];
-    let first = first.map(|(path, help)| (path.to_string(), help, Vec::new()));
-    let mut all = first.to_vec();
+    let text = |words: Vec<&str>| words.into_iter().map(String::from).collect();
+    let mut all = Vec::from(first.map(|(path, help, words)| (path.to_string(), help, text(words))));
     for section in SECTIONS {
         for mut plan in Scene::all().into_iter().map(Plan::new) {
             for key in plan.keys(section).unwrap_or_default() {

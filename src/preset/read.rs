@@ -18,7 +18,7 @@ use crate::scene::{Assets, Scene};
 use crate::time::track::{Between, Track, TrackKey};
 
 /// Words for `scene.kind`.
-fn kinds() -> Vec<&'static str> {
+pub(super) fn kinds() -> Vec<&'static str> {
     let mut kinds: Vec<&str> = Scene::all().iter().map(|s| s.kind()).collect();
     // One distance scene for each formula.
     kinds.dedup();
@@ -74,7 +74,7 @@ impl Preset {
     /// A file cannot be read, holds something else or does not fit. The error names the line
     /// of the preset, or the override.
     pub fn load_assets(&self, assets: &Assets) -> Result<(), PresetError> {
-        let loaded = self.plan.load(assets);
+        let loaded = assets.load(&self.plan);
         loaded.map_err(|fault| self.source.fault(&self.plan, &self.entries, fault))
     }
 }

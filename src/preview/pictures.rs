@@ -241,8 +241,13 @@ impl Pictures {
             if !self.small.is_made(self.wish) && !self.is_quick(&plan) {
                 let small = (self.wish, self.small_plan(&plan));
                 let assets = &self.assets;
+                // A slider that passes through zero must not wait for a compiler.
+                let extras = Extras {
+                    held: true,
+                    ..self.extras
+                };
                 self.small
-                    .begin(&mut self.renderer, assets, self.extras, small)?;
+                    .begin(&mut self.renderer, assets, extras, small)?;
                 return self.small.advance(SLICE_MS);
             }
             if self.moving && !self.is_quick(&plan) {

@@ -13,9 +13,7 @@ use exr::prelude::{
 };
 
 use crate::raster::open::check_size;
-
-/// Longest text of an attribute that is read.
-const MOST_TEXT: usize = 1 << 16;
+use crate::raster::text_chunk::MOST_TEXT;
 
 /// What the head of a file tells.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,9 +48,7 @@ pub fn head(from: &mut (impl Read + Seek), attribute: &str) -> Result<Head, Stri
     }
     let channels = first.channels.list.iter();
     let text = match first.own_attributes.other.get(&Text::from(attribute)) {
-        Some(AttributeValue::Text(text)) if text.as_slice().len() <= MOST_TEXT => {
-            Some(text.to_string())
-        }
+        Some(AttributeValue::Text(text)) if text.as_slice().len() <= MOST_TEXT => utf8(text),
         _ => None,
     };
     Ok(Head {
@@ -133,8 +129,8 @@ pub fn part_head(from: &mut (impl Read + Seek), attribute: &str) -> Result<PartH
             .iter()
             .map(|c| c.name.to_string())
             .collect(),
-        text: text.to_string(),
-        comments: comments.to_string(),
+        text: utf8(text).ok_or(none)?,
+        comments: utf8(comments).ok_or(none)?,
     };
     let inside = |axis: usize| {
         let end = u64::from(found.origin[axis]) + u64::from(found.size[axis]);
@@ -144,6 +140,11 @@ pub fn part_head(from: &mut (impl Read + Seek), attribute: &str) -> Result<PartH
         true => Ok(found),
         false => Err(none.into()),
     }
+}
+
+/// A text of this program. The crate takes texts for Latin-1.
+fn utf8(text: &Text) -> Option<String> {
+    String::from_utf8(text.as_slice().to_vec()).ok()
 }
 
 /// Reads red, green and blue of a file, row by row.

@@ -10,8 +10,9 @@ use png::{Decoder, DecodingError};
 /// The first bytes of every PNG.
 pub const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// Longest text that is read, packed or not: far more than any preset or label needs.
-const MOST_TEXT: usize = 1 << 20;
+/// Longest text of a picture, and longest preset, that is read, packed or not: far more than any
+/// needs, so that a wrong file is rejected at once.
+pub const MOST_TEXT: usize = 1 << 20;
 /// A file of 32 GiB has so many chunks of pixels; a stream that never ends has more.
 const MOST_CHUNKS: usize = 1 << 22;
 

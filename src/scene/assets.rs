@@ -20,7 +20,7 @@ impl Assets {
     ///
     /// # Errors
     /// As [`Sky::read`].
-    pub fn sky(&self, path: PathBuf) -> Result<Arc<Sky>, String> {
+    pub fn sky_in(&self, path: PathBuf) -> Result<Arc<Sky>, String> {
         last_or_new(&self.skies, path, |path| Sky::read(path))
     }
 

@@ -50,19 +50,28 @@ impl DistanceSettings {
     }
 }
 
+impl From<Formula> for DistanceSettings {
+    fn from(formula: Formula) -> Self {
+        Self {
+            formula,
+            iterations: None,
+        }
+    }
+}
+
 impl From<Formula> for Scene {
     fn from(formula: Formula) -> Self {
-        let iterations = None;
-        Self::Distance(DistanceSettings {
-            formula,
-            iterations,
-        })
+        Self::Distance(formula.into())
     }
 }
 
 impl SceneSettings for DistanceSettings {
     fn kind(&self) -> &'static str {
         "distance"
+    }
+
+    fn all() -> Vec<Self> {
+        Formula::all().into_iter().map(Self::from).collect()
     }
 
     fn formula(&self) -> Option<&'static str> {
@@ -94,13 +103,19 @@ impl SceneSettings for DistanceSettings {
         MOST_SHADOW_STEPS
     }
 
-    /// The estimate's noise in f32 is about 2e-8 of the coordinates (docs/method.md, 6), and
-    /// the coordinates of any orbit are as large as the bounds. A footprint below a hundred
-    /// times this noise is damaged.
+    fn sharpest(&self) -> Option<Scene> {
+        let mut sharpest = self.clone();
+        sharpest.formula.sharpen();
+        Some(sharpest.into())
+    }
+
     fn without_assets(&self, from: &Viewpoint) -> Option<AnySolid> {
         Some(AnySolid::Distance(self.seen(from)))
     }
 
+    /// The estimate's noise in f32 is about 2e-8 of the coordinates (docs/method.md, 6), and
+    /// the coordinates of any orbit are as large as the bounds. A footprint below a hundred
+    /// times this noise is damaged.
     fn precision_warning(&self, from: &Viewpoint) -> Option<String> {
         let finest = self.finest_footprint(from);
         let floor = 2e-6 * self.formula.bounds().half.max_element();

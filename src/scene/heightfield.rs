@@ -10,7 +10,6 @@ use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{BVec2, DVec2, DVec3, Vec3};
 
 use crate::base::array::SceneArray;
-use crate::base::key::{Fault, Key};
 use crate::base::outcome::Counts;
 use crate::base::shader::Module;
 use crate::base::view::Beam;
@@ -21,10 +20,9 @@ use crate::heightfield::maxima_cone::{self, CONE_WINDOWS, LocalCone, maxima_cone
 use crate::heightfield::paint::Colors;
 use crate::heightfield::settings::HeightfieldSettings;
 use crate::heightfield::tracer::grid::{FAR, FLAT};
-use crate::heightfield::tracer::settings::PrepareError;
 use crate::heightfield::tracer::{self, Accuracy, LocalRay, Trace, TraceHit};
+use crate::scene::Viewpoint;
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use crate::scene::{AnySolid, Assets, SceneSettings, Viewpoint};
 use crate::wgsl;
 
 /// The most windows in the search of an empty ball: it halves the levels of the pyramid, of which
@@ -70,36 +68,6 @@ pub struct HeightfieldUniform {
     pub map: HeightmapUniform,
 }
 
-impl SceneSettings for HeightfieldSettings {
-    fn kind(&self) -> &'static str {
-        "heightfield"
-    }
-
-    fn keys(&mut self) -> Vec<Key<'_>> {
-        self.keys()
-    }
-
-    fn check(&self) -> Result<(), Fault> {
-        self.check()
-    }
-
-    fn solid(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
-        let ready = assets.heightfield.ready(self, from.growth())?;
-        Ok(AnySolid::Heightfield(Heightfield::of(self, ready, from)))
-    }
-
-    fn outline(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
-        let ready = assets.heightfield.outline(self, from.growth())?;
-        Ok(AnySolid::Heightfield(Heightfield::of(self, ready, from)))
-    }
-
-    /// A tracer of the papers can run out of steps anywhere; a fractal's ray does so only next
-    /// to a hit.
-    fn flags_unconverged(&self) -> bool {
-        true
-    }
-}
-
 /// A heightfield seen from an eye.
 #[derive(Clone, Debug)]
 pub struct Heightfield {
@@ -117,7 +85,7 @@ pub struct Heightfield {
 
 impl Heightfield {
     /// The heightfield of settings that are ready, seen from a viewpoint.
-    fn of(settings: &HeightfieldSettings, made: Ready, from: &Viewpoint) -> Self {
+    pub(super) fn of(settings: &HeightfieldSettings, made: Ready, from: &Viewpoint) -> Self {
         let is_smooth = settings.normals == Normals::Smooth;
         Self {
             is_smooth: is_smooth && settings.patches == Patches::Bilinear,

@@ -1,12 +1,15 @@
 //! What the settings of every kind of scene answer, before a scene is made from them.
 
+use std::path::{Path, PathBuf};
+
 use glam::DVec3;
 
-use super::AnySolid;
-use super::Assets;
 use super::stepping::Stepping;
+use super::{AnySolid, Assets, Scene};
 use crate::base::key::{Fault, Key};
-use crate::heightfield::tracer::settings::PrepareError;
+use crate::heightfield::assets::Preparation;
+use crate::heightfield::conemap::generate::generator::ShareWatch;
+use crate::heightfield::tracer::settings::{Make, PrepareError};
 
 /// The largest step limit of a shadow ray in scenes without a formula. Mesa's software Vulkan
 /// ends loops after 65 535 rounds, inner loops included.
@@ -44,6 +47,11 @@ pub trait SceneSettings {
     fn formula(&self) -> Option<&'static str> {
         None
     }
+
+    /// Every scene of the kind, with its defaults.
+    fn all() -> Vec<Self>
+    where
+        Self: Sized;
 
     /// The keys of `[scene]` except `kind` and `formula`.
     fn keys(&mut self) -> Vec<Key<'_>>;
@@ -84,5 +92,102 @@ pub trait SceneSettings {
     /// A warning if f32 is too coarse for the picture.
     fn precision_warning(&self, _from: &Viewpoint) -> Option<String> {
         None
+    }
+
+    /// Whether the estimate tells the distance to the surface, which a glow follows.
+    fn tells_distance(&self) -> bool {
+        true
+    }
+
+    /// The fewest pixels of a picture in which cones pay, whatever the view.
+    fn cone_pixels(&self) -> u32 {
+        0
+    }
+
+    /// The same scene with an exact tracer, for the truth; `None` if it has no other.
+    fn exact(&self) -> Option<Scene> {
+        None
+    }
+
+    /// The same scene with its sharpest estimate; `None` if it has no other.
+    fn sharpest(&self) -> Option<Scene> {
+        self.exact()
+    }
+
+    /// The same scene without what only colours need; `None` if it has nothing of this kind.
+    fn colorless(&self) -> Option<Scene> {
+        None
+    }
+
+    /// The name of the heights that the scene is made of.
+    fn heights(&self) -> Option<&str> {
+        None
+    }
+
+    /// Samples along each axis of heights that a pattern makes.
+    fn pattern_size(&self) -> Option<[u32; 2]> {
+        None
+    }
+
+    /// The folder that names of files are relative to.
+    fn folder(&self) -> &Path {
+        Path::new("")
+    }
+
+    /// Sets the folder that names of files are relative to.
+    fn set_folder(&mut self, _folder: &Path) {}
+
+    /// The named files, each with the key that names it.
+    fn files(&self) -> Vec<(&'static str, PathBuf)> {
+        Vec::new()
+    }
+
+    /// The named files that decide how a ray is followed, and not what it meets.
+    fn map_files(&self) -> Vec<PathBuf> {
+        Vec::new()
+    }
+
+    /// Reads the named files and checks that they fit.
+    ///
+    /// # Errors
+    /// The key of a file that cannot be read or does not fit.
+    fn load(&self, _assets: &Assets) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    /// Whether all assets are loaded and made. It never waits for a thread that does it.
+    fn has_assets(&self, _assets: &Assets) -> bool {
+        true
+    }
+
+    /// Makes the heights, if a pattern describes them.
+    ///
+    /// # Errors
+    /// A file does not fit, or `watch` returns `false`.
+    fn make_heights(&self, _assets: &Assets, _watch: ShareWatch<'_>) -> Result<(), PrepareError> {
+        Ok(())
+    }
+
+    /// Makes the cone maps by `make`.
+    ///
+    /// # Errors
+    /// A file does not fit, or `make` fails.
+    fn prepare(&self, _assets: &Assets, _make: Make<'_>) -> Result<(), PrepareError> {
+        Ok(())
+    }
+
+    /// The cone maps that [`SceneSettings::prepare`] makes.
+    fn preparations(&self, _assets: &Assets) -> Vec<Preparation> {
+        Vec::new()
+    }
+
+    /// Notes about the named files: what was ignored in them, and what could not be checked.
+    fn notes(&self, _assets: &Assets) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The numbers in the named files. They decide a picture as the settings do.
+    fn contents(&self, _assets: &Assets) -> Vec<u8> {
+        Vec::new()
     }
 }

@@ -52,6 +52,10 @@ impl SceneSettings for SlabSettings {
         "slab"
     }
 
+    fn all() -> Vec<Self> {
+        vec![Self::default()]
+    }
+
     fn keys(&mut self) -> Vec<Key<'_>> {
         self.keys()
     }

@@ -38,6 +38,7 @@ pub const EVERYTHING: Extras = Extras {
     shown: false,
     unread: false,
     reuse: false,
+    held: false,
 };
 /// Fronts and states of every level, and no colour.
 pub const LEVELS: Extras = Extras {

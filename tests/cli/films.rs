@@ -190,7 +190,7 @@ fn frames_are_those_of_their_moments_and_are_rendered_once() {
     folder.write("f-001.png", &folder.bytes("f-001.png")[..200]);
     fs::copy(folder.0.join("f-004.png"), folder.0.join("f-000.png")).unwrap();
     let rest = said(&folder.done(line));
-    assert!(rest.ends_with("6 frames; 2 were there already\n"), "{rest}");
+    assert!(rest.ends_with("6 frames; 2 there already\n"), "{rest}");
     assert_eq!(time("f-004.png"), first);
     for (frame, beat) in [(0, "0"), (1, "0.5"), (5, "2.5"), (7, "3.5")] {
         folder.done(&format!(

@@ -56,7 +56,7 @@ fn joined_parts_have_the_bytes_of_the_whole_picture() {
 #[test]
 fn joined_parts_bloom_as_the_picture_does() {
     let folder = Folder::new();
-    let bloom = "--set look.bloom=0.3 --set image.background=transparent";
+    let bloom = "--set look.bloom=0.3 --set image.background=transparent --set title=Würfel";
     let picture = format!("mandelbox --device cpu --size 150x139 {bloom}");
     let names = parts(&folder, &picture, [2, 2]).join(" ");
     for file in ["png", "webp"] {

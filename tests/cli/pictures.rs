@@ -6,7 +6,7 @@ use std::path::Path;
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Layer};
 use png::text_metadata::{ITXtChunk, TEXtChunk, ZTXtChunk};
 
-use crate::folder::Folder;
+use crate::folder::{Folder, holds};
 use crate::images::pixels;
 use crate::tools::{rendered, tiny};
 
@@ -64,6 +64,10 @@ fn a_png_tells_its_title_program_and_preset_in_chunks_that_all_programs_read() {
     let info = picture(&folder, "--set title=Würfel").0;
     let unicode: Vec<&str> = info.utf8_text.iter().map(|c| c.keyword.as_str()).collect();
     assert_eq!(unicode, ["Title", "conemarch preset"]);
+    // The crate of EXR takes texts for Latin-1.
+    rendered(&folder, "mandelbox", "--set title=Würfel -o w.exr");
+    let printed = folder.done("presets w.exr").stdout;
+    holds(&String::from_utf8_lossy(&printed), &["title = \"Würfel\""]);
     folder.done("render l.png --explain");
 }
 

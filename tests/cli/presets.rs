@@ -159,7 +159,7 @@ fn every_key_can_be_set_in_a_file_and_by_override_and_reads_back() {
         // a formula, and so does the glow.
         let traps = ["trap", "layer2_trap", "layer3_trap"].contains(&name);
         let trapless = traps && !matches!(plan.scene, Scene::Distance(_));
-        let glowless = name == "glow" && plan.scene.heightfield().is_some();
+        let glowless = name == "glow" && !plan.scene.tells_distance();
         let elsewhere = ["tiles", "texture"].contains(&name) || trapless || glowless;
         assert!(
             changed > 0 || elsewhere,

@@ -110,8 +110,19 @@ fn a_picture_without_a_name_replaces_no_other_file() {
     assert_eq!(folder.bytes("my.png"), old);
     // Who edits a preset renders it again and again.
     folder.write("my.toml", preset(41));
-    folder.done(mine);
-    assert_ne!(folder.bytes("my.png"), old);
+    let told = said(&folder.done(mine));
+    holds(
+        &told,
+        &["`my.png` has other settings and is replaced, as `my.toml` is newer"],
+    );
+    let new = folder.bytes("my.png");
+    assert_ne!(new, old);
+    // Nobody edits a picture.
+    std::fs::create_dir(folder.0.join("b")).unwrap();
+    folder.write("b/my.png", old);
+    let says = "`my.png` exists and has other settings|-o";
+    folder.fails("render b/my.png --device cpu", 2, says);
+    assert_eq!(folder.bytes("my.png"), new);
     // A built-in preset stays as it is, so a picture with other settings is another one.
     let built_in = "render mandelbox --device cpu --size 8x4";
     folder.done(built_in);

@@ -201,18 +201,30 @@ fn long_work_tells_its_progress_in_lines() {
     let (rgba, zeros) = (ColorType::Rgba, vec![0; 1 << 27]);
     let map = png([8192, 4096], rgba, BitDepth::Eight, &zeros);
     for (args, says, part) in [
-        (format!("{LONG} -o a.png").as_str(), "rendering: ", ""),
-        (of_map, "rendering: ", "cone map by walk), about "),
-        (error, "rendering the truth: ", "round 1 of at most 5, "),
-        ("conemap inspect fbm:8192x4096", "inspecting: ", ""),
-        (convert, "converting: ", ""),
-        (steps, "measuring bench-far (1 of 2), truth (1 of 1): ", ""),
+        (format!("{LONG} -o a.png").as_str(), "rendering: ", " % ("),
+        (
+            of_map,
+            "rendering: cone map by walk, ",
+            " s left of this step",
+        ),
+        (error, "rendering the truth: round 1 of at most 5, ", " % "),
+        (
+            "conemap inspect fbm:8192x4096",
+            "inspecting: heights, ",
+            " %",
+        ),
+        (convert, "converting (step 1 of 2: reading): ", " s so far"),
+        (
+            steps,
+            "measuring bench-far (1 of 2), truth (1 of 1): ",
+            " %",
+        ),
     ] {
         let folder = Folder::new();
         folder.write("map.png", &map);
         let heard = folder.0.join("heard");
         let stderr = fs::File::create(&heard).expect("a file");
-        let line = |l: &str| l.starts_with(says) && l.contains(&format!(" % ({part}"));
+        let line = |l: &str| l.starts_with(says) && l.contains(part);
         let told = || fs::read_to_string(&heard).is_ok_and(|said| said.lines().any(line));
         let child = begun(&folder, args, stderr.into(), told);
         let code = ended(child, &["INT"]).0;

@@ -69,6 +69,40 @@ fn completions_for_every_shell() {
     folder.fails("completions tcsh", 2, "tcsh|bash");
 }
 
+/// Bash breaks words at signs.
+#[cfg(target_os = "linux")]
+#[test]
+fn bash_completes_the_words_of_keys() {
+    let folder = Folder::new();
+    let program = folder.command("").get_program().to_owned();
+    let program = std::path::Path::new(&program);
+    let path = program.parent().expect("a folder").display().to_string();
+    for (words, current, wanted) in [
+        ("march.mode = sl", "sl", "slides-even"),
+        ("march.mode =", "=", "safe"),
+        ("scene.kind = heig", "heig", "heightfield"),
+        ("scene.formula = mandel", "mandel", "mandelbox"),
+        ("camera.fo", "camera.fo", "camera.fov="),
+    ] {
+        let line = format!(
+            r#"PATH={path}:$PATH; source <(conemarch completions bash)
+            COMP_WORDS=(conemarch render mandelbox --set {words} after); COMP_TYPE=9
+            COMP_CWORD=$((${{#COMP_WORDS[@]}} - 2))
+            _conemarch conemarch '{current}' =; printf '%s\n' "${{COMPREPLY[@]}}""#
+        );
+        let output = std::process::Command::new("bash")
+            .args(["-c", &line])
+            .output();
+        let output = output.expect("bash runs");
+        let found = text(&output);
+        assert!(
+            found.lines().any(|l| l.trim() == wanted),
+            "{words}: {found:?} {}",
+            said(&output)
+        );
+    }
+}
+
 /// What a completion script asks the program, and what comes back.
 #[test]
 fn presets_files_and_keys_are_completed() {

@@ -20,6 +20,7 @@ mod common {
 }
 mod background;
 mod device;
+mod edits;
 mod glow;
 mod lamps;
 mod live;

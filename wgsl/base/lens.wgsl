@@ -32,7 +32,7 @@ fn view_lens_point(share: vec2<f32>) -> vec2<f32> {
 /// along both axes; each pixel shifts it. Below 0 it is the centre.
 fn view_ray_from(pixel: vec2<u32>, place: vec2<f32>, share: vec2<f32>) -> Beam {
     var ray = view_ray_at(pixel, place);
-    if view.lens > 0.0 && share.x >= 0.0 {
+    if share.x >= 0.0 {
         let point = view.lens * view_lens_point(fract(share + view_hash(pixel)));
         let aside = point.x * view.right + point.y * view.up;
         // All rays of a place meet in the plane of the focus.

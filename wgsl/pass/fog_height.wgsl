@@ -15,10 +15,6 @@ fn fog_mean(x: f32) -> f32 {
 /// The optical depth of the first `t` units of a ray: the integral of the density, which is
 /// `fog exp(-h)` at a height of h scale heights.
 fn fog_depth(ray: Beam, t: f32) -> f32 {
-    // A program may be kept when the number becomes zero.
-    if look.fog_rise == 0.0 {
-        return look.fog * t;
-    }
     let start = look.fog_start + look.fog_rise * dot(ray.origin, look.world_up);
     let rise = look.fog_rise * dot(ray.axis, look.world_up) * t;
     let low = max(min(start, start + rise), FOG_DEEPEST);

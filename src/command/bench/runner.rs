@@ -22,6 +22,7 @@ pub const COUNTED: Extras = Extras {
     shown: false,
     unread: false,
     reuse: false,
+    held: false,
 };
 /// Asks the device for its times; no colours.
 pub const TIMED: Extras = Extras {
@@ -63,7 +64,8 @@ impl<'a> Runner<'a> {
         detail: &str,
     ) -> Result<Frame, RenderError> {
         let (progress, done, all) = (&mut self.progress, self.done as f64, self.all as f64);
-        let watch = &mut |now: &Progress| progress.report((done + now.done) / all, detail);
+        let watch =
+            &mut |now: &Progress| progress.report_part(now, (done + now.done) / all, detail);
         let frame = self.executor.render(plan, self.assets, extras, watch)?;
         self.done += 1;
         Ok(frame)

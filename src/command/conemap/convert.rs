@@ -50,12 +50,12 @@ pub fn run(args: &Convert) -> Result<()> {
     )?;
     interrupt::listen();
     let mut progress = Reporter::start("converting");
-    progress.report(0.0, "reading");
+    progress.report_step(0.0, "step 1 of 2: reading");
     let file = args.foreign.decode(&args.map, args.wrap)?;
     let format = args.writing.format(output, file.map.kind)?;
     let sink = Sink::prepare(output)?;
     interrupt::check()?;
-    progress.report(0.0, "writing, and reading back");
+    progress.report_step(0.0, "step 2 of 2: writing, and reading back");
     let what_is_kept = write(&file, &format, sink)?;
     drop(progress);
     let [w, h] = file.map.size;

@@ -66,7 +66,7 @@ pub fn run(args: &Inspect) -> Result<()> {
         }
         let file = args.foreign.decode(path, args.reading.wrap)?;
         if let Some(heights) = &args.heights {
-            let loaded = args.reading.load(heights, &mut progress)?;
+            let loaded = args.reading.load(heights, (&mut progress, "heights"))?;
             check_heights(&file, path, heights, &loaded.heights)?;
         }
         progress.report(0.0, "describing");
@@ -78,7 +78,7 @@ pub fn run(args: &Inspect) -> Result<()> {
                 "`{name}` is not a cone map, so --heights has nothing to check; leave it out"
             )));
         }
-        let loaded = args.reading.load(&args.file, &mut progress)?;
+        let loaded = args.reading.load(&args.file, (&mut progress, "heights"))?;
         progress.report(0.0, "describing");
         let text = describe_heights(&name, &loaded);
         let panels = picture.is_some().then(|| heights_panels(&loaded.heights));

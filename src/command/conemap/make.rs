@@ -93,8 +93,8 @@ pub fn run(args: &Make) -> Result<()> {
         check_memory(generator, field.size)?;
     }
     let mut progress = Reporter::start("making cones");
-    progress.report(0.0, "heights");
-    let loaded = args.reading.load(&args.heights, &mut progress)?;
+    let step = (&mut progress, "step 1 of 3: heights");
+    let loaded = args.reading.load(&args.heights, step)?;
     let heights = &loaded.heights;
     check_memory(generator, heights.size())?;
     // The default name is never that of the heights, and its format keeps everything.
@@ -115,11 +115,12 @@ pub fn run(args: &Make) -> Result<()> {
     let (executor, who) = Executor::open_with(&args.device, false)?;
     say(&format!("making cones on {who}"));
     let start = Instant::now();
-    let watch = &mut |done| progress.report(done, generator.name());
+    let cones = format!("step 2 of 3: cones by {}", generator.name());
+    let watch = &mut |done| progress.report_step(done, &cones);
     let mut maker = MapMaker::new(&executor);
     let map = maker.generate(generator, heights, patches, &options, watch)?;
     let took = start.elapsed().as_secs_f64() * 1e3;
-    progress.report(1.0, "the file");
+    progress.report_step(0.0, "step 3 of 3: the file");
     let file = MapFile::new(map, heights, patches, &made_by(generator, &options));
     interrupt::check()?;
     let what_is_kept = write(&file, &format, sink)?;

@@ -44,15 +44,19 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Reads heights, and says what was left out of them.
-    pub fn load(&self, argument: &OsStr, progress: &mut Reporter) -> Result<Loaded> {
+    /// Reads heights as a step of a work, and says what was left out of them.
+    pub fn load(
+        &self,
+        argument: &OsStr,
+        (progress, step): (&mut Reporter, &str),
+    ) -> Result<Loaded> {
         let options = LoadOptions {
             wrap: self.wrap,
             invert: self.invert,
             normalize: self.normalize,
             size: self.size,
         };
-        let watch = &mut |share| progress.report(share, "heights");
+        let watch = &mut |share| progress.report_step(share, step);
         let loaded = load(argument, &options, watch);
         interrupt::check()?;
         let loaded = loaded?;

@@ -108,7 +108,7 @@ impl FrameRequest {
     pub fn at_once(&self) -> Result<Option<FrameInputs>, RenderError> {
         // Another thread may be uploading arrays, which takes long.
         let busy = self.shared.arrays.try_lock().is_err();
-        if busy || !self.plan.has_assets(&self.assets) {
+        if busy || !self.assets.serve(&self.plan) {
             return Ok(None);
         }
         let draft = self.draft()?;
@@ -184,7 +184,7 @@ impl FrameRequest {
         let shown = extras.shown && fits;
         let kinds = StageKind::all(&plan.passes(*extras), shown, plan.is_adaptive());
         let text = |program| with_texts(self.sources.as_ref(), program);
-        let held = self.held.as_ref().filter(|_| extras.reuse);
+        let held = self.held.as_ref().filter(|_| extras.held);
         let program = |(stage, kind): (usize, &StageKind)| {
             let lean = text(kind.program(plan, &scene, *extras));
             let held = held.and_then(|needs| needs.held(stage, &blocks[0], &lean));
@@ -214,7 +214,7 @@ impl FrameRequest {
         let Self { plan, extras, .. } = self;
         let (scene, needs) = (draft.scene, draft.needs);
         let marched = marched(plan, &scene);
-        let sky = plan.sky(&self.assets).map_err(PrepareError::from)?;
+        let sky = self.assets.sky(plan).map_err(PrepareError::from)?;
         let light = Light::of(plan, &scene).with_sky(sky);
         let mut look = bytes_of(&light.parameters()).to_vec();
         let mut parameters = marched.clone();
@@ -239,8 +239,11 @@ impl FrameRequest {
             }
         }
         traffic.compilations = new.len();
-        let pass = "compile".into();
-        if !new.is_empty() && !tell(&Progress { pass, done: 0.0 }) {
+        let compile_first = Progress {
+            pass: "compile".into(),
+            ..Progress::default()
+        };
+        if !new.is_empty() && !tell(&compile_first) {
             return Err(RenderError::Cancelled);
         }
         for kernel in all_at_once(&new, compile) {

@@ -243,6 +243,7 @@ impl Run {
             return Progress {
                 pass: last.map(Pass::name).unwrap_or_default(),
                 done: 1.0,
+                is_step: false,
             };
         }
         let (block, index) = self.place(stage);
@@ -262,6 +263,7 @@ impl Run {
         Progress {
             pass: self.job.made.passes[self.pass_at(index)].name(),
             done: (done / all as f64).min(1.0),
+            is_step: false,
         }
     }
 

@@ -1,0 +1,117 @@
+//! What the settings of a heightfield answer as those of a scene.
+
+use std::path::{Path, PathBuf};
+
+use super::heightfield::Heightfield;
+use super::{AnySolid, Assets, Scene, SceneSettings, Viewpoint};
+use crate::base::key::{Fault, Key};
+use crate::heightfield::assets::Preparation;
+use crate::heightfield::conemap::generate::generator::ShareWatch;
+use crate::heightfield::settings::HeightfieldSettings;
+use crate::heightfield::tracer::settings::{Make, PrepareError};
+
+/// Cones pay from so many pixels on. Over the built-in heightfields, rays alone are faster at
+/// 160 x 90, neither at 320 x 180, and cones at 640 x 360.
+const CONE_PIXELS: u32 = 50_000;
+
+impl SceneSettings for HeightfieldSettings {
+    fn kind(&self) -> &'static str {
+        "heightfield"
+    }
+
+    fn all() -> Vec<Self> {
+        vec![Self::default()]
+    }
+
+    fn keys(&mut self) -> Vec<Key<'_>> {
+        self.keys()
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        self.check()
+    }
+
+    fn solid(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
+        let ready = assets.heightfield.ready(self, from.growth())?;
+        Ok(AnySolid::Heightfield(Heightfield::of(self, ready, from)))
+    }
+
+    fn outline(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
+        let ready = assets.heightfield.outline(self, from.growth())?;
+        Ok(AnySolid::Heightfield(Heightfield::of(self, ready, from)))
+    }
+
+    /// A tracer of the papers can run out of steps anywhere; a fractal's ray does so only next
+    /// to a hit.
+    fn flags_unconverged(&self) -> bool {
+        true
+    }
+
+    fn tells_distance(&self) -> bool {
+        false
+    }
+
+    fn cone_pixels(&self) -> u32 {
+        CONE_PIXELS
+    }
+
+    fn exact(&self) -> Option<Scene> {
+        Some(self.exact().into())
+    }
+
+    fn colorless(&self) -> Option<Scene> {
+        Some(self.colorless().into())
+    }
+
+    fn heights(&self) -> Option<&str> {
+        Some(&self.source.field)
+    }
+
+    fn pattern_size(&self) -> Option<[u32; 2]> {
+        self.source.pattern_size()
+    }
+
+    fn folder(&self) -> &Path {
+        &self.source.folder
+    }
+
+    fn set_folder(&mut self, folder: &Path) {
+        self.source.folder = folder.to_path_buf();
+    }
+
+    fn files(&self) -> Vec<(&'static str, PathBuf)> {
+        self.files()
+    }
+
+    fn map_files(&self) -> Vec<PathBuf> {
+        self.map_file().into_iter().collect()
+    }
+
+    fn load(&self, assets: &Assets) -> Result<(), Fault> {
+        assets.heightfield.load(self)
+    }
+
+    fn has_assets(&self, assets: &Assets) -> bool {
+        assets.heightfield.has(self)
+    }
+
+    fn make_heights(&self, assets: &Assets, watch: ShareWatch<'_>) -> Result<(), PrepareError> {
+        assets.heightfield.make_heights(self, watch)
+    }
+
+    fn prepare(&self, assets: &Assets, make: Make<'_>) -> Result<(), PrepareError> {
+        assets.heightfield.prepare(self, make)
+    }
+
+    fn preparations(&self, assets: &Assets) -> Vec<Preparation> {
+        assets.heightfield.preparations(self)
+    }
+
+    fn notes(&self, assets: &Assets) -> Vec<String> {
+        assets.heightfield.notes(self)
+    }
+
+    fn contents(&self, assets: &Assets) -> Vec<u8> {
+        assets.heightfield.contents(self)
+    }
+}

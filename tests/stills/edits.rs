@@ -1,0 +1,138 @@
+//! Texts of shaders that change while a program runs.
+
+use std::sync::{Arc, Mutex};
+
+use conemarch::gpu::render::Renderer;
+use conemarch::plan::Extras;
+use conemarch::scene::Assets;
+
+use super::common::plans::sized;
+use super::live::whole;
+use super::work::bits;
+use crate::adapter::{self, EVERYTHING};
+
+#[test]
+fn a_shader_text_changes_and_a_wrong_one_keeps_the_old() {
+    const COLOR: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/pass/color.wgsl"));
+    let mut renderer = adapter::open();
+    let plan = sized("mandelbox", [64, 36]);
+    let old = whole(&mut renderer, &plan).unwrap();
+    let text = Arc::new(Mutex::new(COLOR.to_string()));
+    let now = text.clone();
+    renderer.sources = Some(Arc::new(move |path| {
+        (path == "wgsl/pass/color.wgsl").then(|| now.lock().unwrap().clone())
+    }));
+    assert!(whole(&mut renderer, &plan).unwrap() == old);
+    let line = "        let behind = sky(ray.axis);";
+    let at = COLOR.lines().position(|l| l == line).unwrap() + 1;
+    let edit = |new: &str| *text.lock().unwrap() = COLOR.replace(line, new);
+    edit("        let behind = vec3<f32>(7.0);");
+    assert!(whole(&mut renderer, &plan).unwrap() != old);
+    edit("        let behind = skye(ray.axis);");
+    let error = whole(&mut renderer, &plan).unwrap_err().to_string();
+    assert!(
+        error.contains(&format!("wgsl/pass/color.wgsl:{at}: ")),
+        "{error}"
+    );
+    edit(line);
+    let frame = renderer.render(&plan, &Assets::default(), EVERYTHING, &mut |_| true);
+    let frame = frame.unwrap();
+    assert!(bits(&frame) == old);
+    let traffic = frame.traffic.unwrap();
+    assert_eq!((traffic.compilations, traffic.drains), (0, 0));
+}
+
+/// What a text asks of a device can be wrong too.
+#[test]
+fn a_shader_text_that_no_device_can_run_is_told_with_its_file_and_line() {
+    const COLOR: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/pass/color.wgsl"));
+    let used = "        let behind = sky(ray.axis) + extra[0];";
+    let line = "        let behind = sky(ray.axis);";
+    let declared = |at: &str| {
+        format!(
+            "{}\n{at} var<storage, read> extra: array<f32>;",
+            COLOR.replace(line, used)
+        )
+    };
+    let end = COLOR.lines().count() + 2;
+    let entry = COLOR
+        .lines()
+        .position(|l| l.starts_with("fn color("))
+        .unwrap()
+        + 1;
+    for (text, at, says) in [
+        (
+            declared("@group(2) @binding(13)"),
+            end,
+            "needs a buffer for `extra`",
+        ),
+        (
+            declared("@group(9) @binding(0)"),
+            end,
+            "`extra` is in group 9",
+        ),
+        (format!("{COLOR}\noverride EXTRA: f32;"), end, "`EXTRA`"),
+        (
+            COLOR.replace("@workgroup_size(64)", "@workgroup_size(4096)"),
+            entry,
+            "refused",
+        ),
+        (
+            COLOR.replace("fn color(", "fn other("),
+            1,
+            "the entry point is missing",
+        ),
+    ] {
+        let mut renderer = adapter::open();
+        let plan = sized("mandelbox", [64, 36]);
+        let old = whole(&mut renderer, &plan).unwrap();
+        let edited = Arc::new(Mutex::new(true));
+        let now = edited.clone();
+        renderer.sources = Some(Arc::new(move |path| {
+            let is_edited = path == "wgsl/pass/color.wgsl" && *now.lock().unwrap();
+            is_edited.then(|| text.clone())
+        }));
+        let said = whole(&mut renderer, &plan).unwrap_err().to_string();
+        let place = format!("wgsl/pass/color.wgsl:{at}: ");
+        assert!(
+            said.starts_with(&place) && said.contains(says),
+            "{place}{says}: {said}"
+        );
+        assert!(!said.contains('\n'), "{said}");
+        *edited.lock().unwrap() = false;
+        assert!(whole(&mut renderer, &plan).unwrap() == old, "{says}");
+    }
+}
+
+/// Of several programs that change, all or none take the places of the old.
+#[test]
+fn a_program_that_cannot_be_bound_leaves_the_others_as_they_were() {
+    let plan = sized("mandelbox", [64, 36]);
+    let shown = Extras {
+        shown: true,
+        ..EVERYTHING
+    };
+    let mut renderer = adapter::open();
+    let render = |renderer: &mut Renderer| {
+        let frame = renderer.render(&plan, &Assets::default(), shown, &mut |_| true);
+        frame.map(|frame| bits(&frame))
+    };
+    let old = render(&mut renderer).unwrap();
+    let text = |path: &str| {
+        let root = env!("CARGO_MANIFEST_DIR");
+        std::fs::read_to_string(format!("{root}/{path}")).unwrap()
+    };
+    renderer.sources = Some(Arc::new(move |path| match path {
+        "wgsl/pass/color.wgsl" => Some(text(path).replace("= sky(ray.axis);", "= vec3<f32>(7.0);")),
+        "wgsl/pass/develop.wgsl" => {
+            let reads = "{\n    if extra[0] > 1e30 { return; }\n";
+            let declared = "@group(2) @binding(13) var<storage, read> extra: array<f32>;\n";
+            Some(text(path).replacen("{\n", reads, 1) + declared)
+        }
+        _ => None,
+    }));
+    let said = render(&mut renderer).unwrap_err().to_string();
+    assert!(said.contains("needs a buffer for `extra`"), "{said}");
+    renderer.sources = None;
+    assert!(render(&mut renderer).unwrap() == old);
+}
