@@ -2,6 +2,7 @@
 //! is under the cursor.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use conemarch::base::clock::clock;
 use conemarch::base::key::Redo;
