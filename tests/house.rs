@@ -132,17 +132,21 @@ fn core(text: &str) -> (String, Vec<String>) {
 }
 
 /// What a browser lacks, or forbids.
-const NOT_IN_CORE: [&str; 12] = [
-    "std::fs",
+const NOT_IN_CORE: [&str; 16] = [
+    "fs::",
     "File::open",
     "File::create",
     "OpenOptions",
+    "canonicalize",
     "SystemTime",
-    "std::process",
-    "std::thread",
+    "process::",
+    "thread::",
     "Instant",
-    "std::env",
+    "env::",
     "block_on",
+    "pollster",
+    ".recv_timeout(",
+    "Condvar",
     "PollType::Wait",
     "rayon",
 ];

@@ -248,9 +248,11 @@ fn render(
         let picture = Shades::new(Layer::Color, &rendered, plan);
         let depth = args.depth.unwrap_or_default();
         let to = &mut Cursor::new(&mut content);
-        write_png(to, &picture, depth, &plan.title, &preset::write(plan))?;
+        let name = pattern.name(*frame);
+        let text = preset::write_beside(plan, &name);
+        write_png(to, &picture, depth, &plan.title, &text)?;
         let mut parcel = Parcel::default();
-        parcel.put(Sink::prepare(&pattern.name(*frame))?, &content)?;
+        parcel.put(Sink::prepare(&name)?, &content)?;
         parcel.hand_over()?;
     }
     Ok(())
@@ -269,7 +271,7 @@ fn is_there(path: &Path, plan: &Plan, depth: Option<BitDepth>) -> bool {
     };
     bytes.get(24) == Some(&bits)
         && bytes.ends_with(b"IEND\xae\x42\x60\x82")
-        && preset::find(path).is_ok_and(|found| found.text == preset::write(plan))
+        && preset::find(path).is_ok_and(|found| found.text == preset::write_beside(plan, path))
 }
 
 /// Looks for ffmpeg before anything is rendered.

@@ -123,7 +123,8 @@ impl Format {
             + with(plan.has_variance(extras), 8)
     }
 
-    /// The picture as the bytes of a file. `errors` are those of the layer that shows them.
+    /// The picture as the bytes of the file `output`. `errors` are those of the layer that shows
+    /// them.
     ///
     /// # Errors
     /// The encoder failed.
@@ -132,9 +133,9 @@ impl Format {
         args: &Options,
         plan: &Plan,
         frame: &Frame,
-        errors: Vec<f64>,
+        (errors, output): (Vec<f64>, &Path),
     ) -> Result<Vec<u8>, OutputError> {
-        let preset = preset::write(plan);
+        let preset = preset::write_beside(plan, output);
         let mut content = Vec::new();
         let to = &mut Cursor::new(&mut content);
         let shades = || Shades::new(args.layer, frame, plan).with_errors(errors);
@@ -216,7 +217,7 @@ pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<Pa
     let name = file.display();
     // Whoever wrote the text may have left out defaults.
     let is_same = |old: &str| {
-        let own = preset::write(plan);
+        let own = preset::write_beside(plan, &file);
         old == own || preset::read(old, "").is_ok_and(|old| preset::write(&old) == own)
     };
     let why = match &picture {

@@ -63,7 +63,7 @@ pub fn find(argument: &Path) -> Result<Source, PresetError> {
     let extension = argument.extension().and_then(|e| e.to_str()).unwrap_or("");
     let is_path = shown.contains(['/', '\\'])
         || ["toml", "png", "exr"].contains(&extension.to_lowercase().as_str())
-        || (!shown.is_empty() && argument.exists());
+        || (cfg!(feature = "cli") && !shown.is_empty() && argument.exists());
     if !is_path {
         return Err(PresetError::Unknown {
             name: brief(&shown),
