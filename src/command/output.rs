@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
-use std::io::{BufReader, Cursor, Seek, SeekFrom};
+use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
@@ -165,6 +165,16 @@ fn layer_of(file: &Path) -> Option<Layer> {
     }
 }
 
+/// The bits of each colour of a PNG: they stand behind the signature, the head of the first chunk,
+/// width and height.
+pub fn bits_of(file: &Path) -> Option<u8> {
+    let mut bits = [0];
+    let mut file = File::open(file).ok()?;
+    file.seek(SeekFrom::Start(24)).ok()?;
+    file.read_exact(&mut bits).ok()?;
+    Some(bits[0])
+}
+
 /// The file that a picture goes to without -o: `NAME.png`, with other settings
 /// `NAME-camera.fov=33.png`, at a moment `NAME-at=2.png`, with another size `NAME-640x360.png`, with
 /// samples `NAME-samples=16.png`, and of another layer `NAME.depth.png`. Only a picture of this
@@ -223,6 +233,9 @@ pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<Pa
     let why = match &picture {
         None => "is no picture of this program",
         Some(_) if layer_of(&file) != Some(args.layer) => "shows another layer",
+        Some(_) if bits_of(&file) != Some(args.options.depth.unwrap_or_default() as u8) => {
+            "has another --depth"
+        }
         Some(old) if is_same(&old.text) => return Ok(file),
         Some(_) if may_differ => {
             let own = args.preset.display();

@@ -95,6 +95,20 @@ fn a_new_value_makes_no_more_again_than_its_key_says() {
         ..Extras::default()
     };
     let mut render = |plan: &Plan| renderer.render(plan, &assets, extras, &mut |_| true);
+    let mut anew = adapter::open();
+    let shown = Extras {
+        shown: true,
+        ..Extras::default()
+    };
+    let mut anew = |plan: &Plan| {
+        let frame = anew.render(plan, &assets, shown, &mut |_| true);
+        bits(&frame.unwrap())
+    };
+    // Cones that come and go with the plan.
+    for sets in [&[][..], &["march.coarsest=16"], &["march.mode=calibrated"]] {
+        let plan = preset("bench-far", &[sets, &["image.size=[320, 180]"]].concat());
+        assert!(bits(&render(&plan).unwrap()) == anew(&plan), "{sets:?}");
+    }
     let (mut seen, mut wrong) = (BTreeSet::new(), Vec::new());
     for base in &plans()[1..] {
         for section in ["", "scene", "camera", "march", "look", "image"] {
@@ -112,6 +126,9 @@ fn a_new_value_makes_no_more_again_than_its_key_says() {
                     render(base).unwrap();
                     let missing = !plan.scene.has_assets(&assets);
                     let Ok(frame) = render(&plan) else { continue };
+                    if bits(&frame) != anew(&plan) {
+                        wrong.push(format!("{section}.{name} = {value}: other bits"));
+                    }
                     let traffic = frame.traffic.unwrap();
                     let ran = |pass: &str| {
                         let mut all = frame.passes.iter();
