@@ -1,5 +1,6 @@
 //! Files that change or are broken, and work that no file has yet.
 
+use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -131,3 +132,71 @@ fn another_preset_keeps_unsaved_work_and_none_is_lost() {
 
 /// The button that takes unsaved work, in a window of 960 x 540.
 const RESTORE: [u32; 2] = [346, 89];
+
+/// Copies a folder and the folders in it.
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let to = to.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &to),
+            false => _ = std::fs::copy(entry.path(), to).unwrap(),
+        }
+    }
+}
+
+#[test]
+fn shaders_are_read_again_and_a_paused_film_stays_paused() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("wgsl");
+    copy(&own, &folder.0.join("wgsl"));
+    folder.write("film.toml", FILM);
+    let line = "film.toml --size 640x360 --wgsl wgsl";
+    let view = Preview::open(&desktop, &folder.0, line);
+    view.key("Tab");
+    view.key("t");
+    for _ in 0..3 {
+        view.key("period");
+    }
+    folder.done("animate film.toml --set image.size=[640,360] -o f-%02d.png --frames 3..3");
+    let good = picture(&folder, "f-03.png");
+    let is_good = |shot: &Shot| *shot == good;
+    view.wait_for("a frame of the film", is_good);
+    let edit = |file: &str, from: &str, to: &str| {
+        sleep(Duration::from_millis(20));
+        let text = std::fs::read_to_string(own.join(file)).unwrap();
+        assert!(text.contains(from), "{file} has no `{from}`");
+        folder.write(&format!("wgsl/{file}"), text.replace(from, to));
+    };
+    let (tone, store) = ("pass/tone.wgsl", "(bytes) / 255.0");
+    // Without red, and the notice is gone.
+    edit(tone, store, "(bytes) / 255.0 * vec3<f32>(0.0, 1.0, 1.0)");
+    let mut blue = good.clone();
+    blue.rgb.chunks_exact_mut(3).for_each(|p| p[0] = 0);
+    view.wait_for("the other shader", |shot| *shot == blue);
+    // An error lies over the last good picture.
+    edit(tone, store, "(nothing) / 255.0");
+    view.wait_for("what is wrong", |shot| {
+        *shot != blue && upper(shot, 240) == upper(&blue, 240)
+    });
+    edit(tone, store, store);
+    view.wait_for("the mended shader", is_good);
+    // A loop without an end leaves a window that answers. Of the loops that a driver cuts off, pixels
+    // are wrong.
+    let (trace, steps) = ("pass/trace.wgsl", "let last = queue_steps();");
+    let endless = "var x = ray.k; for (var j = 0u; j < 4000000000u; j++) { x = fract(x * 1.7 + 0.31); } if x > 2.0 { return; }";
+    edit(trace, steps, &format!("{steps} {endless}"));
+    view.wait_for("that the shader is read", |shot| !is_good(shot));
+    view.key("Tab");
+    view.wait_for("the panel", |shot| {
+        let right = shot.rgb.chunks_exact(3 * 640).take(300);
+        right.fold(0, |n, row| {
+            n + row[3 * 320..].iter().filter(|x| **x < 40).count()
+        }) > 50_000
+    });
+    view.key("Tab");
+    edit(trace, steps, steps);
+    view.wait_for("the shader without the loop", is_good);
+    view.close();
+}

@@ -1,8 +1,8 @@
 //! The preview in a real window: what it shows at rest is what the other commands write.
 //!
 //! - `desktop`: an X server with the window in it
-//! - `rest`: pictures, layers and pixels; `film`: the timeline; `files`: presets that change, and
-//!   unsaved work
+//! - `fly`: the camera and the panel; `rest`: pictures, layers and pixels; `film`: the timeline
+//! - `files`: presets and shaders that change, and unsaved work
 //! - `harm`: sizes and events of all kinds, and no display; `loss`: a lost device
 #![cfg(all(target_os = "linux", feature = "preview"))]
 #![allow(
@@ -14,6 +14,7 @@
 mod desktop;
 mod files;
 mod film;
+mod fly;
 #[path = "../common/folder.rs"]
 #[allow(dead_code, reason = "other files use the rest")]
 mod folder;
