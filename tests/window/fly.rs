@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use conemarch::plan::Plan;
 use conemarch::preset;
-use glam::DVec3;
 
 use crate::desktop::{Desktop, Preview};
 use crate::folder::Folder;
@@ -99,7 +98,7 @@ fn a_typed_number_and_a_dragged_color_are_one_step() {
     view.click(927, 94);
     assert_eq!(saved(&view, &folder).scene, first.scene);
     // The colour of the light opens a box of colours.
-    let color = |plan: &Plan| DVec3::from(plan.look.light_color);
+    let color = |plan: &Plan| plan.look.light_color;
     view.click(755, 416);
     sleep(Duration::from_millis(700));
     view.drag(1, [750, 250], [700, 300]);
