@@ -60,10 +60,7 @@ pub fn find(argument: &Path) -> Result<Source, PresetError> {
             folder: PathBuf::new(),
         });
     }
-    let extension = argument.extension().and_then(|e| e.to_str()).unwrap_or("");
-    let is_path = shown.contains(['/', '\\'])
-        || ["toml", "png", "exr"].contains(&extension.to_lowercase().as_str())
-        || (!shown.is_empty() && argument.exists());
+    let is_path = shown.contains(['/', '\\', '.']) || (!shown.is_empty() && argument.exists());
     if !is_path {
         return Err(PresetError::Unknown {
             name: brief(&shown),
