@@ -1,5 +1,8 @@
 //! Parsers of arguments: sizes, and words that stand for values.
 
+use std::fmt::Display;
+use std::str::FromStr;
+
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::base::units;
@@ -27,9 +30,20 @@ pub fn samples(text: &str) -> Result<[u32; 2], String> {
     })
 }
 
+/// A parser of whole numbers in a range.
+pub fn whole<N>(least: N, most: N) -> impl TypedValueParser<Value = N>
+where
+    N: FromStr + PartialOrd + Display + Copy + Send + Sync + 'static,
+{
+    move |text: &str| {
+        let within = text.parse().ok().filter(|n| (least..=most).contains(n));
+        within.ok_or_else(|| format!("must be a whole number from {least} to {most}"))
+    }
+}
+
 /// Reads how many samples a pixel has.
 pub fn pixel_samples() -> impl TypedValueParser<Value = u32> {
-    clap::value_parser!(u32).range(1..=i64::from(MOST_PIXEL_SAMPLES))
+    whole(1, MOST_PIXEL_SAMPLES)
 }
 
 /// Reads the error at which a tile has enough samples.

@@ -55,9 +55,12 @@ impl Bands {
         let whole = output.metadata().is_ok_and(|m| !m.is_file()) || is_stdout(output);
         let can = format == Format::Png && args.layer.is_local() && !whole && plan.window.is_none();
         if args.resume && !can {
-            return Err(usage(
-                "only a .png file of the layer color, normal or state can be resumed; leave --resume out, or write such a file",
-            ));
+            let local = Layer::ALL.into_iter().filter(|layer| layer.is_local());
+            let local: Vec<&str> = local.map(Layer::name).collect();
+            return Err(usage(format!(
+                "only a .png file of one of the layers {} can be resumed; leave --resume out, or write such a file",
+                local.join(", ")
+            )));
         }
         let is_big = plan.size.map(u64::from).iter().product::<u64>() > MOST_AT_ONCE;
         let has_bands = can && (is_big || args.resume);

@@ -6,9 +6,9 @@ use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use clap::{Args, value_parser};
+use clap::Args;
 
-use crate::command::arguments::bits;
+use crate::command::arguments::{bits, whole};
 use crate::command::failure::usage;
 use crate::command::print::say;
 use crate::command::render::Render;
@@ -44,7 +44,7 @@ pub struct Options {
     pub(crate) depth: Option<BitDepth>,
 
     /// Quality of a JPEG, from 1 to 100 [default: 92]
-    #[arg(long, value_name = "QUALITY", value_parser = value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "QUALITY", value_parser = whole(1_u8, 100))]
     pub(crate) quality: Option<u8>,
 
     /// What the picture shows.

@@ -112,7 +112,7 @@ impl DistanceEstimate for Mandelbox {
             // Below this the bounds exceed 4000 fold limits: too large for f32.
             self.scale.abs() >= 1.001,
             "scene.scale",
-            "the size of a Mandelbox's scale must be at least 1.001; 2 and -1.5 are classics",
+            "its absolute value must be at least 1.001; 2 and -1.5 are classics",
         )?;
         Fault::unless(
             self.min_radius <= self.fixed_radius,

@@ -1,8 +1,7 @@
-//! Light, palette and tone: the part of a look that needs no geometry.
+//! Light, palette and the filmic curve: the part of a look that needs no geometry.
 //!
-//! Light is linear. A white wall that faces a key light of strength 1 has radiance 1.
-//! Twin: `wgsl/pass/look.wgsl`. Tone and sRGB have no twin: they are applied only where a
-//! picture is written.
+//! Light is linear. A white wall that faces a key light of strength 1 has radiance 1. Tone
+//! map and sRGB come last: see `tone.rs` and `tone_map.rs`. Twin: `wgsl/pass/look.wgsl`.
 
 use std::sync::Arc;
 

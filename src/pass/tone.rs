@@ -1,7 +1,7 @@
 //! From light to the bytes of a picture.
 //!
-//! A byte has 16 levels. Which of two bytes a level becomes alternates from pixel to pixel, so
-//! that smooth skies have no bands (*dithering*).
+//! Between two neighbouring values of a byte there are 16 levels. Which of the two a level becomes
+//! alternates from pixel to pixel, so that smooth skies have no bands (*dithering*).
 //!
 //! The curve is monotonic, so a table of radiances decides every level. It is found in f64,
 //! and f32 compares against it without an error. The curve in f32 says where to look.

@@ -75,12 +75,13 @@ impl Place {
         let mut list = unfinished();
         let made = builder(&format!(".{}.", name.to_string_lossy())).tempfile_in(folder);
         let (file, held) = made.map(tempfile::NamedTempFile::into_parts).map_err(|e| {
-            let doing = format!(
-                "cannot be written in the folder `{}`; check its rights, or name another",
+            // The error itself names the temporary file.
+            let why = format!(
+                "cannot be written: {}; check the rights of the folder `{}`, or name another",
+                e.kind(),
                 folder.display()
             );
-            // The error itself names the temporary file.
-            OutputError::io(path, &doing, &e.kind().into())
+            OutputError::file(path, why)
         })?;
         list.push(held.to_path_buf());
         Ok(place(target.clone(), Some(held), file))

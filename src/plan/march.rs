@@ -15,6 +15,8 @@ use crate::settings;
 /// What sets a mode apart.
 #[derive(Clone, Copy, Debug)]
 pub struct Facts {
+    /// What it does, in words.
+    about: &'static str,
     /// The rule of its cones; `None` for rays alone.
     cones: Option<ConeRule>,
     /// Whether steps keep the shell of `march.shell`.
@@ -32,6 +34,7 @@ pub struct Facts {
 }
 
 const SAFE: Facts = Facts {
+    about: "the default: cones that are proven empty, where they make it faster, and rays with longer steps",
     cones: Some(ConeRule::Exact),
     shell: true,
     proven: false,
@@ -41,14 +44,16 @@ const SAFE: Facts = Facts {
     budget: None,
 };
 const RAY: Facts = Facts {
+    about: "classical sphere tracing: rays alone, each step as long as the distance estimate",
     cones: None,
     shell: false,
     optional: false,
     relaxed: false,
     ..SAFE
 };
-const fn slides(budget: fn(u32) -> [u32; 2]) -> Facts {
+const fn slides(about: &'static str, budget: fn(u32) -> [u32; 2]) -> Facts {
     Facts {
+        about,
         cones: Some(ConeRule::Slides),
         budget: Some(budget),
         ..RAY
@@ -63,21 +68,49 @@ named_enum! {
         #[default]
         Safe = "safe" => SAFE,
         /// As safe, and no step of a ray is longer than a proof allows.
-        Proven = "proven" => Facts { proven: true, ..SAFE },
+        Proven = "proven" => Facts {
+            about: "as safe, and no step of a ray is longer than a proof allows",
+            proven: true,
+            ..SAFE
+        },
         /// Exact cones, narrowed by the factors that a calibration found.
-        Calibrated = "calibrated" => Facts { optional: false, ..SAFE },
+        Calibrated = "calibrated" => Facts {
+            about: "cones everywhere, made narrower by the factors of march.fudge",
+            optional: false,
+            ..SAFE
+        },
         /// The slides' rule. 128 steps are split evenly over all passes.
-        SlidesEven = "slides-even" => slides(|passes| [(128 / passes).max(1); 2]),
+        SlidesEven = "slides-even" => slides(
+            "cones by the rule of slides from 2012, which leaves gaps; 128 steps for all passes",
+            |passes| [(128 / passes).max(1); 2],
+        ),
         /// The slides' rule. Each coarse pass has 512 steps, a ray 128.
-        SlidesDeep = "slides-deep" => slides(|_| [512, 128]),
+        SlidesDeep = "slides-deep" =>
+            slides("the same rule; 512 steps for each cone pass, 128 for a ray", |_| [512, 128]),
         /// The slides' rule. Each coarse pass has 512 steps, a ray 32.
-        SlidesFast = "slides-fast" => slides(|_| [512, 32]),
+        SlidesFast = "slides-fast" =>
+            slides("the same rule; 512 steps for each cone pass, 32 for a ray", |_| [512, 32]),
         /// Classical sphere tracing: no cones, no relaxation, no shell.
         Ray = "ray" => RAY,
         /// Sphere tracing with relaxation.
-        RayRelaxed = "ray-relaxed" => Facts { relaxed: true, ..RAY },
+        RayRelaxed = "ray-relaxed" => Facts {
+            about: "rays alone, with longer steps that are taken back where they went too far",
+            relaxed: true,
+            ..RAY
+        },
         /// Tiny steps, no cones, no relaxation. The other modes are measured against it.
-        Truth = "truth" => Facts { stride: 0.1, ..RAY },
+        Truth = "truth" => Facts {
+            about: "rays alone in tiny steps; the other modes are measured against it",
+            stride: 0.1,
+            ..RAY
+        },
+    }
+}
+
+impl Mode {
+    /// What it does, in words.
+    pub fn about(self) -> &'static str {
+        self.facts().about
     }
 }
 

@@ -2,7 +2,6 @@
 
 use thiserror::Error;
 
-use crate::preset::BUILTIN;
 use crate::preset::nearest::perhaps;
 
 /// An error of a preset, of an override, or of the argument that names a preset.
@@ -28,9 +27,8 @@ pub enum PresetError {
     },
     /// Neither a built-in preset nor a file has this name.
     #[error(
-        "no preset is called `{name}`{}; the built-in presets are {}; a path of a .toml file, or of a .png or .exr that this program wrote, is a preset too",
-        perhaps(.nearest.iter().map(String::as_str)),
-        built_in()
+        "no preset is called `{name}`{}; `conemarch presets` lists the built-in ones; a path of a .toml file, or of a .png or .exr file that this program wrote, is a preset too",
+        perhaps(.nearest.iter().map(String::as_str))
     )]
     Unknown {
         /// What was asked for.
@@ -61,10 +59,4 @@ fn place(origin: &str, line: Option<usize>) -> String {
         Some(line) => format!("{origin}:{line}"),
         None => origin.to_string(),
     }
-}
-
-/// The names of all built-in presets.
-fn built_in() -> String {
-    let names: Vec<&str> = BUILTIN.iter().map(|(name, _)| *name).collect();
-    names.join(", ")
 }

@@ -141,8 +141,8 @@ impl Source {
     /// The scene that `scene.kind` and `scene.formula` choose.
     fn scene(&self, entries: &[Entry]) -> Result<Scene, PresetError> {
         let Some(kind) = last(entries, "kind") else {
-            let why = "scene.kind is missing; kind = \"distance\" with a formula would do, or kind = \"heightfield\"";
-            return Err(self.content(None, why.into()));
+            let why = format!("scene.kind is missing; it is one of {}", quoted(&kinds()));
+            return Err(self.content(None, why));
         };
         let word = self.word(kind, &kinds())?;
         let formula = match last(entries, "formula") {
@@ -179,8 +179,19 @@ impl Source {
                     .into_iter()
                     .map(|(path, ..)| path)
                     .collect::<Vec<_>>();
-                let near = perhaps(nearest(&entry.key, known.iter().map(String::as_str)));
-                let why = format!("the plan has no key `{}`{near}", brief(&entry.key));
+                let key = brief(&entry.key);
+                let why = match &*entry.key {
+                    "scene.kind" | "scene.formula" => {
+                        format!("a track cannot change {key}; a film has one scene")
+                    }
+                    other if known.iter().any(|path| path == other) => {
+                        format!("the plan has no key `{key}`; it is one of another kind of scene")
+                    }
+                    other => {
+                        let near = perhaps(nearest(other, known.iter().map(String::as_str)));
+                        format!("the plan has no key `{key}`{near}")
+                    }
+                };
                 return Err(self.at(entry, format!("track: {why}")));
             }
             let track = track(entry).map_err(|why| self.value(entry, &why))?;

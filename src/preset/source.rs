@@ -60,9 +60,7 @@ pub fn find(argument: &Path) -> Result<Source, PresetError> {
             folder: PathBuf::new(),
         });
     }
-    let extension = argument.extension().and_then(|e| e.to_str()).unwrap_or("");
-    let is_path = shown.contains(['/', '\\'])
-        || ["toml", "png", "exr"].contains(&extension.to_lowercase().as_str())
+    let is_path = shown.contains(['/', '\\', '.'])
         || (cfg!(feature = "cli") && !shown.is_empty() && argument.exists());
     if !is_path {
         return Err(PresetError::Unknown {

@@ -49,7 +49,7 @@ pub fn run(options: Options) -> Result<Option<Figures>, PreviewError> {
         // The places in the sources before it tell a user nothing.
         let text = e.to_string();
         let why = text.rsplit(": ").next().unwrap_or_default();
-        PreviewError::Display(why.to_lowercase())
+        PreviewError::Display(why.trim_end_matches('.').into())
     };
     let event_loop = EventLoop::new().map_err(no_display)?;
     let mut app = App {

@@ -44,6 +44,8 @@ const OPTIONS: &str = r#"
 --size=0x5 ; 2 ; --size|like 1280x720
 --size=5x0 ; 2 ; --size|like 1280x720
 --size=abc ; 2 ; --size|like 1280x720
+--samples 0 ; 2 ; --samples|must be a whole number from 1 to 65536
+--quality 101 -o a.jpg ; 2 ; --quality|must be a whole number from 1 to 100
 --size=99999x1 ; 2 ; --size|like 1280x720
 --size=64 ; 2 ; --size|like 1280x720
 --size=-1x5 ; 2 ; --size|like 1280x720
@@ -60,7 +62,8 @@ const OPTIONS: &str = r#"
 "#;
 
 const PRESETS: &str = r#"
-mandlebox ; 2 ; `mandlebox`|perhaps `mandelbox`|bench-far, |terrain
+mandlebox ; 2 ; `mandlebox`|perhaps `mandelbox`|`conemarch presets` lists
+missing.jpg ; 1 ; missing.jpg: cannot be read
 - ; 2 ; no preset is called `-`
 empty.toml ; 1 ; empty.toml: scene.kind is missing
 binary.toml ; 1 ; binary.toml: is not text in UTF-8

@@ -56,7 +56,7 @@ fn error(text: &str) -> String {
 
 /// A preset, with `|` for the ends of lines, and how its error begins.
 const ERRORS: &str = r#"
- => p.toml: scene.kind is missing
+ => p.toml: scene.kind is missing; it is one of "distance", "heightfield", "slab"
 [scene]|kind = "distance" => p.toml: scene.formula is missing; it is one of "mandelbox"
 [scene]|kind = "distanc" => p.toml:2: scene.kind = "distanc": must be one of "distance", "heightfield", "slab", perhaps "distance"
 [scene]|kind = "distance"|formula = "mandelbx" => p.toml:3: scene.formula = "mandelbx": must be one of
@@ -82,6 +82,8 @@ track = 3|[scene]|kind = "slab" => p.toml:1: a track is written [[track]]
 [scene]|kind = "slab"|[[track]]|keys = [[0, 1]] => p.toml:3: a track has key = "section.key", keys = [[time, value], ...]
 [scene]|kind = "slab"|[[track]]|key = "camera.fov" => p.toml:3: a track has key = "section.key", keys = [[time, value], ...]
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|betwen = "step" => p.toml:3: unknown key `betwen` of a track, perhaps `between`
+[scene]|kind = "slab"|[[track]]|key = "scene.kind"|keys = [[0, 40]] => p.toml:3: track: a track cannot change scene.kind; a film has one scene
+[scene]|kind = "slab"|[[track]]|key = "scene.fold_limit"|keys = [[0, 40]] => p.toml:3: track: the plan has no key `scene.fold_limit`; it is one of another kind of scene
 [scene]|kind = "slab"|[[track]]|key = "camera.fow"|keys = [[0, 40]] => p.toml:3: track: the plan has no key `camera.fow`, perhaps `camera.fov`
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [] => p.toml:3: track.camera.fov = []: a track needs one value at least
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0]] => p.toml:3: track.camera.fov = [[0]]: must be a list of [time, value]

@@ -1,5 +1,5 @@
 // The colour pass: the light of each hit (`quick.wgsl` or `path.wgsl`), fog and glow. Light is
-// linear. Tone and sRGB follow when the picture is written.
+// linear. Tone map and sRGB follow where it is shown (`tone.wgsl`) or written.
 
 override COLOR_KEEPS_NORMALS: bool;
 /// Whether the fourth number of a normal is the sum of the squared deviations of the samples'

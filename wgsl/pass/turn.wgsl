@@ -1,8 +1,8 @@
 // The stages of a frame and the dispatch that is under way.
 //
-// A stage is a pass over a block, or one of the short stages between passes (`sketch.wgsl`,
-// `develop.wgsl`, `census.wgsl`). It runs in rounds. The first visits all cells, or the children of
-// listed parents. Each later one visits the cells that still move. A round is cut into
+// A stage is a pass over a block, or one of the short stages between passes (`judge.wgsl`,
+// `sketch.wgsl`, `develop.wgsl`, `census.wgsl`). It runs in rounds. The first visits all cells, or the
+// children of listed parents. Each later one visits the cells that still move. A round is cut into
 // dispatches. Before each dispatch, `arrange.wgsl` decides on the device what it visits, so the
 // host never waits for a count.
 

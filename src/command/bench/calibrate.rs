@@ -2,10 +2,11 @@
 //! share of its pixels.
 
 use anyhow::Result;
-use clap::{Args, value_parser};
+use clap::Args;
 use serde::Serialize;
 
 use crate::base::outcome::State;
+use crate::command::arguments::whole;
 use crate::command::bench::common::{Common, Subject};
 use crate::command::bench::runner::{COUNTED, Runner, TIMED};
 use crate::command::bench::table;
@@ -29,7 +30,7 @@ pub struct CalibrateBench {
     budget: f64,
     /// Number of camera rays that probe the preset
     #[arg(long, value_name = "COUNT", default_value_t = 8192)]
-    #[arg(value_parser = value_parser!(u32).range(100..=1_000_000))]
+    #[arg(value_parser = whole(100_u32, 1_000_000))]
     rays: u32,
 }
 

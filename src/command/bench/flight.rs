@@ -11,7 +11,7 @@ use anyhow::Result;
 use clap::{Args, ValueHint};
 use serde::Serialize;
 
-use crate::command::arguments::size;
+use crate::command::arguments::{size, whole};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::print::{print, say};
@@ -38,7 +38,7 @@ pub struct FlightBench {
     size: [u32; 2],
 
     /// Pictures of the flight
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(20..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = whole(20_u32, 100_000))]
     frames: u32,
 
     /// Who renders: auto, gpu, software, or an index or part of a name from `devices`

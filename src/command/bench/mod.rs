@@ -6,7 +6,6 @@
 //! - [`calibrate`]: the fastest settings for a share of lost pixels
 //! - [`common`]: the options of measurements; [`runner`]: their renders
 //! - [`files`]: rows as files; [`table`]: as tables; [`plot`]: as a picture
-
 //! - `flight`: how quickly a preview answers, without its window
 
 use clap::Subcommand;
@@ -33,10 +32,20 @@ pub enum Bench {
     /// Time and error of every mode, compared with a slow reference, the truth
     Error(error::ErrorBench),
     /// Work of every pass: evaluations, iterations, and time lost while rays wait for others
+    ///
+    /// An evaluation computes once how far a point is from the surface. For a fractal it takes several
+    /// iterations of the formula. A cone contains the rays of a block of pixels. Cones move forward
+    /// first, and rays start where they stop.
     Steps(steps::StepsBench),
     /// Cone maps and tracers of heightfields: time, width, steps, missed hits
+    ///
+    /// A heightfield is the surface over a height map. A cone map stores, for each place of it, how
+    /// wide a cone above that place stays empty. A tracer finds where a ray hits the surface, mostly by
+    /// means of a cone map.
     Cones(cones::ConesBench),
-    /// Propose values of scene.lipschitz, march.shell and march.fudge that get at most a given share of the pixels wrong
+    /// Propose faster values of scene.lipschitz, march.shell and march.fudge for mode calibrated
+    ///
+    /// At most a given share of the pixels becomes wrong.
     Calibrate(calibrate::CalibrateBench),
     /// How quickly a preview answers, without its window
     #[cfg(feature = "preview")]

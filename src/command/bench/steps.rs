@@ -38,7 +38,7 @@ pub struct StepsBench {
 }
 
 fn modes() -> impl TypedValueParser<Value = Mode> {
-    words(Mode::ALL.map(|mode| (mode, mode.name(), "")))
+    words(Mode::ALL.map(|mode| (mode, mode.name(), mode.about())))
 }
 
 /// Runs the measurement.

@@ -8,7 +8,7 @@ use anyhow::Result;
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueHint};
 
-use crate::command::arguments::words;
+use crate::command::arguments::{whole, words};
 use crate::command::conemap::maker::MapMaker;
 use crate::command::conemap::options::{Reading, Writing, write};
 use crate::command::executor::{Executor, device};
@@ -19,7 +19,7 @@ use crate::command::sink::{Sink, shown, spared};
 use crate::command::{interrupt, memory};
 use crate::gpu::adapters::Choice;
 use crate::heightfield::conemap::file::MapFile;
-use crate::heightfield::conemap::generate::generator::{Generator, Options};
+use crate::heightfield::conemap::generate::generator::{Generator, MOST_SEARCH_STEPS, Options};
 use crate::heightfield::heights::Patches;
 use crate::heightfield::load::PatternSpec;
 
@@ -61,7 +61,7 @@ pub struct Make {
     offset: Option<f64>,
 
     /// Steps along each ray of relaxed-search [default: 128]
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", value_parser = whole(1, MOST_SEARCH_STEPS))]
     search_steps: Option<u32>,
 
     /// Make every cone as narrow as the narrowest of its eight neighbours
@@ -76,7 +76,7 @@ pub struct Make {
 }
 
 fn generators() -> impl TypedValueParser<Value = Generator> {
-    words(Generator::ALL.map(|g| (g, g.name(), "")))
+    words(Generator::ALL.map(|g| (g, g.name(), g.facts().about)))
 }
 
 /// Makes a map.

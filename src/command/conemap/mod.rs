@@ -20,9 +20,20 @@ mod sheet;
 #[derive(Debug, Subcommand)]
 pub enum ConeMapVerb {
     /// Make a cone map from heights
+    ///
+    /// A height map is a grid of heights, its samples. A texel is the distance between two samples.
+    /// Four neighbouring samples are the corners of a cell. A cone map stores, for each sample or cell,
+    /// how wide a cone that opens upwards there stays empty. The tip of the cone is its apex. The ratio
+    /// is the radius of the cone over its height above the apex.
     Make(Box<make::Make>),
     /// Describe a cone map or a height map
+    ///
+    /// A cone map stores, for each place of a height map, how wide a cone that opens upwards there stays
+    /// empty. The ratio is the radius of the cone over its height above the apex, its tip.
     Inspect(Box<inspect::Inspect>),
     /// Write a cone map in another layout or format
+    ///
+    /// A cone map stores, for each place of a height map, how wide a cone that opens upwards there stays
+    /// empty. The ratio is the radius of the cone over its height above the apex, its tip.
     Convert(Box<convert::Convert>),
 }

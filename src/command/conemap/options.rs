@@ -101,8 +101,7 @@ pub struct Foreign {
     #[arg(long, value_name = "LAYOUT", value_parser = layouts())]
     from: Option<Layout>,
 
-    /// Whether it holds the widths of cones as they are or as square roots [default: sqrt, for
-    /// relief linear]
+    /// How that PNG stores the ratios of cones [default: sqrt, for relief linear]
     #[arg(long, value_name = "HOW", value_parser = ratio_scales(), requires = "from")]
     from_ratio: Option<RatioScale>,
 }
@@ -146,16 +145,15 @@ pub struct Writing {
     #[arg(long, value_name = "BITS", value_parser = bits())]
     bits: Option<BitDepth>,
 
-    /// Whether a PNG holds the widths of cones as they are or as square roots, which keep narrow
-    /// cones more exact [default: sqrt, for relief linear]
+    /// How a PNG stores the ratios of cones [default: sqrt, for relief linear]
     #[arg(long, value_name = "HOW", value_parser = ratio_scales())]
     ratio: Option<RatioScale>,
 
-    /// How deep the surface is, in widths of the map, for the normals of relief [default: 0.25]
+    /// How deep the surface is, in widths of the map, for the normals of layout relief [default: 0.25]
     #[arg(long, value_name = "WIDTHS", value_parser = depth)]
     depth: Option<f64>,
 
-    /// Whether the slopes of dummer are those of the surface or half of them [default: whole]
+    /// Whether the slopes of layout dummer are those of the surface or half of them [default: whole]
     #[arg(long, value_name = "WHAT", value_parser = slopes())]
     slopes: Option<Slopes>,
 }
@@ -243,5 +241,5 @@ fn slopes() -> impl TypedValueParser<Value = Slopes> {
 }
 
 fn ratio_scales() -> impl TypedValueParser<Value = RatioScale> {
-    words(RatioScale::ALL.map(|scale| (scale, scale.name(), "")))
+    words(RatioScale::ALL.map(|scale| (scale, scale.name(), scale.facts())))
 }

@@ -74,14 +74,14 @@ named_enum! {
     pub enum Layout: LayoutFacts {
         /// Height, ratio and slopes (Dummer 2006).
         Dummer = "dummer" => LayoutFacts {
-            about: "RGBA: height, ratio, slope x, slope y",
+            about: "RGBA: height, ratio, slope x, slope y, as in Dummer's paper on cone step mapping, 2006",
             channels: &[Height, Ratio, SlopeX, SlopeY],
             ..USUAL
         },
         /// Normal, ratio and depth (Policarpo and Oliveira 2007), whose shader takes the ratio
         /// as it is.
         Relief = "relief" => LayoutFacts {
-            about: "RGBA: normal x, normal y, ratio, depth",
+            about: "RGBA: normal x, normal y, ratio, depth, as in Policarpo and Oliveira's paper on relaxed cones, 2007",
             channels: &[NormalX, NormalY, Ratio, Depth],
             heights: "alpha, which holds depths",
             foreign: MapKind::Relaxed,
@@ -156,20 +156,20 @@ named_enum! {
     pub enum Slopes: &'static str {
         /// As Dummer's text and shader take them: 0.5 is flat, and 0 and 1 are half
         /// the height down or up over one texel.
-        Whole = "whole" => "slopes, as Dummer's shader takes them",
+        Whole = "whole" => "slopes, as the shader in Dummer's paper takes them",
         /// As his program stores them (appendix B): half of the differences of the file's own
         /// heights, and half of that at borders, which never wrap; 127 of 255 is flat.
-        Half = "half" => "half slopes, as Dummer's program stores them",
+        Half = "half" => "half slopes, as the program in Dummer's paper stores them",
     }
 }
 
 named_enum! {
     /// How whole numbers stand for ratios.
-    pub enum RatioScale {
+    pub enum RatioScale: &'static str {
         /// By their square root, which keeps more of the small ratios that most are.
-        Sqrt = "sqrt",
+        Sqrt = "sqrt" => "as square roots, which store narrow cones more exactly",
         /// As they are.
-        Linear = "linear",
+        Linear = "linear" => "as they are",
     }
 }
 

@@ -23,6 +23,8 @@ use Quality::{Conservative, Exact, Flawed};
 
 /// What is particular to a generator.
 pub struct GeneratorFacts {
+    /// What it does, in words.
+    pub about: &'static str,
     /// The kind of map that it makes.
     pub kind: MapKind,
     /// How wide its cones are.
@@ -34,10 +36,15 @@ pub struct GeneratorFacts {
 impl GeneratorFacts {
     fn new(kind: MapKind, quality: Quality, method: &'static dyn ConeSearch) -> Self {
         Self {
+            about: "",
             kind,
             quality,
             method,
         }
+    }
+
+    fn about(self, about: &'static str) -> Self {
+        Self { about, ..self }
     }
 }
 
@@ -46,31 +53,42 @@ named_enum! {
     pub enum Generator: GeneratorFacts {
         /// Compares every sample with the others in growing rings, until no ring can matter
         /// (Dummer 2006).
-        Brute = "brute" => GeneratorFacts::new(Samples, Exact, &BruteForce),
+        Brute = "brute" => GeneratorFacts::new(Samples, Exact, &BruteForce)
+            .about("apex on a sample; compares it with all others, which is slow (Dummer 2006)"),
         /// Looks at eight neighbours per level of the maxima, each at its nearest point
         /// (Valasek and Ban 2022, Algorithm 1): narrower than `Brute`, never wider.
-        Naive = "naive" => GeneratorFacts::new(Samples, Conservative, &Quick::Naive),
+        Naive = "naive" => GeneratorFacts::new(Samples, Conservative, &Quick::Naive)
+            .about("quick, and never wider than brute (Valasek and Ban 2022, Algorithm 1)"),
         /// The same, each neighbour at the nearest point that finer levels have not seen
         /// (Algorithm 2, corrected).
-        Improved = "improved" => GeneratorFacts::new(Samples, Conservative, &Quick::Improved),
+        Improved = "improved" => GeneratorFacts::new(Samples, Conservative, &Quick::Improved)
+            .about("quick, closer to brute than naive is, and never wider (Algorithm 2)"),
         /// The same, each neighbour at its centre: close to `Brute`, but *not* conservative.
         Center = "center" =>
-            GeneratorFacts::new(Samples, Flawed("samples may lie inside"), &Quick::Center),
+            GeneratorFacts::new(Samples, Flawed("samples may lie inside"), &Quick::Center)
+                .about("quick, about as wide as brute; samples may lie inside some cones"),
         /// `Brute` by branch and bound over the maxima: equal to the last bit.
-        Exact = "exact" => GeneratorFacts::new(Samples, Exact, &search::ALL),
+        Exact = "exact" => GeneratorFacts::new(Samples, Exact, &search::ALL)
+            .about("the cones of brute to the last bit, found by a search that skips most samples"),
         /// Four cones per sample, one per side, by branch and bound.
-        Quad = "quad" => GeneratorFacts::new(MapKind::Quad, Exact, &search::SIDES),
+        Quad = "quad" => GeneratorFacts::new(MapKind::Quad, Exact, &search::SIDES)
+            .about("four cones per sample, one to each side"),
         /// Relaxed cones by a search along rays (Policarpo and Oliveira 2007, Listing
         /// 18-2): unsound at any number of steps.
         RelaxedSearch = "relaxed-search" =>
-            GeneratorFacts::new(Relaxed, Flawed("rays may cross twice"), &RaySearch),
+            GeneratorFacts::new(Relaxed, Flawed("rays may cross twice"), &RaySearch).about(
+                "wider cones, in which a ray should enter the surface only once; rays may enter it twice (Policarpo and Oliveira 2007)",
+            ),
         /// Relaxed cones by the rule of falling edges, by branch and bound.
-        RelaxedExact = "relaxed-exact" => GeneratorFacts::new(Relaxed, Exact, &search::FALLING),
+        RelaxedExact = "relaxed-exact" => GeneratorFacts::new(Relaxed, Exact, &search::FALLING)
+            .about("such cones, limited by the samples behind which the surface falls (Ban and others 2024)"),
         /// Cones over cells, for the exact tracer.
-        Walk = "walk" => GeneratorFacts::new(MapKind::Walk, Exact, &search::ALL),
+        Walk = "walk" => GeneratorFacts::new(MapKind::Walk, Exact, &search::ALL)
+            .about("apex over a cell; proven empty of the surface between the samples too"),
         /// The same, limited only by cells that fall away behind.
         WalkRelaxed = "walk-relaxed" =>
-            GeneratorFacts::new(MapKind::WalkRelaxed, Exact, &search::FALLING),
+            GeneratorFacts::new(MapKind::WalkRelaxed, Exact, &search::FALLING)
+                .about("the same, limited only by cells that fall away behind; for rays that go down"),
     }
 }
 
