@@ -115,6 +115,7 @@ pub(crate) fn check_room(
 fn smaller(what: &str) -> &'static str {
     match what {
         "texels" => "a smaller scene.texture",
+        "cells" | "walks" | "stages" => "a smaller size",
         _ => "a smaller height map",
     }
 }

@@ -1,6 +1,7 @@
 //! Every program that can be made is valid WGSL, in f32 and in f64, and sets exactly the
 //! constants that it declares. Faults are reported by file and line, no shader file is
 //! unused, and a feature that a plan lacks is not in its programs. Needs no adapter.
+#![cfg(feature = "preview")]
 #![allow(
     clippy::unwrap_used,
     missing_docs,

@@ -286,6 +286,8 @@ impl Run {
     /// The device failed.
     pub fn advance(&mut self, budget_ms: f64) -> Result<(), RenderError> {
         self.receive()?;
+        // What is no number is no budget.
+        let budget_ms = budget_ms.max(0.0);
         let aim = budget_ms.clamp(1.0, LONGEST_MS);
         let factor = aim / self.reusable.aim_ms;
         if !(0.5..=2.0).contains(&factor) {
