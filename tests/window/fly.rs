@@ -83,11 +83,21 @@ fn a_typed_number_and_a_dragged_color_are_one_step() {
     let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
     let first = preset::load("mandelbox", &[]).unwrap().plan;
     // The number beside the slider of `scene.scale`.
-    view.click(858, 94);
-    sleep(Duration::from_millis(500));
-    view.key("ctrl+a");
-    view.xdotool("type --delay 200 2.35");
-    view.key("Return");
+    let set = |number: &str| {
+        view.click(858, 94);
+        sleep(Duration::from_millis(500));
+        view.key("ctrl+a");
+        view.xdotool(&format!("type --delay 200 {number}"));
+        view.key("Return");
+        sleep(Duration::from_millis(300));
+    };
+    // No Mandelbox has this scale, and no file could be opened with it.
+    set("0.5");
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(700));
+    assert_eq!(folder.files(), ["cache"]);
+    view.key("ctrl+z");
+    set("2.35");
     let typed = saved(&view, &folder);
     assert!(preset::write(&typed).contains("scale = 2.35"));
     assert_eq!(typed.camera, first.camera);
