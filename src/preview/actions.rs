@@ -207,8 +207,10 @@ impl Live {
         let before = self.document.clone();
         let plan = with_still(&self.document.plan, before.saved(), self.play.beat);
         // A file that cannot be opened again would be no preset.
-        if let Err(e) = preset::read(&preset::write(&plan), &before.name) {
-            self.tell(format!("not saved: {e}"), true);
+        let checked = plan.check().map_err(|f| format!("{}: {}", f.key, f.why));
+        let read = || preset::read(&preset::write(&plan), &before.name);
+        if let Err(why) = checked.and_then(|()| read().map_err(|e| e.to_string())) {
+            self.tell(format!("not saved: {why}"), true);
             return;
         }
         match self.document.save(Path::new("."), plan) {

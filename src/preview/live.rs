@@ -207,9 +207,10 @@ impl Live {
         self.paint_soon(Duration::ZERO);
     }
 
-    /// Tells what is wrong, once.
+    /// Tells what is wrong, unless that is told already.
     pub fn warn(&mut self, text: String) {
-        if self.notice.as_ref().is_none_or(|n| n.text != text) {
+        let told = |n: &Notice| n.text.ends_with(&text);
+        if !self.notice.as_ref().is_some_and(told) {
             self.tell(text, true);
         }
     }

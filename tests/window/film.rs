@@ -93,3 +93,48 @@ fn playing_drops_pictures_and_never_time() {
     assert!((shown - played).abs() < 0.6, "{shown} of {played} s");
     view.close();
 }
+
+#[test]
+fn keys_are_dragged_and_copied_and_a_part_is_played_again() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let film = FILM.replace("length = 2\n", "length = 10\n");
+    let film = film.replace("[2, [17", "[5, [17");
+    folder.write("film.toml", film);
+    let view = Preview::open(&desktop, &folder.0, "film.toml --size 960x540");
+    view.key("Tab");
+    view.at_rest();
+    // A ruler of 20 pixels with the handles at its foot, over a row of 18 for the only track.
+    let x = |beat: u32| 118 + beat * 822 / 10;
+    let (handles, row) = (513, 529);
+    let keys = || {
+        sleep(Duration::from_millis(300));
+        view.key("ctrl+s");
+        sleep(Duration::from_millis(700));
+        let plan = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+        let times = plan.tracks[0].keys.iter().map(|key| key.time.round());
+        times.collect::<Vec<_>>()
+    };
+    view.drag(1, [x(5), row], [x(7), row]);
+    assert_eq!(keys(), [0.0, 7.0]);
+    view.xdotool("keydown alt");
+    view.drag(1, [x(7), row], [x(3), row]);
+    view.xdotool("keyup alt");
+    assert_eq!(keys(), [0.0, 3.0, 7.0]);
+    view.key("ctrl+z");
+    assert_eq!(keys(), [0.0, 7.0]);
+    view.key("ctrl+z");
+    assert_eq!(keys(), [0.0, 5.0]);
+    // Two handles, and the playhead at 7: the part from 4 to 5 is played again and again.
+    view.drag(1, [x(10), handles], [x(5), handles]);
+    view.drag(1, [x(0), handles], [x(4), handles]);
+    view.key("space");
+    sleep(Duration::from_millis(1300));
+    view.key("space");
+    view.key("k");
+    let all = keys();
+    assert!(
+        all.iter().all(|beat| [0.0, 4.0, 5.0].contains(beat)),
+        "{all:?}"
+    );
+    view.close();
+}

@@ -68,12 +68,6 @@ fn keys_wheel_and_clicks_fly() {
     view.hold("w", 1000);
     let stopped = saved(&view, &folder).camera;
     assert!(stopped.eye.dot(ahead) < 0.0, "{stopped:?}");
-    // The switch `through walls`. While the camera flies, the panel waits.
-    view.click(747, 39);
-    sleep(Duration::from_millis(700));
-    view.hold("w", 300);
-    let through = saved(&view, &folder).camera;
-    assert!(through.eye.distance(stopped.eye) > 1.0 && through.check().is_ok());
     view.close();
 }
 
@@ -83,11 +77,21 @@ fn a_typed_number_and_a_dragged_color_are_one_step() {
     let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
     let first = preset::load("mandelbox", &[]).unwrap().plan;
     // The number beside the slider of `scene.scale`.
-    view.click(858, 94);
-    sleep(Duration::from_millis(500));
-    view.key("ctrl+a");
-    view.xdotool("type --delay 200 2.35");
-    view.key("Return");
+    let set = |number: &str| {
+        view.click(858, 94);
+        sleep(Duration::from_millis(500));
+        view.key("ctrl+a");
+        view.xdotool(&format!("type --delay 200 {number}"));
+        view.key("Return");
+        sleep(Duration::from_millis(300));
+    };
+    // No Mandelbox has this scale, and no file could be opened with it.
+    set("0.5");
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(700));
+    assert_eq!(folder.files(), ["cache"]);
+    view.key("ctrl+z");
+    set("2.35");
     let typed = saved(&view, &folder);
     assert!(preset::write(&typed).contains("scale = 2.35"));
     assert_eq!(typed.camera, first.camera);
