@@ -22,12 +22,15 @@ use crate::scene::Assets;
 /// A question to a device.
 pub struct Pick {
     device: Arc<Device>,
-    task: Background<Result<Asked, RenderError>>,
-    asked: Option<Asked>,
+    task: Background<Result<SubmittedPick, RenderError>>,
+    asked: Option<SubmittedPick>,
 }
 
 impl Pick {
-    pub(super) fn new(device: Arc<Device>, task: Background<Result<Asked, RenderError>>) -> Self {
+    pub(super) fn new(
+        device: Arc<Device>,
+        task: Background<Result<SubmittedPick, RenderError>>,
+    ) -> Self {
         Self {
             device,
             task,
@@ -60,12 +63,12 @@ impl Pick {
 }
 
 /// A question that was submitted.
-pub struct Asked {
+pub struct SubmittedPick {
     answer: Staging,
     eye: DVec3,
 }
 
-impl Asked {
+impl SubmittedPick {
     /// Compiles the program if it is new, and submits the question.
     pub(super) fn new(
         shared: &Shared,

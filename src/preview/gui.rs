@@ -21,7 +21,7 @@ const WIDTH: f32 = 340.0;
 #[derive(Default)]
 struct Asked {
     panel: panel::Asked,
-    timeline: timeline::Asked,
+    timeline: timeline::TimelineRequest,
     open: Option<&'static str>,
     restore: Option<bool>,
     /// Where panels are.
