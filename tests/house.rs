@@ -132,17 +132,21 @@ fn core(text: &str) -> (String, Vec<String>) {
 }
 
 /// What a browser lacks, or forbids.
-const NOT_IN_CORE: [&str; 12] = [
-    "std::fs",
+const NOT_IN_CORE: [&str; 16] = [
+    "fs::",
     "File::open",
     "File::create",
     "OpenOptions",
+    "canonicalize",
     "SystemTime",
-    "std::process",
-    "std::thread",
+    "process::",
+    "thread::",
     "Instant",
-    "std::env",
+    "env::",
     "block_on",
+    "pollster",
+    ".recv_timeout(",
+    "Condvar",
     "PollType::Wait",
     "rayon",
 ];
@@ -240,6 +244,40 @@ fn broken_twins(path: &str, text: &str) -> Vec<String> {
         _ => return Vec::new(),
     };
     vec![format!("{path}: of the twin {twin}, {fault}")]
+}
+
+/// Places that the changes of a page show, and that are not in their files.
+fn lost_places(page: &str, file: impl Fn(&str) -> String) -> Vec<String> {
+    let mut lost = Vec::new();
+    for block in page.split("```diff\n").skip(1) {
+        let change = block.split("```").next().unwrap();
+        let (path, parts) = change.split_once('\n').unwrap();
+        let text = format!("\n{}", file(path));
+        for part in parts.split("@@\n") {
+            let old = part.lines().filter_map(|l| l.strip_prefix([' ', '-']));
+            let place: String = old.map(|line| format!("\n{line}")).collect();
+            let is_there = text.matches(&format!("{place}\n")).count() == 1;
+            lost.extend((!is_there).then(|| format!("{path}: {place}")));
+        }
+    }
+    lost
+}
+
+#[test]
+fn what_the_page_on_extending_changes_is_there() {
+    let change = "Add c:\n\n```diff\nsrc/x.rs\n a\n-b\n+c\n@@\n d\n```\n";
+    for (text, lost) in [("a\nb\ne\nd\n", 0), ("a\ne\nb\nd\n", 1), ("a\nbd\n", 2)] {
+        let found = lost_places(change, |_| text.into());
+        assert_eq!(found.len(), lost, "{text:?}: {found:?}");
+    }
+    let read = |path: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+        std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    };
+    let page = read("docs/extending.md");
+    assert!(page.matches("```diff\n").count() >= 10);
+    let lost = lost_places(&page, read);
+    assert!(lost.is_empty(), "not there, or twice:\n{}", lost.join("\n"));
 }
 
 fn too_long(path: &str, text: &str) -> Vec<String> {

@@ -10,7 +10,7 @@ use clap::{Args, ValueHint};
 use crate::command::arguments::{bits, noise, pixel_samples, size};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
-use crate::command::output::Format;
+use crate::command::output::{Format, bits_of};
 use crate::command::print::{counted, say};
 use crate::command::progress::Reporter;
 use crate::command::render::{at_fault, loaded, moment};
@@ -248,9 +248,11 @@ fn render(
         let picture = Shades::new(Layer::Color, &rendered, plan);
         let depth = args.depth.unwrap_or_default();
         let to = &mut Cursor::new(&mut content);
-        write_png(to, &picture, depth, &plan.title, &preset::write(plan))?;
+        let name = pattern.name(*frame);
+        let text = preset::write_beside(plan, &name);
+        write_png(to, &picture, depth, &plan.title, &text)?;
         let mut parcel = Parcel::default();
-        parcel.put(Sink::prepare(&pattern.name(*frame))?, &content)?;
+        parcel.put(Sink::prepare(&name)?, &content)?;
         parcel.hand_over()?;
     }
     Ok(())
@@ -261,15 +263,10 @@ fn is_there(path: &Path, plan: &Plan, depth: Option<BitDepth>) -> bool {
     let Ok(bytes) = std::fs::read(path) else {
         return false;
     };
-    // The bits are in the header, behind the signature and width and height. An empty chunk ends
-    // the file.
-    let bits = match depth.unwrap_or_default() {
-        BitDepth::Eight => 8,
-        BitDepth::Sixteen => 16,
-    };
-    bytes.get(24) == Some(&bits)
+    // An empty chunk ends the file.
+    bits_of(path) == Some(depth.unwrap_or_default() as u8)
         && bytes.ends_with(b"IEND\xae\x42\x60\x82")
-        && preset::find(path).is_ok_and(|found| found.text == preset::write(plan))
+        && preset::find(path).is_ok_and(|found| found.text == preset::write_beside(plan, path))
 }
 
 /// Looks for ffmpeg before anything is rendered.

@@ -102,7 +102,7 @@ impl<'a> BigPicture<'a> {
         (output, device): (&Path, String),
         assets: &Assets,
     ) -> Result<Self> {
-        let preset = preset::write(plan);
+        let preset = preset::write_beside(plan, output);
         let depth = args.options.depth.unwrap_or_default();
         let more = format!("{} {depth:?} {}", args.layer.name(), bands.rows);
         let owner = Owner {

@@ -85,7 +85,7 @@ pub fn run(args: &Merge) -> Result<()> {
         progress.report(nth as f64 / all as f64, "reading and encoding");
         interrupt::check()
     };
-    let text = preset::write(&plan);
+    let text = preset::write_beside(&plan, &args.output);
     let head = PngHead {
         size: plan.size,
         layer: Layer::Color,
@@ -141,7 +141,8 @@ pub fn run(args: &Merge) -> Result<()> {
                 whole.radiance.extend(row.radiance);
                 whole.alpha.extend(row.alpha);
             }
-            let content = format.encode(&args.options, &plan, &whole, Vec::new())?;
+            let content =
+                format.encode(&args.options, &plan, &whole, (Vec::new(), &args.output))?;
             match sink {
                 Sink::File(place) => place.write_all(&content)?,
                 Sink::Stdout => parcel.print(&content),
@@ -234,7 +235,8 @@ fn stream(path: &Path) -> Result<Stream, String> {
 fn one_plan(parts: &[Part]) -> Result<Plan> {
     let first = &parts[0];
     for part in parts {
-        let other = |p: &Part| (p.head.whole, p.note.picture.clone(), p.head.text.clone());
+        // Their presets may name files by other ways, from other folders.
+        let other = |p: &Part| (p.head.whole, p.note.picture.clone());
         if other(part) != other(first) {
             return Err(anyhow!(
                 "`{}` and `{}` are parts of different pictures; render all parts with the same program, preset and options",
@@ -250,7 +252,8 @@ fn one_plan(parts: &[Part]) -> Result<Plan> {
             ));
         }
     }
-    let plan = preset::read(&first.head.text, &first.path.to_string_lossy())?;
+    let mut plan = preset::read(&first.head.text, &first.path.to_string_lossy())?;
+    plan.set_folder(first.path.parent().unwrap_or(&first.path));
     match plan.size == first.head.whole {
         true => Ok(plan),
         false => Err(first.fault("its size is not that of its preset; render it again")),

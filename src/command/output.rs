@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
-use std::io::{BufReader, Cursor, Seek, SeekFrom};
+use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
@@ -123,7 +123,8 @@ impl Format {
             + with(plan.has_variance(extras), 8)
     }
 
-    /// The picture as the bytes of a file. `errors` are those of the layer that shows them.
+    /// The picture as the bytes of the file `output`. `errors` are those of the layer that shows
+    /// them.
     ///
     /// # Errors
     /// The encoder failed.
@@ -132,9 +133,9 @@ impl Format {
         args: &Options,
         plan: &Plan,
         frame: &Frame,
-        errors: Vec<f64>,
+        (errors, output): (Vec<f64>, &Path),
     ) -> Result<Vec<u8>, OutputError> {
-        let preset = preset::write(plan);
+        let preset = preset::write_beside(plan, output);
         let mut content = Vec::new();
         let to = &mut Cursor::new(&mut content);
         let shades = || Shades::new(args.layer, frame, plan).with_errors(errors);
@@ -162,6 +163,16 @@ fn layer_of(file: &Path) -> Option<Layer> {
         Some(name) => Layer::named(&name),
         None => Some(Layer::Color),
     }
+}
+
+/// The bits of each colour of a PNG: they stand behind the signature, the head of the first chunk,
+/// width and height.
+pub fn bits_of(file: &Path) -> Option<u8> {
+    let mut bits = [0];
+    let mut file = File::open(file).ok()?;
+    file.seek(SeekFrom::Start(24)).ok()?;
+    file.read_exact(&mut bits).ok()?;
+    Some(bits[0])
 }
 
 /// The file that a picture goes to without -o: `NAME.png`, with other settings
@@ -216,12 +227,15 @@ pub fn default_name(args: &Render, plan: &Plan, own_size: [u32; 2]) -> Result<Pa
     let name = file.display();
     // Whoever wrote the text may have left out defaults.
     let is_same = |old: &str| {
-        let own = preset::write(plan);
+        let own = preset::write_beside(plan, &file);
         old == own || preset::read(old, "").is_ok_and(|old| preset::write(&old) == own)
     };
     let why = match &picture {
         None => "is no picture of this program",
         Some(_) if layer_of(&file) != Some(args.layer) => "shows another layer",
+        Some(_) if bits_of(&file) != Some(args.options.depth.unwrap_or_default() as u8) => {
+            "has another --depth"
+        }
         Some(old) if is_same(&old.text) => return Ok(file),
         Some(_) if may_differ => {
             let own = args.preset.display();

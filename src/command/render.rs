@@ -218,7 +218,12 @@ pub fn run(args: &Render) -> Result<()> {
             made
         }
         (_, picture) => {
-            let content = whole(args, (&plan, &assets, extras), &mut executor, format)?;
+            let content = whole(
+                args,
+                (&plan, &assets, extras),
+                &mut executor,
+                (format, &output),
+            )?;
             parcel.put(picture, &content.0)?;
             content.1
         }
@@ -254,7 +259,7 @@ fn whole(
     args: &Render,
     (plan, assets, extras): (&Plan, &Assets, Extras),
     executor: &mut Executor,
-    format: Format,
+    (format, output): (Format, &Path),
 ) -> Result<(Vec<u8>, Figures)> {
     let mut progress = Reporter::start("rendering");
     let frame = executor.picture(plan, assets, extras, &mut progress.watch())?;
@@ -271,8 +276,8 @@ fn whole(
     let mut progress = Reporter::start("writing the picture");
     progress.report(0.0, "encoding");
     let content = match plan.window {
-        Some(_) => tile::encode(plan, &frame, executor, assets)?,
-        None => format.encode(&args.options(), plan, &frame, errors)?,
+        Some(_) => tile::encode((plan, assets), &frame, executor, output)?,
+        None => format.encode(&args.options(), plan, &frame, (errors, output))?,
     };
     Ok((content, Figures::of(&frame)))
 }

@@ -1,6 +1,7 @@
 //! Parts of a picture: what `--tile` renders, and what the file of a part tells.
 
 use std::io::Cursor;
+use std::path::Path;
 
 use anyhow::Result;
 use sha2::{Digest, Sha256};
@@ -102,18 +103,24 @@ impl Note {
     }
 }
 
-/// A part as the bytes of a file.
+/// A part as the bytes of the file `output`.
 ///
 /// # Errors
 /// The encoder failed.
-pub fn encode(plan: &Plan, frame: &Frame, executor: &Executor, assets: &Assets) -> Result<Vec<u8>> {
+pub fn encode(
+    (plan, assets): (&Plan, &Assets),
+    frame: &Frame,
+    executor: &Executor,
+    output: &Path,
+) -> Result<Vec<u8>> {
     let note = Note {
         device: executor.identity(),
         picture: fingerprint(plan, assets, ""),
     };
     let mut content = Vec::new();
     let to = &mut Cursor::new(&mut content);
-    write_exr_part(to, frame, plan, &preset::write(plan), &note.write())?;
+    let text = preset::write_beside(plan, output);
+    write_exr_part(to, frame, plan, &text, &note.write())?;
     Ok(content)
 }
 

@@ -17,6 +17,8 @@ const FIRST_SLICE_OF_PATHS: u32 = 64 * 16;
 /// large one.
 const MOST_SHORTER: f64 = 1.0 / 16.0;
 const MOST_LONGER: f64 = 4.0;
+/// How much of the peak stays at each report.
+const PEAK_STAYS: f64 = 0.95;
 /// Rounds beyond the first that are expected of a stage with a step limit.
 const ROUNDS: u32 = 2;
 /// The largest number of workgroups along an axis.
@@ -29,6 +31,9 @@ pub struct Cost {
     pub slice: u32,
     /// Estimated milliseconds of a dispatch.
     pub dispatch_ms: f64,
+    /// The most milliseconds that a unit of the slice took lately. Ground takes much longer than the
+    /// sky before it. A first dispatch may take as long as a dispatch may.
+    peak_ms: f64,
     /// Dispatches of the stage in the last block, cut as it is now.
     last: Option<u32>,
 }
@@ -36,14 +41,21 @@ pub struct Cost {
 impl Cost {
     /// What is known of a stage that has not run yet.
     pub fn first(follows_light: bool) -> Self {
+        let slice = match follows_light {
+            true => FIRST_SLICE_OF_PATHS,
+            false => FIRST_SLICE,
+        };
         Self {
-            slice: match follows_light {
-                true => FIRST_SLICE_OF_PATHS,
-                false => FIRST_SLICE,
-            },
+            slice,
             dispatch_ms: FIRST_MS,
+            peak_ms: LONGEST_MS / f64::from(slice),
             last: None,
         }
+    }
+
+    /// The milliseconds that a dispatch may take.
+    pub fn longest_ms(&self) -> f64 {
+        self.dispatch_ms.max(self.peak_ms * f64::from(self.slice))
     }
 
     /// Dispatches that visit every cell once.
@@ -70,13 +82,19 @@ impl Cost {
         let slower = weight * each_ms + (1.0 - weight) * self.dispatch_ms;
         self.dispatch_ms = each_ms.max(slower).max(1e-3);
         self.last = Some(dispatches);
+        let slice = f64::from(self.slice);
+        self.peak_ms = (PEAK_STAYS * self.peak_ms).max(each_ms / slice);
         let shorter = each_ms > 1.33 * aim_ms && self.slice > stage.chunk;
         let more = dispatches > 1 && self.of_first_round(stage) > 1;
         let longer = self.dispatch_ms < 0.45 * aim_ms && more;
         if shorter {
             self.scale((aim_ms / each_ms).max(MOST_SHORTER));
         } else if longer {
-            self.scale((0.7 * aim_ms / self.dispatch_ms).min(MOST_LONGER));
+            let factor = (0.7 * aim_ms / self.dispatch_ms).min(MOST_LONGER);
+            let factor = factor.min(aim_ms / (self.peak_ms * slice));
+            if factor > 1.0 {
+                self.scale(factor);
+            }
         }
     }
 

@@ -22,7 +22,8 @@ use crate::scene::Assets;
 /// A question to a device.
 pub struct Pick {
     device: Arc<Device>,
-    task: Background<Result<SubmittedPick, RenderError>>,
+    /// Until it has answered.
+    task: Option<Background<Result<SubmittedPick, RenderError>>>,
     asked: Option<SubmittedPick>,
 }
 
@@ -33,7 +34,7 @@ impl Pick {
     ) -> Self {
         Self {
             device,
-            task,
+            task: Some(task),
             asked: None,
         }
     }
@@ -41,18 +42,21 @@ impl Pick {
     /// The answer, once the device has it. It never waits.
     ///
     /// # Errors
-    /// The device failed, a named file cannot be read or does not fit, or a shader text is wrong.
+    /// The device failed, a named file cannot be read or does not fit, or a shader text is wrong;
+    /// afterwards, [`RenderError::Cancelled`].
     pub fn poll(&mut self) -> Result<Option<Picked>, RenderError> {
         self.device.check()?;
-        if self.asked.is_none() {
-            let asked = self.task.poll();
-            self.asked = asked
+        if let Some(task) = &self.task {
+            let answer = task.poll();
+            if matches!(answer, Ok(None)) {
+                return Ok(None);
+            }
+            self.task = None;
+            self.asked = answer
                 .map_err(|Panicked| RenderError::Panicked)?
                 .transpose()?;
         }
-        let Some(asked) = &self.asked else {
-            return Ok(None);
-        };
+        let asked = self.asked.as_ref().ok_or(RenderError::Cancelled)?;
         if !asked.answer.is_mapped() {
             return Ok(None);
         }

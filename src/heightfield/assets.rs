@@ -137,7 +137,8 @@ impl Assets {
         let path = settings.source.folder.join(&settings.texture);
         let paint = settings.paint;
         is_last(&self.surfaces, &surface)
-            && is_last(&self.cones, &cones_key(settings))
+            && (!settings.tracer_settings.tracer.needs_map()
+                || is_last(&self.cones, &cones_key(settings)))
             && paint.is_none_or(|by| is_last(&self.paints, &paint_key(settings, by)))
             && (!settings.is_textured() || is_last(&self.textures, &path))
     }
@@ -293,6 +294,10 @@ impl Assets {
         surface: &HeightSurface,
         make: Make<'_>,
     ) -> Result<Arc<Option<Supply>>, PrepareError> {
+        // The map of another tracer stays.
+        if !settings.tracer_settings.tracer.needs_map() {
+            return Ok(Arc::new(None));
+        }
         last_or_new(&self.cones, cones_key(settings), |_| {
             let folder = &settings.source.folder;
             settings.tracer_settings.cones(surface, folder, make)

@@ -95,6 +95,18 @@ impl HeightfieldSettings {
         there.collect()
     }
 
+    /// The names of the files, as the preset has them.
+    pub fn file_names(&mut self) -> Vec<&mut String> {
+        let read = [self.reads_heights(), self.reads_cones(), self.is_textured()];
+        let names = [
+            &mut self.source.field,
+            &mut self.tracer_settings.map,
+            &mut self.texture,
+        ];
+        let named = read.into_iter().zip(names).filter(|(read, _)| *read);
+        named.map(|(_, name)| name).collect()
+    }
+
     /// The file of the cone map, if one is named.
     pub fn map_file(&self) -> Option<PathBuf> {
         let name = &self.tracer_settings.map;

@@ -9,7 +9,7 @@ use crate::base::view::View;
 use crate::scene::AnySolid;
 use crate::wgsl;
 
-/// Where to look.
+/// Where to look. A pixel may lie beyond the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum At {
     /// Along the ray of a pixel, from the upper left.
@@ -23,9 +23,9 @@ pub enum At {
 pub struct Picked {
     /// What the pixel is; `None` for a point.
     pub state: Option<State>,
-    /// The distance from the eye to the position.
+    /// The distance from the eye to the position, infinite for sky.
     pub distance: f64,
-    /// Where the ray met the surface, stopped or left the bounds; or the point, rounded to f32
+    /// Where the ray met the surface or stopped, some point of it for sky; or the point, rounded to f32
     /// relative to the eye.
     pub position: DVec3,
     /// The radius of a ball about the position that is as surely empty as the step of a ray is.
@@ -89,7 +89,10 @@ impl PickAnswer {
         let state = State::from_code(self.state).unwrap_or(State::Unconverged);
         Picked {
             state: (self.begun == 1).then_some(state),
-            distance: self.distance.into(),
+            distance: match (self.begun, state) {
+                (1, State::Sky) => f64::INFINITY,
+                _ => self.distance.into(),
+            },
             position: eye + self.point.as_dvec3(),
             clearance: self.clearance.into(),
         }

@@ -14,10 +14,11 @@ use glam::{DVec3, Vec3};
 
 use crate::base::random::{random_pair, random_seed};
 use crate::base::view::{Beam, footprint};
+use crate::pass::LookFeature;
 use crate::pass::fog_height::fog_depth;
 use crate::pass::look::Light;
 use crate::pass::path::{path_sight, path_toward};
-use crate::plan::look::{LightMode, Look};
+use crate::plan::look::Look;
 use crate::scene::{Solid, Step};
 
 /// How far fog scatters forward: the mean cosine of Henyey and Greenstein (1941).
@@ -39,15 +40,10 @@ pub struct ShaftsUniform {
     pub pad: u32,
 }
 
-/// Whether a look has shafts.
-pub fn are_on(look: &Look) -> bool {
-    look.mode == LightMode::Path && look.shafts > 0.0 && look.fog > 0.0
-}
-
 /// What lit fog scatters into all directions together. A white wall that faces a light of the
 /// strength 1 has the radiance 1, so pi meets it.
 pub fn shafts_light(look: &Look) -> DVec3 {
-    match are_on(look) {
+    match LookFeature::Shafts.is_on(look) {
         true => look.shafts * PI * look.key * look.light_color,
         false => DVec3::ZERO,
     }
@@ -83,7 +79,7 @@ pub fn shafts<S: Solid>(
     ray: &Beam,
     end: f64,
 ) -> (DVec3, bool) {
-    if !are_on(&light.look) {
+    if !light.has(LookFeature::Shafts) {
         return (color, true);
     }
     let share = 1.0 - (-fog_depth(light, ray, end)).exp();

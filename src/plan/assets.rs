@@ -15,6 +15,28 @@ impl Plan {
         self.look.sky.folder.0 = folder.to_path_buf();
     }
 
+    /// Gives the named files other names by their paths, unless these lead from the root. A file for
+    /// which there is no name keeps its own.
+    pub fn rename_files(&mut self, to: &dyn Fn(&Path) -> Option<String>) {
+        let sky = &mut self.look.sky;
+        let renamed = |name: &String, folder: &Path| match Path::new(name).is_absolute() {
+            true => None,
+            false => to(&folder.join(name)),
+        };
+        if let Some(name) = sky
+            .path()
+            .and_then(|_| renamed(&sky.sky_file, &sky.folder.0))
+        {
+            sky.sky_file = name;
+        }
+        let folder = self.scene.folder().to_path_buf();
+        for name in self.scene.file_names() {
+            if let Some(new) = renamed(name, &folder) {
+                *name = new;
+            }
+        }
+    }
+
     /// The named files, each with the key that names it.
     pub fn files(&self) -> Vec<(&'static str, PathBuf)> {
         let sky = self.look.sky.path().map(|path| ("look.sky_file", path));

@@ -40,9 +40,7 @@ pub fn file_text(path: &Path) -> Result<String, String> {
     let none = "carries no preset; only a PNG or EXR that this program wrote does";
     if bytes.starts_with(&EXR) {
         file.rewind().map_err(unreadable)?;
-        return exr::head(&mut file, PNG_KEYWORD)?
-            .text
-            .ok_or_else(|| none.into());
+        return exr::text(file, PNG_KEYWORD)?.ok_or_else(|| none.into());
     }
     if bytes == SIGNATURE {
         return text_chunk::text(&mut file, PNG_KEYWORD)?.ok_or_else(|| none.into());

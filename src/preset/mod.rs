@@ -1,10 +1,12 @@
 //! Presets: the text of a Plan.
 //!
 //! - `builtin`: those of the program; `source`: one by its name, `file_text`: one in a file
-//! - `document`, `read`: from TOML to a Plan; `write`: back
+//! - `document`, `read`: from TOML to a Plan; `write`: back; `beside`: for a file with names of others
 //! - `error`: why a preset is wrong; `nearest`: the word that may have been meant
 //! - `keys`: the list of all keys
 
+#[cfg(feature = "cli")]
+mod beside;
 mod builtin;
 mod document;
 mod error;
@@ -16,6 +18,8 @@ mod read;
 mod source;
 mod write;
 
+#[cfg(feature = "cli")]
+pub use beside::write_beside;
 pub use builtin::{BUILTIN, builtin};
 pub use document::{Override, SECTIONS};
 pub use error::PresetError;

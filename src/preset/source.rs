@@ -60,7 +60,8 @@ pub fn find(argument: &Path) -> Result<Source, PresetError> {
             folder: PathBuf::new(),
         });
     }
-    let is_path = shown.contains(['/', '\\', '.']) || (!shown.is_empty() && argument.exists());
+    let is_path = shown.contains(['/', '\\', '.'])
+        || (cfg!(feature = "cli") && !shown.is_empty() && argument.exists());
     if !is_path {
         return Err(PresetError::Unknown {
             name: brief(&shown),

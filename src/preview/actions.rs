@@ -206,6 +206,11 @@ impl Live {
     fn save(&mut self) {
         let before = self.document.clone();
         let plan = with_still(&self.document.plan, before.saved(), self.play.beat);
+        // A file that cannot be opened again would be no preset.
+        if let Err(e) = preset::read(&preset::write(&plan), &before.name) {
+            self.tell(format!("not saved: {e}"), true);
+            return;
+        }
         match self.document.save(Path::new("."), plan) {
             Ok(path) => {
                 // It was kept under the name that it had.

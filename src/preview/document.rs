@@ -129,7 +129,7 @@ impl Document {
             Some(path) => path.clone(),
             None => unused(folder, &self.name, "toml"),
         };
-        write(&path, preset::write(&plan).as_bytes())?;
+        write(&path, preset::write_beside(&plan, &path).as_bytes())?;
         self.end();
         self.saved = plan;
         self.saved_at = self.past.len();

@@ -6,6 +6,10 @@ use crate::plan::camera::Camera;
 
 /// The largest share of the clearance that one step goes, so that no step leaves the empty ball.
 const MOST_OF_CLEARANCE: f64 = 0.5;
+/// The least speed through walls, as a share of the constant one: there is no empty space in them.
+const IN_WALLS: f64 = 0.2;
+/// The largest coordinate that a preset can have.
+const FARTHEST: f64 = 1e9;
 /// How much faster the camera flies with Shift.
 const FAST: f64 = 5.0;
 /// Degrees of roll per second.
@@ -64,12 +68,15 @@ fn axes(camera: &Camera) -> [DVec3; 3] {
 impl Flight {
     /// Flies for some seconds. `clearance` is the radius of an empty ball about the eye.
     pub fn step(&self, camera: &mut Camera, thrust: &Thrust, clearance: f64, seconds: f64) {
+        let old = camera.clone();
         let [right, up, forward] = axes(camera);
         let way = thrust.way.x * right + thrust.way.y * up + thrust.way.z * forward;
         let speed = self.speed * if thrust.fast { FAST } else { 1.0 };
+        let constant = 0.25 * camera.eye.distance(camera.target);
         let per_second = match self.pace {
+            Pace::Clearance if self.through_walls => clearance.max(IN_WALLS * constant),
             Pace::Clearance => clearance,
-            Pace::Constant => 0.25 * camera.eye.distance(camera.target),
+            Pace::Constant => constant,
         };
         let mut length = speed * per_second * seconds;
         if !self.through_walls {
@@ -81,6 +88,11 @@ impl Flight {
         if thrust.roll != 0.0 {
             let angle = (thrust.roll * ROLL * seconds).to_radians();
             camera.up = DQuat::from_axis_angle(forward, angle) * camera.up;
+        }
+        let far = camera.eye.abs().max(camera.target.abs()).max_element();
+        // Beyond, there is nothing to be seen.
+        if camera.check().is_err() || far > FARTHEST {
+            *camera = old;
         }
     }
 }
@@ -158,9 +170,18 @@ mod tests {
             }
         }
         flight.through_walls = true;
-        let mut moved = camera();
-        flight.step(&mut moved, &FORWARD, 0.0, 0.1);
-        assert!(moved.eye.y > 1e6);
+        for pace in [Pace::Clearance, Pace::Constant] {
+            flight.pace = pace;
+            let mut moved = camera();
+            flight.step(&mut moved, &FORWARD, 0.0, 0.1);
+            assert!(moved.eye.y > 1e6);
+            // It ends where presets end, and where eye and target would be one.
+            for clearance in [1.0, 1e12, f64::MAX] {
+                flight.step(&mut moved, &FORWARD, clearance, 0.1);
+                let ok = moved.check().is_ok() && moved.eye.y <= FARTHEST;
+                assert!(ok, "{moved:?}");
+            }
+        }
     }
 
     #[test]

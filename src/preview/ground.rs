@@ -71,3 +71,25 @@ pub fn met(plan: &Plan, assets: &Assets, pixel: [u32; 2]) -> Option<Met> {
         evaluations: work.evaluations,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::truth;
+    use crate::preset;
+
+    #[test]
+    fn the_truth_of_heights_is_known_beside_their_cone_map() {
+        let text = "[scene]\nkind = 'heightfield'\nfield = 'fbm:32x32'\n";
+        let (plan, assets) = (preset::read(text, "a test"), Assets::default());
+        let plan = plan.expect("a preset");
+        let known = |plan: &Plan| met(plan, &assets, [3, 3]);
+        assert_eq!(known(&plan), None);
+        plan.scene
+            .solid(&plan.viewpoint(), &assets)
+            .expect("heights");
+        assert!(known(&plan).is_some());
+        assert!(known(&truth::asked(&plan)).is_some());
+        assert!(known(&plan).is_some(), "its map is gone");
+    }
+}

@@ -14,8 +14,9 @@ use crate::preview::play::set_key;
 use crate::preview::window::REST;
 use crate::preview::{overlay, panel, timeline};
 
-/// Width of the panel in points: the name of a key and three numbers.
-const WIDTH: f32 = 340.0;
+/// Width of the panel in points: the name of a key and three numbers, and of the bar that scrolls it.
+const WIDTH: f32 = 350.0;
+const BAR: f32 = 10.0;
 
 /// What the user asked for in one painting.
 #[derive(Default)]
@@ -68,6 +69,8 @@ impl Live {
                 .show(ui, |ui| {
                     self.head(ui, asked);
                     let usual = Plan::new(plan.scene.usual());
+                    // Else it lies over the buttons.
+                    ui.spacing_mut().scroll.floating_allocated_width = BAR;
                     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
                         asked.panel = panel::show(ui, &plan, &usual);
                     });

@@ -9,8 +9,8 @@ use crate::picture::Layer;
 use crate::preview::flight::Thrust;
 use crate::preview::views::Shot;
 
-/// The keys, and what they do.
-pub const HELP: [(&str, &str); 28] = [
+/// The keys, and what they do. Two columns of them fit into 640 pixels.
+pub const HELP: [(&str, &str); 30] = [
     ("W A S D, arrows", "fly forward, left, back, right"),
     ("E Q", "fly up, down"),
     ("Z X", "roll"),
@@ -23,19 +23,21 @@ pub const HELP: [(&str, &str); 28] = [
     ("Ctrl+wheel", "field of view"),
     ("Home", "back to the camera of the preset"),
     ("Tab, T", "hide or show the panel, the timeline"),
-    ("1 to 6", "colour, depth, normal, position, steps, state"),
+    ("1 2 3", "colour, depth, normal"),
+    ("4 5 6", "position, steps, state"),
     ("7", "the pass that ended each way"),
     ("[ ]", "the passes one by one"),
     ("O", "time and work of the passes"),
     ("Space", "play, stop"),
     (", .", "a frame back, a frame on"),
     ("K", "set a key of the present view"),
-    ("Ctrl+K", "overwrite the chosen key with the present view"),
-    ("Delete", "take the chosen key away; Alt+drag copies it"),
-    ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo; Ctrl+Y redoes too"),
+    ("Ctrl+K", "overwrite the chosen key"),
+    ("Delete", "take the chosen key away"),
+    ("Alt+drag", "copy a key"),
+    ("Ctrl+Z, Ctrl+Y", "undo, redo; also Ctrl+Shift+Z"),
     ("Ctrl+S", "save the preset"),
-    ("F12", "a still of the size of image.size"),
-    ("Ctrl+C", "copy the command that makes this picture"),
+    ("F12", "a still of the size image.size"),
+    ("Ctrl+C", "copy the command of this picture"),
     ("F11", "full screen"),
     ("F1", "these keys"),
     ("Ctrl+Q", "close the window"),

@@ -60,7 +60,6 @@ pub struct Visible {
 
 /// The open window.
 pub struct Live {
-    pub stage: Stage,
     pub pictures: Pictures,
     pub ctx: egui::Context,
     pub gui: egui_winit::State,
@@ -110,6 +109,8 @@ pub struct Live {
     pub kept: Option<Plan>,
     /// How often the device was opened again since the last full picture.
     pub losses: u32,
+    /// Dropped last, as its surface is to go after all that knows its device.
+    pub stage: Stage,
 }
 
 impl Live {

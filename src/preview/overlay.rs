@@ -2,11 +2,14 @@
 
 use egui::{
     Align, Align2, Area, Color32, Context, Frame, Grid, Id, Label, Margin, Rect, RichText,
-    TextWrapMode, Ui, Vec2,
+    ScrollArea, TextWrapMode, Ui, Vec2,
 };
 
 use crate::picture;
 use crate::preview::input::HELP;
+
+/// Size of the letters in the list of keys, in points.
+const KEYS: f32 = 11.5;
 
 /// What the line tells.
 pub struct Status {
@@ -22,8 +25,10 @@ pub struct Status {
     pub notice: Option<(String, bool)>,
 }
 
-/// A dark box at an edge of the window, or so many points above it.
+/// A dark box at an edge of the window, or so many points above it. Buttons and wheel go through it
+/// to the picture, unless it is in the middle.
 fn over(ctx: &Context, name: &'static str, anchor: Align2, above: f32, add: impl FnOnce(&mut Ui)) {
+    let is_middle = anchor == Align2::CENTER_CENTER;
     // Away from the edges.
     let sign = |align: Align| match align {
         Align::Min => 1.0,
@@ -33,10 +38,10 @@ fn over(ctx: &Context, name: &'static str, anchor: Align2, above: f32, add: impl
     let offset = Vec2::new(8.0 * sign(anchor.x()), 8.0 * sign(anchor.y()) - above);
     Area::new(Id::unique(name))
         .anchor(anchor, offset)
-        .interactable(false)
+        .interactable(is_middle)
         .show(ctx, |ui| {
             Frame::new()
-                .fill(Color32::from_black_alpha(190))
+                .fill(Color32::from_black_alpha(if is_middle { 230 } else { 190 }))
                 .inner_margin(Margin::symmetric(8, 5))
                 .corner_radius(3)
                 .show(ui, |ui| {
@@ -116,19 +121,28 @@ pub fn figures(ctx: &Context, frame: &picture::frame::Frame) {
     });
 }
 
-/// Shows the keys.
+/// Shows the keys, in two columns. A window that is too small for them scrolls.
 pub fn help(ctx: &Context) {
+    // The frame and the distance from the edges.
+    let most = ctx.viewport_rect().size() - Vec2::new(32.0, 26.0);
     over(ctx, "help", Align2::CENTER_CENTER, 0.0, |ui| {
-        Grid::new("keys").spacing([12.0, 3.0]).show(ui, |ui| {
-            // In two columns, for windows that are not high.
-            let half = HELP.len().div_ceil(2);
-            for row in 0..half {
-                for (keys, what) in HELP[row..].iter().step_by(half) {
-                    ui.label(RichText::new(*keys).strong());
-                    ui.label(*what);
+        let scrolled = ScrollArea::both()
+            .max_width(most.x)
+            .max_height(most.y)
+            .min_scrolled_width(most.x)
+            .min_scrolled_height(most.y);
+        scrolled.show(ui, |ui| {
+            ui.spacing_mut().interact_size.y = 0.0;
+            Grid::new("keys").spacing([8.0, 3.0]).show(ui, |ui| {
+                let half = HELP.len().div_ceil(2);
+                for row in 0..half {
+                    for (keys, what) in HELP[row..].iter().step_by(half) {
+                        ui.label(RichText::new(*keys).size(KEYS).strong());
+                        ui.label(RichText::new(*what).size(KEYS));
+                    }
+                    ui.end_row();
                 }
-                ui.end_row();
-            }
+            });
         });
     });
 }

@@ -1,7 +1,7 @@
 //! The panel: every key of the plan, made from the lists of keys.
 
 use egui::{
-    Align, Button, CollapsingHeader, ComboBox, DragValue, Label, Layout, Response, RichText,
+    Align, Button, CollapsingHeader, ComboBox, DragValue, Label, Layout, Popup, Response, RichText,
     Slider, Ui,
 };
 use toml::Value;
@@ -47,6 +47,8 @@ pub fn show(ui: &mut Ui, plan: &Plan, defaults: &Plan) -> Asked {
             }
         });
     }
+    // A drag in a box of colours is not one of the button that opened it.
+    asked.dragging |= Popup::is_any_open(ui.ctx()) && ui.input(|i| i.pointer.any_down());
     asked
 }
 
@@ -105,7 +107,7 @@ fn noted(response: &Response, asked: &mut Asked) -> bool {
     response.changed()
 }
 
-/// Edits a value. Returns a new one.
+/// Edits a value. Returns a new one. A typed number is taken as a whole, so that it is one step.
 fn editor(
     ui: &mut Ui,
     id: (&str, &str),
@@ -117,7 +119,9 @@ fn editor(
         Kind::Number(range) => number(ui, *range, now.as_float()?, asked).map(Value::Float),
         Kind::Count([low, high]) => {
             let mut n = now.as_integer()?;
-            let drag = DragValue::new(&mut n).range(*low..=*high);
+            let drag = DragValue::new(&mut n)
+                .range(*low..=*high)
+                .update_while_editing(false);
             let response = ui.add(drag);
             noted(&response, asked).then_some(Value::Integer(n))
         }
@@ -145,11 +149,16 @@ fn number(ui: &mut Ui, range: [f64; 2], now: f64, asked: &mut Asked) -> Option<f
             slider
                 .logarithmic(is_wide(range))
                 .smallest_positive(low.max(1e-4 * high))
+                .update_while_editing(false)
                 .custom_formatter(short),
         )
     } else {
         let drag = DragValue::new(&mut x).range(low..=high);
-        ui.add(drag.speed(speed(now)).custom_formatter(short))
+        ui.add(
+            drag.speed(speed(now))
+                .update_while_editing(false)
+                .custom_formatter(short),
+        )
     };
     noted(&response, asked).then_some(x)
 }
@@ -211,8 +220,8 @@ fn triple(ui: &mut Ui, range: [f64; 2], now: &Value, asked: &mut Asked) -> Optio
             let largest = three.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             for x in &mut three {
                 let drag = DragValue::new(x).range(range[0]..=range[1]);
-                let drag = drag.speed(speed(largest)).custom_formatter(short);
-                let response = ui.add(drag);
+                let drag = drag.speed(speed(largest)).update_while_editing(false);
+                let response = ui.add(drag.custom_formatter(short));
                 any |= noted(&response, asked);
             }
             any

@@ -33,7 +33,6 @@ struct Panel {
 /// The surface of a window.
 pub struct Screen {
     device: Arc<Device>,
-    surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
     layout: wgpu::BindGroupLayout,
     show_picture: wgpu::RenderPipeline,
@@ -42,6 +41,7 @@ pub struct Screen {
     parameters: wgpu::Buffer,
     held: Option<Held>,
     panel: Panel,
+    surface: wgpu::Surface<'static>,
 }
 
 /// What became of a frame.
@@ -137,10 +137,10 @@ impl Screen {
         })
     }
 
-    /// Leaves the surface of a lost device as it is. A submission that failed may still hold an image
-    /// of it, and wgpu would panic.
-    pub fn abandon(self) {
-        std::mem::forget(self.surface);
+    /// The surface alone. It is to be dropped after all that knows its device: a submission that
+    /// failed may still hold an image of it, and wgpu would panic.
+    pub fn into_surface(self) -> wgpu::Surface<'static> {
+        self.surface
     }
 
     /// The device that draws.

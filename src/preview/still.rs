@@ -94,7 +94,7 @@ impl Still {
         std::thread::spawn(move || {
             let mut content = Vec::new();
             let shades = Shades::new(Layer::Color, &frame, &plan);
-            let text = preset::write(&plan);
+            let text = preset::write_beside(&plan, &path);
             let to = &mut Cursor::new(&mut content);
             let encoded = write_png(to, &shades, BitDepth::Eight, &plan.title, &text);
             let written = encoded.and_then(|()| write(&path, &content));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use wgpu::{Adapter, Instance};
+use wgpu::{Adapter, Instance, Surface};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
@@ -147,16 +147,15 @@ impl Stage {
         })
     }
 
-    /// Opens the device again after a loss.
+    /// Opens the device again after a loss. Returns the old surface.
     ///
     /// # Errors
     /// It does not open.
-    pub fn reopen(&mut self) -> Result<(), PreviewError> {
+    pub fn reopen(&mut self) -> Result<Surface<'static>, PreviewError> {
         let surface = surface_of(self.adapters.instance(), &self.window)?;
         let device = Device::open(&self.adapter)?;
         let screen = Screen::new(surface, device, &self.adapter, size_of(&self.window))?;
-        std::mem::replace(&mut self.screen, screen).abandon();
-        Ok(())
+        Ok(std::mem::replace(&mut self.screen, screen).into_surface())
     }
 }
 
@@ -165,10 +164,7 @@ fn size_of(window: &Window) -> [u32; 2] {
     [size.width.max(1), size.height.max(1)]
 }
 
-fn surface_of(
-    instance: &Instance,
-    window: &Arc<Window>,
-) -> Result<wgpu::Surface<'static>, PreviewError> {
+fn surface_of(instance: &Instance, window: &Arc<Window>) -> Result<Surface<'static>, PreviewError> {
     let made = instance.create_surface(window.clone());
     made.map_err(|e| PreviewError::Adapter(e.to_string()))
 }
@@ -177,7 +173,7 @@ fn surface_of(
 fn adapter_for(
     adapters: &Adapters,
     choice: &Choice,
-    surface: &wgpu::Surface<'_>,
+    surface: &Surface<'_>,
 ) -> Result<Adapter, PreviewError> {
     if *choice == Choice::Auto {
         let mut all = adapters.in_order().into_iter().map(|(adapter, _)| adapter);

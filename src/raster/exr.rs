@@ -47,15 +47,28 @@ pub fn head(from: &mut (impl Read + Seek), attribute: &str) -> Result<Head, Stri
         return Err("is an EXR of deep data, which has no single height in a place".into());
     }
     let channels = first.channels.list.iter();
-    let text = match first.own_attributes.other.get(&Text::from(attribute)) {
-        Some(AttributeValue::Text(text)) if text.as_slice().len() <= MOST_TEXT => utf8(text),
-        _ => None,
-    };
     Ok(Head {
         size,
         channels: channels.map(|c| c.name.to_string()).collect(),
-        text,
+        text: attribute_of(&meta, attribute),
     })
+}
+
+/// The text of an attribute of a picture of any size.
+///
+/// # Errors
+/// In words: broken.
+pub fn text(from: impl Read, attribute: &str) -> Result<Option<String>, String> {
+    let meta = MetaData::read_from_buffered(from, false).map_err(|e| broken(&e))?;
+    Ok(attribute_of(&meta, attribute))
+}
+
+fn attribute_of(meta: &MetaData, attribute: &str) -> Option<String> {
+    let first = meta.headers.first()?;
+    match first.own_attributes.other.get(&Text::from(attribute)) {
+        Some(AttributeValue::Text(text)) if text.as_slice().len() <= MOST_TEXT => utf8(text),
+        _ => None,
+    }
 }
 
 /// Reads one channel of the first part that has it, row by row.

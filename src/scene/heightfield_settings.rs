@@ -83,6 +83,10 @@ impl SceneSettings for HeightfieldSettings {
         self.files()
     }
 
+    fn file_names(&mut self) -> Vec<&mut String> {
+        self.file_names()
+    }
+
     fn map_files(&self) -> Vec<PathBuf> {
         self.map_file().into_iter().collect()
     }

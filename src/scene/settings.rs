@@ -142,6 +142,11 @@ pub trait SceneSettings {
         Vec::new()
     }
 
+    /// The names of files, as the preset has them.
+    fn file_names(&mut self) -> Vec<&mut String> {
+        Vec::new()
+    }
+
     /// The named files that decide how a ray is followed, and not what it meets.
     fn map_files(&self) -> Vec<PathBuf> {
         Vec::new()

@@ -15,6 +15,7 @@ use conemarch::base::outcome::State;
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::render::{Cutting, Renderer};
+use conemarch::gpu::work::Work;
 use conemarch::pass::progress::Progress;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
@@ -138,6 +139,17 @@ pub fn render_cut(plan: &Plan, extras: Extras, cutting: Cutting) -> Frame {
         renderer.render(&asked, &Assets::default(), extras, &mut patient())
     });
     frame.unwrap_or_else(|e| panic!("the render fails: {e}, {plan:?}"))
+}
+
+/// Goes on with a work until it has ended.
+pub fn finish(work: &mut Work) -> Frame {
+    loop {
+        work.advance(20.0).expect("the work goes on");
+        if let Some(frame) = work.poll().expect("the work ends") {
+            break frame;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
 }
 
 /// Renders a plan that must render, on the CPU.

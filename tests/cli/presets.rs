@@ -1,8 +1,13 @@
 //! Presets are the text of a plan: what is written reads back to the last bit.
 
-use conemarch::base::key::Key;
+use std::collections::BTreeSet;
+use std::sync::LazyLock;
+
+use conemarch::base::key::{Key, Kind};
 use conemarch::plan::Plan;
-use conemarch::preset::{BUILTIN, Override, Preset, SECTIONS, builtin, load, read, write};
+use conemarch::preset::{
+    BUILTIN, Override, Preset, PresetError, SECTIONS, builtin, keys, load, read, write,
+};
 use conemarch::scene::Scene;
 use conemarch::scene::distance_settings::{DistanceSettings, MOST_ITERATIONS};
 use conemarch::scene::slab::SlabSettings;
@@ -130,41 +135,103 @@ fn only_kind_and_formula_are_required_and_the_rest_is_default() {
     }
 }
 
-/// Values of many kinds, with `;` between them; each key takes some of them.
-const CANDIDATES: &str = r#"0;1;2;3;17;100;5000;0.5;0.25;1.5;-1.5;1e-3;0.1;true;false;"auto";"off";"ray";"truth";"classic";"sine:8x8";"xy";"boxes";"csm-loop";"nearest";"walk";"fisheye";"pair";"path";"agx";"oklab";"sphere";"multiply";"transparent";"smooth";[0.25, 0.5, 0.75];[1, 2, 3];[5, 7];[0.5];[0.5, 0.75];[[0.1, 0.2, 0.3]];[[0, 0, 0], [1, 1, 1]]"#;
+/// All keys, with their help and words.
+static KEYS: LazyLock<Vec<(String, &str, Vec<String>)>> = LazyLock::new(keys);
+
+/// Values for keys that tell no range: each takes some of them.
+const OTHER: &str = r#"0.5;1;1.5;2;16;"sine:8x8";"a line";[5, 7];[1, 2];[0.5];[0.5, 0.75]"#;
+
+/// Values of a kind: all of few, else the ends of the range, and some between.
+fn candidates(kind: &Kind) -> Vec<Value> {
+    let between = |[low, high]: [f64; 2], share: f64| low + share * (high - low);
+    let triple = |range, shares: [f64; 3]| Value::from(shares.map(|x| between(range, x)).to_vec());
+    match kind {
+        Kind::Number(range) => [0.0, 1e-3, 0.1, 0.3, 1.0]
+            .map(|share| between(*range, share).into())
+            .to_vec(),
+        Kind::Count([low, high]) => [*low, low + 1, low.midpoint(*high), *high]
+            .map(Value::from)
+            .to_vec(),
+        Kind::Switch => [true, false].map(Value::from).to_vec(),
+        Kind::Word(words) => words.iter().map(|word| (*word).into()).collect(),
+        Kind::Triple(range) => [[0.25, 0.5, 0.75], [1.0, 0.9, 0.2]]
+            .map(|shares| triple(*range, shares))
+            .to_vec(),
+        Kind::Triples(most, range) => [1, *most]
+            .map(|n| vec![triple(*range, [0.1, 0.2, 0.3]); n].into())
+            .to_vec(),
+        Kind::Auto(kind) => [vec!["auto".into()], candidates(kind)].concat(),
+        Kind::Other => OTHER.split(';').map(toml).collect(),
+    }
+}
+
+/// Settings of a key that it takes for itself, with its words first; not all fit the rest of a plan.
+fn settings(plan: &Plan, section: &str, name: &str) -> Vec<String> {
+    let path = format!("{section}.{name}");
+    let (.., words) = KEYS.iter().find(|(key, ..)| *key == path).expect("a key");
+    let told = words.iter().map(|word| word.as_str().into());
+    let kind = ask(plan, section, name, |key| key.slot.kind());
+    let all = told.chain(candidates(&kind));
+    let fits = |value: &Value| ask(plan, section, name, |mut key| key.slot.set(value).is_ok());
+    let fitting = all.filter(fits);
+    fitting.map(|value| format!("{path}={value}")).collect()
+}
+
+/// The least preset of a plan's scene with settings.
+fn set(plan: &Plan, settings: &[&str]) -> Result<Plan, PresetError> {
+    let sets = settings.iter().map(|set| Override::read(set));
+    let sets: Result<Vec<Override>, PresetError> = sets.collect();
+    Ok(Preset::read(&least(plan), "least", &sets?)?.plan)
+}
 
 #[test]
 fn every_key_can_be_set_in_a_file_and_by_override_and_reads_back() {
+    let mut changing = BTreeSet::new();
     for (plan, section, name) in all_keys() {
+        let path = format!("{section}.{name}");
         let before = get(&plan, section, name);
-        let mut changed = 0;
-        for text in CANDIDATES.split(';') {
-            if ask(&plan, section, name, |mut key| {
-                key.slot.set(&toml(text)).is_err()
-            }) {
-                continue;
-            }
-            let set = Override::read(&format!("{section}.{name}={text}"));
-            let set = set.unwrap_or_else(|e| panic!("{e}"));
-            // Some values fit the key, but not the rest of the plan.
-            let Ok(set) = Preset::read(&least(&plan), "least", &[set]) else {
-                continue;
+        let mut is_heard = false;
+        for setting in settings(&plan, section, name) {
+            let set = match set(&plan, &[&setting]) {
+                Ok(set) => set,
+                Err(e) => {
+                    assert!(e.to_string().contains(&path), "{e}");
+                    is_heard = true;
+                    continue;
+                }
             };
-            let file = with(&plan, section, &format!("{name} = {text}"));
-            assert_eq!(read(&file, "file").expect(&file), set.plan, "{file}");
-            assert_eq!(read(&write(&set.plan), "again").expect(&file), set.plan);
-            changed += usize::from(get(&set.plan, section, name) != before);
+            let file = with(&plan, section, &setting[section.len() + 1..]);
+            assert_eq!(read(&file, "file").expect(&file), set, "{file}");
+            assert_eq!(read(&write(&set), "again").expect(&file), set);
+            if get(&set, section, name) != before {
+                changing.insert(path.clone());
+                is_heard = true;
+            }
         }
-        // More than one tile needs axes that wrap, a texture a file: see the heightfields. Traps need
-        // a formula, and so does the glow.
-        let traps = ["trap", "layer2_trap", "layer3_trap"].contains(&name);
-        let trapless = traps && !matches!(plan.scene, Scene::Distance(_));
-        let glowless = name == "glow" && !plan.scene.tells_distance();
-        let elsewhere = ["tiles", "texture"].contains(&name) || trapless || glowless;
-        assert!(
-            changed > 0 || elsewhere,
-            "no candidate changes {section}.{name}"
-        );
+        assert!(is_heard, "no candidate for {path} does anything");
+    }
+    // Some keys need another one of their section first, and some another scene.
+    for (plan, section, name) in all_keys() {
+        if changing.contains(&format!("{section}.{name}")) {
+            continue;
+        }
+        let others = all_keys()
+            .into_iter()
+            .filter(|(p, s, _)| (p, *s) == (&plan, section));
+        let first = others.flat_map(|(plan, section, name)| settings(&plan, section, name));
+        let own = settings(&plan, section, name);
+        let before = get(&plan, section, name);
+        let changes = |first: &String| {
+            let both = own.iter().map(|own| set(&plan, &[first, own]));
+            both.flatten().any(|set| get(&set, section, name) != before)
+        };
+        if first.collect::<Vec<_>>().iter().any(changes) {
+            changing.insert(format!("{section}.{name}"));
+        }
+    }
+    for (_, section, name) in all_keys() {
+        let path = format!("{section}.{name}");
+        assert!(changing.contains(&path), "no candidate changes {path}");
     }
 }
 

@@ -117,6 +117,11 @@ fn a_picture_without_a_name_replaces_no_other_file() {
     );
     let new = folder.bytes("my.png");
     assert_ne!(new, old);
+    folder.fails(
+        &format!("{mine} --depth 16"),
+        2,
+        "`my.png` exists and has another --depth|-o",
+    );
     // Nobody edits a picture.
     std::fs::create_dir(folder.0.join("b")).unwrap();
     folder.write("b/my.png", old);

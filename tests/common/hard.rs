@@ -8,7 +8,7 @@ use conemarch::plan::march::Mode;
 use conemarch::scene::slab::SlabSettings;
 use glam::{DVec3, Vec3Swizzles};
 
-use super::plans::{boxed, camera, limit_iterations, mandelbox, mandelbox_of, sized};
+use super::plans::{bench_views, boxed, camera, limit_iterations, mandelbox, mandelbox_of, sized};
 use super::random::Random;
 use super::solved::{balls, slab};
 
@@ -298,14 +298,7 @@ pub fn sloped(factor: f64) -> Vec<Case> {
         m.lipschitz = Some(factor * m.lipschitz());
         (name.to_string(), plan)
     };
-    let names = [
-        "bench-far",
-        "bench-graze",
-        "bench-inside",
-        "bench-outside",
-        "bench-thin",
-    ];
-    names.map(one).to_vec()
+    bench_views().map(one).collect()
 }
 
 /// The same plans with a shell that hardly lets a step into the hit threshold.

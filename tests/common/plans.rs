@@ -1,6 +1,7 @@
 //! How tests make plans, and ask them for what is behind them. Tests know the interface of
 //! plans and scenes only through this file and `adapter`.
 
+use conemarch::base::key::Kind;
 use conemarch::base::shader::Program;
 use conemarch::formula::Formula;
 use conemarch::formula::mandelbox::Mandelbox;
@@ -10,12 +11,11 @@ use conemarch::pass::{self, LookFeature};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::{Extras, Pass, Plan};
-use conemarch::preset::{Override, load};
+use conemarch::preset::{BUILTIN, Override, load};
 use conemarch::scene::distance::Distance;
 use conemarch::scene::distance_settings::DistanceSettings;
 use conemarch::scene::{AnySolid, Assets, Scene};
 use glam::DVec3;
-use toml::Value;
 
 /// The plan of a built-in preset, with settings as `--set` takes them, and with cones. Pictures as
 /// small as those of tests have cones only if they are asked for.
@@ -26,6 +26,12 @@ pub fn preset(name: &str, settings: &[&str]) -> Plan {
     let preset = load(name, &settings);
     let plan = preset.unwrap_or_else(|e| panic!("{name}: {e}")).plan;
     plan.one_sample()
+}
+
+/// The views that are measured.
+pub fn bench_views() -> impl Iterator<Item = &'static str> {
+    let names = BUILTIN.iter().map(|(name, _)| *name);
+    names.filter(|name| name.starts_with("bench-"))
 }
 
 /// The plan of a built-in preset at another size.
@@ -103,29 +109,35 @@ pub fn limit_iterations(plan: &mut Plan, most: u32) {
     settings(plan).iterations = Some(most);
 }
 
-/// Switches a feature of the look, by the key that does and nothing else.
+/// Switches a feature of the look by its own keys: to 1 and `true`, or to 0 and `false`.
 pub fn switch(plan: &mut Plan, feature: LookFeature, on: bool) {
-    // One key cannot switch off several lamps.
-    if feature == LookFeature::Lamp && !on {
-        (plan.look.lamps.lamp2, plan.look.lamps.lamp3) = (0.0, 0.0);
+    for name in feature.keys() {
+        let mut keys = plan.look.keys();
+        let key = keys.iter_mut().find(|key| key.name == *name);
+        let slot = &mut key.unwrap_or_else(|| panic!("no key {name}")).slot;
+        let value = match slot.kind() {
+            Kind::Switch => on.into(),
+            _ => f64::from(u8::from(on)).into(),
+        };
+        slot.set(&value)
+            .unwrap_or_else(|e| panic!("{name} must take 0 and 1, and expects {e}"));
     }
-    let old = plan.look.clone();
-    let wanted = |f: &LookFeature| if *f == feature { on } else { f.is_on(&old) };
-    let values = [Value::Boolean(on), Value::Float(f64::from(u8::from(on)))];
-    for index in 0..old.clone().keys().len() {
-        for value in &values {
-            plan.look = old.clone();
-            let fits = plan.look.keys()[index].slot.set(value).is_ok();
-            if fits
-                && LookFeature::ALL
-                    .iter()
-                    .all(|f| f.is_on(&plan.look) == wanted(f))
-            {
-                return;
-            }
-        }
+}
+
+/// Sets what a feature of the look needs besides its own keys.
+pub fn allow(plan: &mut Plan, feature: LookFeature) {
+    plan.look.mode = feature.mode().unwrap_or(plan.look.mode);
+    if let Some(needed) = feature.needs() {
+        allow(plan, needed);
+        switch(plan, needed, true);
     }
-    panic!("no key switches {feature:?}");
+}
+
+/// Switches all features of the look off.
+pub fn switch_all_off(plan: &mut Plan) {
+    for feature in LookFeature::ALL {
+        switch(plan, *feature, false);
+    }
 }
 
 /// The scene of a plan in numbers, ready to be asked.

@@ -4,7 +4,7 @@
 use conemarch::pass::LookFeature;
 use conemarch::plan::{Background, Extras, Pass, Plan};
 
-use super::common::plans::{explain, mandelbox_of, preset, program, solid, switch};
+use super::common::plans::{allow, explain, mandelbox_of, preset, program, solid, switch};
 use super::has;
 use super::programs::programs_of;
 
@@ -42,7 +42,15 @@ fn features_that_are_off_are_not_joined() {
     for feature in LookFeature::ALL {
         for on in [true, false] {
             let mut plan = preset("mandelbox", &[]);
+            allow(&mut plan, *feature);
+            let before = plan.look.clone();
             switch(&mut plan, *feature, on);
+            // Its keys switch it, and no other feature.
+            assert_eq!(feature.is_on(&plan.look), on, "{feature:?}");
+            for other in LookFeature::ALL.iter().filter(|f| *f != feature) {
+                let changes = other.is_on(&plan.look) != other.is_on(&before);
+                assert!(!changes, "{feature:?}, {other:?}");
+            }
             let text = explain(&plan, Extras::default());
             assert_joins(&text, on, feature.module(true).path);
             // A stand-in has nothing in it that a reader could want to know.

@@ -20,7 +20,9 @@ use rayon::prelude::*;
 use toml::Value;
 use wgpu::naga::{self, AddressSpace, valid::Capabilities};
 
-use super::common::plans::{distance, outline, preset, program, solid, switch};
+use super::common::plans::{
+    allow, distance, outline, preset, program, solid, switch, switch_all_off,
+};
 use super::common::programs::map_programs;
 
 /// All values worth trying for a key: the other state of a switch, every word of a list of
@@ -84,6 +86,25 @@ fn scenes() -> Vec<Scene> {
     all
 }
 
+/// The plan with no feature of the look, each alone and with what it needs, all, and all without each.
+fn looks(plan: &Plan) -> Vec<Plan> {
+    let (mut none, mut full) = (plan.clone(), plan.clone());
+    switch_all_off(&mut none);
+    for feature in LookFeature::ALL {
+        switch(&mut full, *feature, true);
+    }
+    let mut all = vec![none.clone(), full.clone()];
+    for feature in LookFeature::ALL {
+        let [mut alone, mut without] = [none.clone(), full.clone()];
+        switch(&mut alone, *feature, true);
+        switch(&mut without, *feature, false);
+        let mut with = alone.clone();
+        allow(&mut with, *feature);
+        all.extend([alone, with, without]);
+    }
+    all
+}
+
 /// All plans: presets and scenes, in every mode, and with each feature of the look. Modes and looks
 /// are tried apart.
 fn plans() -> Vec<Plan> {
@@ -100,31 +121,19 @@ fn plans() -> Vec<Plan> {
     let first = presets.chain(projected).chain([lens]).chain(scenes);
     let mut all = Vec::new();
     for plan in first {
+        let looks = looks(&plan);
         for mode in &Mode::ALL {
-            // No feature, each alone, and all without each.
-            let none = [0, (1 << LookFeature::ALL.len()) - 1];
-            let alone = (0..LookFeature::ALL.len()).flat_map(|at| none.map(|of| of ^ (1 << at)));
-            for look in none.into_iter().chain(alone) {
-                if look > 0 && *mode != plan.march.mode {
-                    continue;
-                }
-                let mut one = plan.clone();
-                one.march.mode = *mode;
-                for (at, feature) in LookFeature::ALL.iter().enumerate() {
-                    switch(&mut one, *feature, look & (1 << at) > 0);
-                }
-                if *mode == plan.march.mode {
-                    let mut followed = one.clone();
-                    followed.look.mode = LightMode::Path;
-                    // Where there is fog.
-                    followed.look.shafts = 1.0;
-                    for mut under in [one.clone(), followed.clone()] {
-                        under.look.sky.sky_file = "sky.hdr".into();
-                        all.push(under);
-                    }
-                    all.push(followed);
-                }
-                all.push(one);
+            let mut one = looks[0].clone();
+            one.march.mode = *mode;
+            all.push(one);
+        }
+        for mode in LightMode::ALL {
+            for look in &looks {
+                let mut one = look.clone();
+                one.look.mode = mode;
+                let mut under = one.clone();
+                under.look.sky.sky_file = "sky.hdr".into();
+                all.extend([one, under]);
             }
         }
     }

@@ -104,6 +104,24 @@ fn a_shader_text_that_no_device_can_run_is_told_with_its_file_and_line() {
     }
 }
 
+/// A driver that drops work leaves no picture.
+#[test]
+fn cells_that_a_device_leaves_out_are_an_error() {
+    const TRACE: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/pass/trace.wgsl"));
+    let line = "    let ray = view_ray_from(";
+    let text = TRACE.replace(line, &format!("    if local.x < 10u {{ return; }}\n{line}"));
+    assert_ne!(text, TRACE);
+    let mut renderer = adapter::open();
+    renderer.sources = Some(Arc::new(move |path| {
+        (path == "wgsl/pass/trace.wgsl").then(|| text.clone())
+    }));
+    let said = whole(&mut renderer, &sized("mandelbox-hall", [96, 54])).unwrap_err();
+    assert!(
+        said.to_string().contains("left 540 cells unwritten"),
+        "{said}"
+    );
+}
+
 /// Of several programs that change, all or none take the places of the old.
 #[test]
 fn a_program_that_cannot_be_bound_leaves_the_others_as_they_were() {

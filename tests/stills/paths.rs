@@ -11,9 +11,8 @@ use glam::DVec3;
 
 use super::common::folder::Folder;
 use super::common::plans::{preset, sized};
-use super::work::bits;
-use crate::adapter::{self, EVERYTHING, HIT, both, on_cpu, render, render_cut};
-use conemarch::gpu::render::Cutting;
+use super::work::{bits, bits_however_cut};
+use crate::adapter::{self, EVERYTHING, HIT, both, on_cpu, render};
 
 /// The plan with paths.
 fn followed(mut plan: Plan, samples: u32) -> Plan {
@@ -143,12 +142,7 @@ fn both_executors_find_the_same_light() {
 #[test]
 fn paths_are_the_same_in_blocks_and_slices() {
     let plan = followed(sized("mandelbox-gate", [70, 44]), 3);
-    let whole = bits(&render(&plan, EVERYTHING));
-    let cutting = Cutting {
-        block: 32,
-        chunk: 5,
-    };
-    assert!(whole == bits(&render_cut(&plan, EVERYTHING, cutting)));
+    bits_however_cut(&plan);
 }
 
 /// Who looks at the quick light while they work gets about the same picture.

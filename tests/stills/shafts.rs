@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use conemarch::gpu::render::Cutting;
 use conemarch::pass;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::look::LightMode;
@@ -12,8 +11,8 @@ use glam::DVec3;
 
 use super::common::exact::{Exact, first_hit};
 use super::common::plans::{preset, scene, sized, solid};
-use super::work::bits;
-use crate::adapter::{EVERYTHING, both, render, render_cut};
+use super::work::{bits, bits_however_cut};
+use crate::adapter::{EVERYTHING, both, render};
 
 struct Far;
 
@@ -127,12 +126,7 @@ fn shafts_are_the_same_in_blocks_and_cost_nothing_when_off() {
     (look.mode, look.fog, look.shafts) = (LightMode::Path, 1.0, 1.0);
     plan.samples = 3;
     assert!(explained(&plan));
-    let whole = bits(&render(&plan, EVERYTHING));
-    let cutting = Cutting {
-        block: 32,
-        chunk: 5,
-    };
-    assert!(whole == bits(&render_cut(&plan, EVERYTHING, cutting)));
+    let whole = bits_however_cut(&plan);
     let off: [fn(&mut Plan); 3] = [
         |plan| plan.look.shafts = 0.0,
         |plan| plan.look.fog = 0.0,

@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use conemarch::base::projection::Projection;
-use conemarch::gpu::render::Cutting;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::Plan;
 use conemarch::plan::look::LightMode;
@@ -12,8 +11,8 @@ use glam::DVec3;
 
 use super::common::folder::Folder;
 use super::common::plans::{scene, sized};
-use super::work::bits;
-use crate::adapter::{EVERYTHING, HIT, both, render, render_cut};
+use super::work::bits_however_cut;
+use crate::adapter::{HIT, both};
 
 /// A Radiance HDR of light by column and row.
 fn file(
@@ -175,10 +174,5 @@ fn a_sky_has_the_same_bits_in_blocks_and_slices() {
     });
     let mut plan = under(sized("mandelbox-gate", [70, 44]), &path);
     (plan.samples, plan.look.mode, plan.look.fog) = (3, LightMode::Path, 0.5);
-    let whole = bits(&render(&plan, EVERYTHING));
-    let cutting = Cutting {
-        block: 32,
-        chunk: 5,
-    };
-    assert!(whole == bits(&render_cut(&plan, EVERYTHING, cutting)));
+    bits_however_cut(&plan);
 }

@@ -1,14 +1,12 @@
 //! The picture on a device through each tone map, against the file of the same light.
 
-use std::time::Duration;
-
 use conemarch::picture::{Layer, Shades};
 use conemarch::plan::look::{DAYLIGHT, ToneMap};
 use conemarch::plan::{Extras, Plan};
 use conemarch::scene::Assets;
 
 use super::common::plans::sized;
-use crate::adapter;
+use crate::adapter::{self, finish};
 
 #[test]
 fn a_device_shows_the_bytes_of_the_file_through_every_tone_map() {
@@ -24,13 +22,7 @@ fn a_device_shows_the_bytes_of_the_file_through_every_tone_map() {
     plan.look.palette[1] = [0.9, 0.1, 0.0].into();
     let mut shown = |plan: &Plan| {
         let mut work = renderer.begin(plan, &assets, extras).unwrap();
-        let frame = loop {
-            work.advance(20.0).unwrap();
-            if let Some(frame) = work.poll().unwrap() {
-                break frame;
-            }
-            std::thread::sleep(Duration::from_millis(1));
-        };
+        let frame = finish(&mut work);
         let file = Shades::new(Layer::Color, &frame, plan).bytes();
         (work.pixels().unwrap(), file)
     };

@@ -1,7 +1,5 @@
 //! Tiles that end before they have all samples.
 
-use std::time::Duration;
-
 use conemarch::gpu::render::Cutting;
 use conemarch::picture::frame::Frame;
 use conemarch::picture::{Layer, Shades};
@@ -11,7 +9,7 @@ use conemarch::scene::Assets;
 
 use super::common::plans::preset;
 use super::work::bits;
-use crate::adapter::{self, EVERYTHING, on_cpu, render, render_cut};
+use crate::adapter::{self, EVERYTHING, finish, on_cpu, render, render_cut};
 
 /// Sky above, relief below, and tiles that are cut by the edges.
 fn plan(until: f64) -> Plan {
@@ -147,13 +145,7 @@ fn what_is_shown_are_the_bytes_of_the_file() {
     for until in [0.03, 1e-9, 0.03] {
         let plan = plan(until);
         let mut work = renderer.begin(&plan, &assets, extras).unwrap();
-        let frame = loop {
-            work.advance(20.0).unwrap();
-            if let Some(frame) = work.poll().unwrap() {
-                break frame;
-            }
-            std::thread::sleep(Duration::from_millis(1));
-        };
+        let frame = finish(&mut work);
         let has_ended = tiles(&frame).iter().any(|n| *n < plan.samples);
         assert_eq!(has_ended, until > 1e-3);
         let file = Shades::new(Layer::Color, &frame, &plan).bytes();

@@ -19,7 +19,7 @@ use wgpu::Limits;
 
 use super::common::plans::{preset, sized};
 use super::common::random::Random;
-use crate::adapter::{self, EVERYTHING};
+use crate::adapter::{self, EVERYTHING, render, render_cut};
 
 /// All bits of a frame.
 pub fn bits(frame: &Frame) -> Vec<u32> {
@@ -45,6 +45,17 @@ pub fn bits(frame: &Frame) -> Vec<u32> {
         all.extend(level.state.iter().map(|s| u32::from(*s)));
     }
     all
+}
+
+/// The bits of a plan's frame, which must be the same in blocks and slices.
+pub fn bits_however_cut(plan: &Plan) -> Vec<u32> {
+    let whole = bits(&render(plan, EVERYTHING));
+    let cutting = Cutting {
+        block: 32,
+        chunk: 5,
+    };
+    assert!(whole == bits(&render_cut(plan, EVERYTHING, cutting)));
+    whole
 }
 
 /// A plan of several samples with cones, and one without them through a lens.

@@ -30,6 +30,17 @@ fn layered(plan: &Plan) -> Probe {
     all
 }
 
+/// The numbers of all traps, in order.
+const NAMES: [&str; 7] = [
+    "point",
+    "line",
+    "plane",
+    "sphere",
+    "cross",
+    "iterations",
+    "folds",
+];
+
 #[test]
 fn traps_and_layers_agree() {
     let julia = Mandelbox {
@@ -38,6 +49,7 @@ fn traps_and_layers_agree() {
         ..Mandelbox::default()
     };
     let more = [Formula::Mandelbox(julia)];
+    let mut with_escaping = 0;
     for formula in Formula::all().into_iter().chain(more) {
         let bounds = formula.bounds();
         let reach = 1.2 * bounds.half.max_element().min(bounds.radius);
@@ -68,13 +80,9 @@ fn traps_and_layers_agree() {
         });
         let (scene, seen) = (distance_solid(&plan), light(&plan));
         // Some orbits escape, between two iterations.
-        let is_escaping = |q: &[[f32; 4]; 3]| (10.0 * scene.traps(three(q[0])).unwrap()[5]).fract();
-        let escaping = asked.iter().filter(|q| is_escaping(q) != 0.0).count();
-        assert_eq!(
-            escaping > 500,
-            matches!(formula, Formula::Mandelbox(_)),
-            "{escaping}"
-        );
+        let traps = |q: &[[f32; 4]; 3]| scene.traps(three(q[0])).unwrap();
+        let escaping = asked.iter().filter(|q| (10.0 * traps(q)[5]).fract() != 0.0);
+        with_escaping += usize::from(escaping.count() > 500);
         let quantities = [
             // In ten iterations an error of f32 has grown by up to five digits.
             ("point line plane sphere cross", 0.01, Allowed(2e-6, 3e-2)),
@@ -84,18 +92,8 @@ fn traps_and_layers_agree() {
             ("albedo", 0.01, Allowed(1e-5, 5e-3)),
         ];
         let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
-            let wanted = scene.traps(three(q[0])).unwrap();
-            let names = [
-                "point",
-                "line",
-                "plane",
-                "sphere",
-                "cross",
-                "iterations",
-                "folds",
-            ];
             let got = a[0].iter().chain(&a[1]);
-            for ((name, got), wanted) in names.into_iter().zip(got).zip(wanted) {
+            for ((name, got), wanted) in NAMES.into_iter().zip(got).zip(traps(q)) {
                 pairs.add(name, *got, wanted);
             }
             let albedo = layers::albedo(&scene, &seen, three(q[0]), three(q[1]));
@@ -106,12 +104,17 @@ fn traps_and_layers_agree() {
             change(&mut plan);
             layered(&plan)
         };
-        let names = match formula {
-            Formula::Balls(_) => "point line plane sphere cross albedo",
-            _ => "point line plane sphere cross iterations folds albedo",
-        };
+        // Without orbits, some numbers are the same everywhere.
+        let first = traps(&asked[0]);
+        let varies = |i: &usize| asked.iter().any(|q| traps(q)[*i] != first[*i]);
+        let varying = (0..NAMES.len()).filter(varies).map(|i| NAMES[i]);
+        let names: Vec<&str> = varying.chain(["albedo"]).collect();
+        assert!(names.len() > 5, "{names:?}");
         let changes = [
-            (names, moved(|p| p.camera.eye += DVec3::splat(0.01))),
+            (
+                &*names.join(" "),
+                moved(|p| p.camera.eye += DVec3::splat(0.01)),
+            ),
             (
                 "albedo",
                 moved(|p| p.look.layers.trap_scale *= 1.0 + 300.0 * (MOVED - 1.0)),
@@ -126,4 +129,6 @@ fn traps_and_layers_agree() {
         ];
         twins.assert_agree(&format!("{:?}", plan.scene), &layered(&plan), &changes);
     }
+    // Those of the Mandelbox and of its Julia set at least.
+    assert!(with_escaping >= 2, "{with_escaping}");
 }

@@ -244,8 +244,9 @@ fn surfaces_agree(fog_height: f64) {
     let probe = |change| {
         let plan = changed(&plan, change);
         let mut lit = probe_of(&plan, probe!("lit"));
+        let features = LookFeature::ALL.iter();
         lit.modules
-            .extend(LookFeature::ALL.iter().map(|feature| feature.module(true)));
+            .extend(features.map(|feature| feature.module(feature.is_on(&plan.look))));
         with_look(lit, &plan)
     };
     let mut moved = vec![

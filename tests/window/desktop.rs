@@ -324,6 +324,15 @@ impl<'a> Preview<'a> {
         (fields[10] + fields[11]) / 100.0
     }
 
+    /// Its memory in MiB.
+    pub fn memory(&self) -> f64 {
+        let path = format!("/proc/{}/status", self.process.id());
+        let text = std::fs::read_to_string(path).expect("a running process");
+        let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+        let kib = line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
+        kib.expect("a figure") / 1024.0
+    }
+
     /// Closes the window. The program must end well.
     pub fn close(mut self) {
         self.key("ctrl+q");

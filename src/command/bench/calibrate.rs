@@ -164,5 +164,8 @@ fn sentence(row: &CalibrateRow, plan: &Plan) -> String {
         row.found.shell,
         fudge.join(", ")
     );
+    if row.wall_ms >= row.safe_ms {
+        text += "\n`safe` is no slower here; keep it.\n";
+    }
     text
 }

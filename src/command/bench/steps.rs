@@ -68,9 +68,10 @@ pub fn run(args: &StepsBench) -> Result<()> {
             rows.extend(measured);
             if let Some(folder) = &args.heat {
                 let Subject { name, plan, .. } = &one;
-                let mut place = Place::prepare(&folder.join(format!("{name}-{mode}.png")))?;
+                let file = folder.join(format!("{name}-{mode}.png"));
+                let mut place = Place::prepare(&file)?;
                 let shades = Shades::new(Layer::Steps, &frame, plan);
-                let text = preset::write(plan);
+                let text = preset::write_beside(plan, &file);
                 place.write(|to| write_png(to, &shades, BitDepth::Eight, &plan.title, &text))?;
                 all.files.parcel.add(place);
             }

@@ -278,7 +278,6 @@ impl FrameRequest {
         frame.traffic = Some(traffic);
         Ok(FrameInputs {
             job: Job {
-                rays_alone: self.rays_alone,
                 firsts: firsts.len(),
                 first_stages,
                 follows_light: plan.look.mode == LightMode::Path,
@@ -288,6 +287,7 @@ impl FrameRequest {
                 kinds: draft.kinds,
                 colors_at: colors,
                 made: Made {
+                    rays_alone: self.rays_alone,
                     passes: plan.passes(*extras),
                     blocks: firsts.iter().cloned().chain(visits).collect(),
                     ray_steps: plan.ray_steps(&scene),

@@ -17,6 +17,8 @@ use crate::plan::{Extras, Pass};
 /// the programs and the sizes of a target stay anyway.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::gpu) struct Made {
+    /// Whether rays start without cones: then there are at most the cones of the first picture.
+    pub rays_alone: bool,
     pub passes: Vec<Pass>,
     pub blocks: Vec<Layout>,
     pub ray_steps: u32,
@@ -66,8 +68,6 @@ pub(in crate::gpu) struct Reusable {
 /// before any ray, and once more with each block. Each sample of the pixels is a further visit of
 /// a block, whose cones stay. The last one is that of the pixels' centres, whose depths stay.
 pub(in crate::gpu) struct Job {
-    /// Whether rays start without cones: then there are at most the cones of the first picture.
-    pub rays_alone: bool,
     pub kinds: Vec<StageKind>,
     /// The first stage that only colours need.
     pub colors_at: usize,
@@ -127,7 +127,7 @@ impl Job {
         let kind = &self.kinds[index];
         let shows = |level: &Level| self.extras.shown && level.divisor >= FIRST_PICTURE;
         if let StageKind::Pass(Pass::March(level)) | StageKind::Sketch(level) = kind
-            && self.rays_alone
+            && self.made.rays_alone
             && (!shows(level) || (self.firsts > 0 && self.sampled(visit).is_some()))
         {
             return true;
@@ -147,7 +147,7 @@ impl Job {
 
     /// Sets what the stages of a visit do for its sample.
     pub(super) fn sample(&self, visit: usize, index: usize, stage: &mut Stage) {
-        if self.rays_alone {
+        if self.made.rays_alone {
             match self.kinds[index] {
                 StageKind::Pass(Pass::Trace) => stage.parent_width = 0,
                 StageKind::Census => stage.divisor = 1,

@@ -57,7 +57,8 @@ pub fn load(
     if let Some(named) = path.to_str().and_then(PatternSpec::read) {
         return generated(named, options, watch).map_err(|why| wrong(&shown, &why));
     }
-    let is_path = shown.contains(['/', '\\', '.']) || (!shown.is_empty() && path.exists());
+    let is_path = shown.contains(['/', '\\', '.'])
+        || (cfg!(feature = "cli") && !shown.is_empty() && path.exists());
     if !is_path {
         let why = format!(
             "there is no such file or field; fields are {}, and files are PNG, EXR, TIFF or .raw",

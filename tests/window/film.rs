@@ -1,0 +1,95 @@
+//! The timeline shows the frames of the film, and playing follows the clock.
+
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use conemarch::preset;
+
+use crate::desktop::{Desktop, Preview};
+use crate::folder::Folder;
+use crate::{FILM, SIZE, picture};
+
+#[test]
+fn the_timeline_shows_the_frames_of_the_film() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    folder.write("film.toml", FILM);
+    folder.done("animate film.toml -o f-%02d.png --frames 0..7");
+    folder.done("animate film.toml -o f-%02d.png --frames 19..19");
+    let view = Preview::open(&desktop, &folder.0, &format!("film.toml {SIZE}"));
+    view.key("Tab");
+    view.key("t");
+    let shows = |frame: u32| {
+        let wanted = picture(&folder, &format!("f-{frame:02}.png"));
+        view.wait_for(&format!("frame {frame}"), |shot| *shot == wanted);
+    };
+    shows(0);
+    for _ in 0..7 {
+        view.key("period");
+    }
+    shows(7);
+    view.key("comma");
+    shows(6);
+    // To the end, and it stops there.
+    view.key("space");
+    folder.done(&format!("render film.toml {SIZE} --at 2 -o end.png"));
+    let end = picture(&folder, "end.png");
+    view.wait_for("the end of the film", |shot| *shot == end);
+    // A key of another view at the end.
+    view.hold("d", 300);
+    let flown = view.at_rest();
+    view.key("k");
+    // It shows the timeline.
+    view.key("t");
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(500));
+    let saved = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+    assert_eq!(saved.tracks.len(), 3);
+    assert!(saved.tracks[0].keys[1].value != [17.0, 10.0, 12.0]);
+    // The still of the file stays.
+    assert_eq!(saved.camera.eye.to_array(), [12.0, -14.0, 3.0]);
+    // A step back takes the key away, and another one the flight. Both come back.
+    let shows_flown = || view.wait_for("the view of the flight", |shot| *shot == flown);
+    view.key("ctrl+z");
+    shows_flown();
+    view.key("ctrl+z");
+    view.wait_for("the end of the film again", |shot| *shot == end);
+    view.key("ctrl+shift+z");
+    shows_flown();
+    view.key("ctrl+shift+z");
+    // Under another playhead they go back to the moment there, not to that of the steps.
+    folder.done("animate film.toml -o g-%02d.png --frames 19..19");
+    let keyed = picture(&folder, "g-19.png");
+    view.key("comma");
+    view.wait_for("a frame before the key", |shot| *shot == keyed);
+    view.key("ctrl+z");
+    view.key("ctrl+z");
+    shows(19);
+    view.close();
+}
+
+#[test]
+fn playing_drops_pictures_and_never_time() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    // No machine that these tests run on shows so many pictures.
+    let film = FILM.replace("length = 2\nfps = 10", "length = 60\nfps = 1000");
+    folder.write("film.toml", film);
+    let view = Preview::open(&desktop, &folder.0, "film.toml --size 960x540");
+    let mut played = 0.0;
+    for _ in 0..8 {
+        let began = Instant::now();
+        view.key("space");
+        sleep(Duration::from_millis(600));
+        view.key("space");
+        played += began.elapsed().as_secs_f64();
+        // Long enough to rest.
+        sleep(Duration::from_millis(900));
+    }
+    view.key("k");
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(1000));
+    let saved = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+    let times = saved.tracks[1].keys.iter().map(|key| key.time);
+    let shown = times.fold(0.0, f64::max);
+    assert!((shown - played).abs() < 0.6, "{shown} of {played} s");
+    view.close();
+}

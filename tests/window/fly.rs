@@ -1,0 +1,109 @@
+//! Keys, wheel and buttons move the camera, and the panel sets numbers.
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use conemarch::plan::Plan;
+use conemarch::preset;
+
+use crate::desktop::{Desktop, Preview};
+use crate::folder::Folder;
+
+/// Saves the preset and reads it.
+fn saved(view: &Preview<'_>, folder: &Folder) -> Plan {
+    sleep(Duration::from_millis(300));
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(700));
+    preset::load(folder.0.join("mandelbox-1.toml"), &[])
+        .unwrap()
+        .plan
+}
+
+#[test]
+fn keys_wheel_and_clicks_fly() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
+    let first = preset::load("mandelbox", &[]).unwrap().plan.camera;
+    let ahead = (first.target - first.eye).normalize();
+    let right = ahead.cross(first.up).normalize();
+    let ways = [
+        ("w", ahead),
+        ("Up", ahead),
+        ("s", -ahead),
+        ("d", right),
+        ("Left", -right),
+        ("e", right.cross(ahead)),
+    ];
+    // The way of a held key, and back again.
+    let flown = |key: &str| {
+        view.hold(key, 300);
+        let camera = saved(&view, &folder).camera;
+        view.key("Home");
+        camera
+    };
+    for (key, way) in ways {
+        let moved = flown(key);
+        let step = moved.eye - first.eye;
+        assert!(step.normalize().distance(way) < 1e-6, "{key}: {step}");
+        assert!((moved.target - first.target).distance(step) < 1e-9);
+    }
+    for (key, side) in [("x", 1.0), ("z", -1.0)] {
+        let rolled = flown(key);
+        assert!(rolled.eye == first.eye && side * rolled.up.dot(right) > 0.1);
+    }
+    view.point(200, 300);
+    view.xdotool("keydown ctrl click 4 keyup ctrl");
+    assert!(saved(&view, &folder).camera.fov < first.fov);
+    view.key("Home");
+    // What lies in the middle of the part that the panel leaves free.
+    view.point(300, 270);
+    view.xdotool("click --repeat 2 --delay 60 1");
+    let focused = saved(&view, &folder).camera;
+    assert!(focused.eye == first.eye && focused.target.distance(first.target) > 1.0);
+    view.key("ctrl+z");
+    assert_eq!(saved(&view, &folder).camera, first);
+    // At any speed the surface stops a flight, and nothing is lost in it.
+    view.point(200, 300);
+    view.xdotool("click --repeat 50 --delay 5 4");
+    view.hold("w", 1000);
+    let stopped = saved(&view, &folder).camera;
+    assert!(stopped.eye.dot(ahead) < 0.0, "{stopped:?}");
+    // The switch `through walls`. While the camera flies, the panel waits.
+    view.click(747, 39);
+    sleep(Duration::from_millis(700));
+    view.hold("w", 300);
+    let through = saved(&view, &folder).camera;
+    assert!(through.eye.distance(stopped.eye) > 1.0 && through.check().is_ok());
+    view.close();
+}
+
+#[test]
+fn a_typed_number_and_a_dragged_color_are_one_step() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
+    let first = preset::load("mandelbox", &[]).unwrap().plan;
+    // The number beside the slider of `scene.scale`.
+    view.click(858, 94);
+    sleep(Duration::from_millis(500));
+    view.key("ctrl+a");
+    view.xdotool("type --delay 200 2.35");
+    view.key("Return");
+    let typed = saved(&view, &folder);
+    assert!(preset::write(&typed).contains("scale = 2.35"));
+    assert_eq!(typed.camera, first.camera);
+    view.key("ctrl+z");
+    assert_eq!(saved(&view, &folder).scene, first.scene);
+    view.key("ctrl+y");
+    // Its default is that of the preset.
+    view.click(927, 94);
+    assert_eq!(saved(&view, &folder).scene, first.scene);
+    // The colour of the light opens a box of colours.
+    let color = |plan: &Plan| plan.look.light_color;
+    view.click(755, 416);
+    sleep(Duration::from_millis(700));
+    view.drag(1, [750, 250], [700, 300]);
+    assert!(color(&saved(&view, &folder)) != color(&first));
+    view.key("ctrl+z");
+    assert_eq!(color(&saved(&view, &folder)), color(&first));
+    view.close();
+}

@@ -1,0 +1,153 @@
+//! What the window shows at rest: the pictures and layers of files, and what there is at a pixel.
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use conemarch::preset;
+
+use crate::desktop::{Desktop, Preview};
+use crate::folder::Folder;
+use crate::{SIZE, picture};
+
+#[test]
+fn at_rest_the_window_shows_the_picture_of_the_file() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let view = Preview::open(&desktop, &folder.0, &format!("mandelbox {SIZE}"));
+    view.key("Tab");
+    folder.done(&format!("render mandelbox {SIZE} -o a.png"));
+    let first = picture(&folder, "a.png");
+    view.wait_for("the picture of the file", |shot| *shot == first);
+    // At rest nothing is drawn, and nearly no time is spent.
+    sleep(Duration::from_millis(500));
+    let before = view.processor_time();
+    sleep(Duration::from_secs(2));
+    let spent = view.processor_time() - before;
+    assert!(spent <= 0.05, "{spent} s of 2 at rest");
+    // A flight changes the picture, a step back brings it back.
+    view.hold("w", 400);
+    let flown = view.at_rest();
+    assert!(flown != first);
+    view.key("ctrl+z");
+    view.wait_for("the picture before the flight", |shot| *shot == first);
+    view.key("ctrl+shift+z");
+    view.wait_for("the picture after the flight", |shot| *shot == flown);
+    // What is saved is what was seen.
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(500));
+    folder.done(&format!("render mandelbox-1.toml {SIZE} -o b.png"));
+    assert!(picture(&folder, "b.png") == flown);
+    // The file is read again when it changes.
+    folder.done(&format!(
+        "render mandelbox {SIZE} --set look.fog=2 -o c.png"
+    ));
+    let text = String::from_utf8(folder.bytes("mandelbox-1.toml")).unwrap();
+    let edited = preset::read(&text, "edited").unwrap();
+    let mut foggy = preset::load("mandelbox", &[]).unwrap().plan;
+    foggy.look.fog = 2.0;
+    assert!(foggy != edited);
+    sleep(Duration::from_millis(20));
+    folder.write("mandelbox-1.toml", preset::write(&foggy));
+    let foggy_plan = foggy;
+    let foggy = picture(&folder, "c.png");
+    view.wait_for("the edited preset", |shot| *shot == foggy);
+    // A broken file is told over the last good picture.
+    folder.write("mandelbox-1.toml", "[scene\n");
+    view.wait_for("what is wrong", |shot| *shot != foggy);
+    folder.write("mandelbox-1.toml", preset::write(&foggy_plan));
+    view.wait_for("the mended preset", |shot| *shot == foggy);
+    std::fs::remove_file(folder.0.join("mandelbox-1.toml")).unwrap();
+    view.wait_for("that the preset is gone", |shot| *shot != foggy);
+    folder.write("mandelbox-1.toml", preset::write(&foggy_plan));
+    view.wait_for("the preset that is back", |shot| *shot == foggy);
+    view.key("Home");
+    view.wait_for("the camera of the preset", |shot| *shot == foggy);
+    view.close();
+}
+
+#[test]
+fn a_picture_of_many_samples_follows_at_rest() {
+    // The light of a picture with bloom is spread on the host.
+    for bloom in ["0", "0.3"] {
+        let (desktop, folder) = (Desktop::new(), Folder::new());
+        let look = format!("{SIZE} --set look.bloom={bloom}");
+        let line = format!("mandelbox {look} --set image.samples=6");
+        let view = Preview::open(&desktop, &folder.0, &line);
+        view.key("Tab");
+        for samples in [1, 6] {
+            let file = format!("{samples}.png");
+            folder.done(&format!(
+                "render mandelbox {look} --samples {samples} -o {file}"
+            ));
+        }
+        let [one, six] = ["1.png", "6.png"].map(|file| picture(&folder, file));
+        assert!(one != six);
+        view.wait_for("six samples", |shot| *shot == six);
+        // Another look is shown at once, and refined again.
+        view.hold("w", 300);
+        view.key("Home");
+        view.wait_for("six samples again", |shot| *shot == six);
+        view.close();
+    }
+}
+
+#[test]
+fn a_slider_is_one_step_and_the_layers_are_those_of_files() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
+    view.at_rest();
+    // The slider of `scene.scale`.
+    view.drag(1, [792, 94], [812, 94]);
+    view.at_rest();
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(500));
+    let saved = preset::load(folder.0.join("mandelbox-1.toml"), &[])
+        .unwrap()
+        .plan;
+    let before = preset::load("mandelbox", &[]).unwrap().plan;
+    assert!(saved.scene != before.scene && saved.camera == before.camera);
+    view.key("ctrl+z");
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(500));
+    let undone = preset::load(folder.0.join("mandelbox-1.toml"), &[])
+        .unwrap()
+        .plan;
+    assert_eq!(undone.scene, before.scene);
+    view.key("Tab");
+    for (key, layer) in [("2", "depth"), ("3", "normal"), ("6", "state")] {
+        let file = format!("{layer}.png");
+        folder.done(&format!(
+            "render mandelbox --size 960x540 --layer {layer} -o {file}"
+        ));
+        let shown = picture(&folder, &file);
+        view.key(key);
+        view.wait_for(layer, |shot| *shot == shown);
+    }
+    view.close();
+}
+
+#[test]
+fn a_pixel_is_told_with_its_error_in_every_view() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let view = Preview::open(&desktop, &folder.0, "mandelbox --size 640x360");
+    view.key("Tab");
+    view.at_rest();
+    // White letters on the dark box.
+    let told = || {
+        view.point(320, 150);
+        view.xdotool("keydown alt click 1 keyup alt");
+        sleep(Duration::from_millis(1500));
+        let shot = view.at_rest();
+        let rows = shot.rgb.chunks_exact(3 * 640).skip(318).take(15);
+        let letters = rows.flat_map(|row| row[3 * 16..3 * 500].iter().map(|x| *x > 250));
+        letters.collect::<Vec<_>>()
+    };
+    let before = told();
+    view.key("2");
+    view.at_rest();
+    let now = told();
+    // The edges of letters mix with what is behind them.
+    let letters = before.iter().filter(|on| **on).count();
+    let other = before.iter().zip(&now).filter(|(a, b)| a != b).count();
+    assert!(10 * other < letters, "{other} of {letters}");
+    view.close();
+}
