@@ -3,7 +3,7 @@
 //!
 //! The *rival* is mode `ray-relaxed` with `clip` on. It has the estimate, the relaxation and the
 //! bounds of `safe`, but no cones. The *old rival* has the scalar estimate. Its `detail` is lowered
-//! until its picture is as sharp: half of its pixels are as far before the set as those of `safe`.
+//! until its picture is as sharp: it lies as far in front of the set as that of `safe`, in the median.
 //! *No cones* is `safe` with rays alone: it keeps its shell, which the rivals have not.
 //! Times are medians of warm runs in turns.
 
