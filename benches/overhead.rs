@@ -16,7 +16,7 @@ use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::render::Renderer;
-use conemarch::measure::set::{self, sharpness};
+use conemarch::measure::sharpness::{self, sharpness};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};
@@ -263,7 +263,7 @@ fn detail_before(file: &Path) -> Result<f64> {
         ..Extras::default()
     };
     let mut render = |plan: &Plan| Ok(executor.render(plan, &assets, extras, &mut |_| true)?);
-    let set = set::sample(&now, &assets, STRIDE)?;
+    let set = sharpness::sample(&now, &assets, STRIDE)?;
     let seen = sharpness(&render(&now)?, &set, &now);
     as_sharp(&before, &set, seen.before_set.median, render)
 }

@@ -3,7 +3,7 @@
 //!
 //! The *rival* is mode `ray-relaxed` with `clip` on. It has the estimate, the relaxation and the
 //! bounds of `safe`, but no cones. The *old rival* has the scalar estimate. Its `detail` is lowered
-//! until its picture is as sharp: half of its pixels are as far before the set as those of `safe`.
+//! until its picture is as sharp: it lies as far in front of the set as that of `safe`, in the median.
 //! *No cones* is `safe` with rays alone: it keeps its shell, which the rivals have not.
 //! Times are medians of warm runs in turns.
 
@@ -12,7 +12,7 @@ use as_sharp::as_sharp;
 use conemarch::base::outcome::Counts;
 use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::Choice;
-use conemarch::measure::set::{self, BeforeSet, Sharpness, sharpness};
+use conemarch::measure::sharpness::{self, BeforeSet, Sharpness, sharpness};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};
@@ -87,7 +87,7 @@ impl Bench {
             plan.size = size;
             plans.push(plan);
         }
-        let set = set::sample(&plans[1], &self.assets, STRIDE)?;
+        let set = sharpness::sample(&plans[1], &self.assets, STRIDE)?;
         let safe = sharpness(&self.render(&plans[1], false)?, &set, &plans[1]);
         let median = safe.before_set.median;
         plans[4].march.detail = as_sharp(&plans[4], &set, median, |plan| self.render(plan, false))?;
@@ -174,7 +174,7 @@ fn main() -> Result<()> {
         "March and trace at {w} x {h}, in milliseconds, and in shares of the time of `safe`:\n"
     );
     println!("{}", times(&all));
-    println!("Iterations per pixel, as groups of 32 lanes in step pay them:\n");
+    println!("Iterations per pixel if groups of 32 rays run in lockstep:\n");
     println!("{}", iterations(&all));
     println!("Compared with the set, each with its `detail`:\n");
     println!("{}", errors(&all));

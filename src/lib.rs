@@ -37,7 +37,7 @@
 //! | 3 | [`scene`] | what there is to see, and what passes ask about it |
 //! | 4 | [`plan`] | everything that decides a picture |
 //! | 5 | [`preset`] | a Plan as TOML; the built-in presets |
-//! | 5 | [`pass`] | the steps of a render: march, trace, color |
+//! | 5 | [`pass`] | the steps of a render: march, trace and colour |
 //! | 6 | [`picture`] | the Frame, its layers, and files of them |
 //! | 7 | [`gpu`] | the executor on a wgpu device |
 //! | 7 | [`cpu`] | the executor on all cores |

@@ -132,7 +132,7 @@ fn core(text: &str) -> (String, Vec<String>) {
 }
 
 /// What a browser lacks, or forbids.
-const NOT_IN_CORE: [&str; 16] = [
+const NOT_IN_CORE: [&str; 15] = [
     "fs::",
     "File::open",
     "File::create",
@@ -146,7 +146,6 @@ const NOT_IN_CORE: [&str; 16] = [
     "block_on",
     "pollster",
     ".recv_timeout(",
-    "Condvar",
     "PollType::Wait",
     "rayon",
 ];

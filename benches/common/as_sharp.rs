@@ -1,7 +1,7 @@
 //! Pictures of two estimates at equal real sharpness (docs/method.md, 5).
 
 use anyhow::Result;
-use conemarch::measure::set::{SetSample, sharpness};
+use conemarch::measure::sharpness::{SetSample, sharpness};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::Plan;
 

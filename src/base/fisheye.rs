@@ -1,5 +1,5 @@
 //! The fisheye projection: the angle to the view axis is proportional to the distance from the
-//! middle of the image (equidistant). Beyond 180 degrees there is nothing but the way straight back.
+//! middle of the image (equidistant). Places beyond 180 degrees all look straight back.
 //! Twin: `wgsl/base/fisheye.wgsl`.
 
 use std::f64::consts::PI;

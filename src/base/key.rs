@@ -45,7 +45,7 @@ pub trait Slot {
 }
 
 /// A slot over a variable, given by how its value is written and read.
-pub struct Place<'a, T, W, R> {
+pub struct ValueSlot<'a, T, W, R> {
     at: &'a mut T,
     expects: String,
     write: W,
@@ -53,7 +53,7 @@ pub struct Place<'a, T, W, R> {
     kind: Kind,
 }
 
-impl<'a, T, W, R> Place<'a, T, W, R>
+impl<'a, T, W, R> ValueSlot<'a, T, W, R>
 where
     W: Fn(&T) -> Value,
     R: Fn(&Value) -> Option<T>,
@@ -76,7 +76,7 @@ where
     }
 }
 
-impl<T, W: Fn(&T) -> Value, R: Fn(&Value) -> Option<T>> Slot for Place<'_, T, W, R> {
+impl<T, W: Fn(&T) -> Value, R: Fn(&Value) -> Option<T>> Slot for ValueSlot<'_, T, W, R> {
     fn get(&self) -> Value {
         (self.write)(self.at)
     }
@@ -269,7 +269,7 @@ fn from_to(low: f64, high: f64) -> String {
 pub fn number(at: &mut f64, low: f64, high: f64) -> impl Slot {
     let expects = format!("a number {}", from_to(low, high));
     let read = move |v: &Value| number_in(v, low, high);
-    Place::new(at, expects, |x| (*x).into(), read).of(Kind::Number([low, high]))
+    ValueSlot::new(at, expects, |x| (*x).into(), read).of(Kind::Number([low, high]))
 }
 
 /// `"auto"`, which is stored as `None`, or a value that `read` reads.
@@ -285,14 +285,14 @@ pub fn auto<T: Copy + Into<Value>>(
         _ => read(v).map(Some),
     };
     let kind = Kind::Auto(Box::new(kind));
-    Place::new(at, format!("\"auto\" or {other}"), write, read).of(kind)
+    ValueSlot::new(at, format!("\"auto\" or {other}"), write, read).of(kind)
 }
 
 /// A whole number in a closed range.
 pub fn count(at: &mut u32, low: u32, high: u32) -> impl Slot {
     let expects = format!("a whole number from {low} to {high}");
     let read = move |v: &Value| count_in(v, low, high);
-    Place::new(at, expects, |n| (*n).into(), read).of(Kind::Count([low, high]))
+    ValueSlot::new(at, expects, |n| (*n).into(), read).of(Kind::Count([low, high]))
 }
 
 /// A whole number in a closed range, or `"auto"`, which is stored as `None`.
@@ -311,7 +311,7 @@ pub fn auto_number(at: &mut Option<f64>, low: f64, high: f64) -> impl Slot {
 
 /// `true` or `false`.
 pub fn switch(at: &mut bool) -> impl Slot {
-    let place = Place::new(at, "true or false", |on| (*on).into(), Value::as_bool);
+    let place = ValueSlot::new(at, "true or false", |on| (*on).into(), Value::as_bool);
     place.of(Kind::Switch)
 }
 
@@ -321,7 +321,7 @@ pub fn triple(at: &mut DVec3, low: f64, high: f64) -> impl Slot {
     let expects = format!("three numbers like [1, 2, 3], each {range}");
     let read = move |v: &Value| triple_in(v, low, high);
     let write = |p: &DVec3| p.to_array().to_vec().into();
-    Place::new(at, expects, write, read).of(Kind::Triple([low, high]))
+    ValueSlot::new(at, expects, write, read).of(Kind::Triple([low, high]))
 }
 
 /// Three numbers, each in a closed range, or `"auto"`, which is stored as `None`.
@@ -337,7 +337,7 @@ pub fn auto_triple(at: &mut Option<DVec3>, low: f64, high: f64) -> impl Slot {
         _ => triple_in(v, low, high).map(Some),
     };
     let kind = Kind::Auto(Box::new(Kind::Triple([low, high])));
-    Place::new(at, expects, write, read).of(kind)
+    ValueSlot::new(at, expects, write, read).of(kind)
 }
 
 /// The values of a list of 1 to `most`.
@@ -351,7 +351,7 @@ pub fn numbers(at: &mut Vec<f64>, most: usize, low: f64, high: f64) -> impl Slot
     let range = from_to(low, high);
     let expects = format!("a list of 1 to {most} numbers, each {range}");
     let read = move |v: &Value| list(v, most, |x| number_in(x, low, high));
-    Place::new(at, expects, |all| all.clone().into(), read)
+    ValueSlot::new(at, expects, |all| all.clone().into(), read)
 }
 
 /// A list of 1 to `most` triples of numbers, each number in a closed range.
@@ -364,21 +364,21 @@ pub fn triples(at: &mut Vec<DVec3>, most: usize, low: f64, high: f64) -> impl Sl
         triples.collect::<Vec<_>>().into()
     };
     let read = move |v: &Value| list(v, most, |x| triple_in(x, low, high));
-    Place::new(at, expects, write, read).of(Kind::Triples(most, [low, high]))
+    ValueSlot::new(at, expects, write, read).of(Kind::Triples(most, [low, high]))
 }
 
 /// Two whole numbers, for x and y, each in a closed range.
 pub fn counts(at: &mut [u32; 2], low: u32, high: u32) -> impl Slot {
     let expects = format!("two whole numbers like [2, 2], each from {low} to {high}");
     let read = move |v: &Value| array(v, |n| count_in(n, low, high));
-    Place::new(at, expects, |pair| pair.to_vec().into(), read)
+    ValueSlot::new(at, expects, |pair| pair.to_vec().into(), read)
 }
 
 /// Width and height of an image in pixels, each from 1 to a limit.
 pub fn size(at: &mut [u32; 2], most: u32) -> impl Slot {
     let expects = format!("[width, height] in pixels, each from 1 to {most}");
     let read = move |v: &Value| array(v, |n| count_in(n, 1, most));
-    Place::new(at, expects, |pair| pair.to_vec().into(), read)
+    ValueSlot::new(at, expects, |pair| pair.to_vec().into(), read)
 }
 
 /// One word of a list. Each word stands for a value.
@@ -394,7 +394,7 @@ pub fn word<T: Copy + PartialEq>(at: &mut T, words: &'static [(&str, T)]) -> imp
     };
     let expects = format!("one of {}", quoted.join(", "));
     let kind = Kind::Word(words.iter().map(|(word, _)| *word).collect());
-    Place::new(at, expects, write, read).of(kind)
+    ValueSlot::new(at, expects, write, read).of(kind)
 }
 
 /// One line of text.
@@ -404,5 +404,5 @@ pub fn text(at: &mut String) -> impl Slot {
         let fits = |t: &&str| t.len() <= 200 && !t.contains(char::is_control);
         v.as_str().filter(fits).map(str::to_string)
     };
-    Place::new(at, expects, |line| line.clone().into(), read)
+    ValueSlot::new(at, expects, |line| line.clone().into(), read)
 }

@@ -9,7 +9,7 @@
 //! - [`outcome`]: what a pixel is, and what it cost
 //! - [`filter`]: where the samples of a pixel are; [`random`]: numbers for their light
 //! - [`srgb`], [`oklab`]: linear colours to and from sRGB and Oklab
-//! - [`last`]: values that take long to make
+//! - [`one_value_cache`]: the last value that took long to make
 //! - [`named`]: enums whose variants are chosen by a word
 //! - [`mod@clock`]: time; [`parallel`]: work over all cores
 //! - [`units`]: amounts of memory for people to read
@@ -22,9 +22,9 @@ mod equirectangular;
 pub mod filter;
 mod fisheye;
 pub mod key;
-pub mod last;
 pub mod named;
 pub mod oklab;
+pub mod one_value_cache;
 mod orthographic;
 pub mod outcome;
 pub mod parallel;

@@ -26,14 +26,14 @@ use crate::scene::Assets;
 /// What `animate` takes.
 #[derive(Args, Debug)]
 pub struct Animate {
-    /// A built-in preset, a .toml file, or a .png or .exr that this program wrote, with [[track]]s
+    /// A built-in preset, a .toml file, or a .png or .exr file that this program wrote, with [[track]]s
     #[arg(value_name = "PRESET", add = completions::presets())]
     preset: PathBuf,
 
     /// Where to write: a .png whose name has %05d, or another width, for the number of the frame
     ///
-    /// A frame that is there already, with the same settings, is left as it is. So the same
-    /// command goes on after an interrupt.
+    /// A frame that exists already, with the same settings, is left as it is. So the same command
+    /// goes on after an interrupt.
     #[arg(short, long, value_name = "PATTERN", value_hint = ValueHint::FilePath)]
     output: PathBuf,
 
@@ -49,16 +49,16 @@ pub struct Animate {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     video: Option<PathBuf>,
 
-    /// Width and height in pixels, in place of the preset's
+    /// Width and height in pixels [default: the preset's]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
 
-    /// Rays through each pixel, in place of the preset's: 1 is quick, 16 is smooth
+    /// Samples, which are rays through each pixel: 1 is quick, 16 is smooth [default: the preset's]
     #[arg(long, value_name = "N", value_parser = pixel_samples())]
     samples: Option<u32>,
 
-    /// Error of a frame, 0 to 1, below which a tile gets no more samples, in place of the preset's;
-    /// 0.004 is one level of 8 bits
+    /// Stop sampling a tile of a frame when its error is below this, from 0 to 1; 0.004 is one level
+    /// of 8 bits [default: the preset's]
     #[arg(long, value_name = "NOISE", value_parser = noise, allow_negative_numbers = true)]
     until: Option<f64>,
 

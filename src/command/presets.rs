@@ -13,8 +13,8 @@ use crate::preset::{BUILTIN, load, read};
 /// What `presets` takes.
 #[derive(Args, Debug)]
 pub struct Presets {
-    /// Print the TOML text of this preset: a built-in one, or that of a .png or .exr that this
-    /// program wrote
+    /// Print the TOML text of this preset: a built-in one, a .toml file, or that of a .png or .exr
+    /// file that this program wrote
     #[arg(value_name = "PRESET", add = presets())]
     preset: Option<PathBuf>,
 }

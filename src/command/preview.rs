@@ -20,7 +20,7 @@ use crate::preview::window::{self, Options};
 /// What `preview` takes.
 #[derive(Args, Debug)]
 pub struct Preview {
-    /// A built-in preset, a .toml file, or a .png or .exr that this program wrote
+    /// A built-in preset, a .toml file, or a .png or .exr file that this program wrote
     #[arg(value_name = "PRESET", default_value = "mandelbox", add = completions::presets())]
     preset: PathBuf,
 

@@ -32,7 +32,7 @@ use crate::scene::Assets;
 /// What `render` takes.
 #[derive(Args, Debug)]
 pub struct Render {
-    /// A built-in preset, a .toml file, or a .png or .exr that this program wrote
+    /// A built-in preset, a .toml file, or a .png or .exr file that this program wrote
     #[arg(value_name = "PRESET", add = completions::presets())]
     pub(crate) preset: PathBuf,
 
@@ -47,34 +47,36 @@ pub struct Render {
     /// PNG and EXR files carry their preset and can be rendered again; JPEG and WebP carry none.
     /// WebP is without loss.
     ///
-    /// An EXR has linear light in R, G and B. Alpha is 1, or the share of hits where
-    /// image.background is transparent. Z is the depth along the view axis, and depth.Z the one
-    /// along the ray: 1e10 for sky. There are normals, positions and states (0 sky, 1 hit, 2
-    /// unconverged). From two samples on there is variance.Y, that of the luminance; with --until
-    /// there is samples.Y, and with --stats steps.Y. The attributes hold the preset and the camera.
+    /// An EXR has linear light in R, G and B: twice the number is twice the light. Alpha is 1, or the
+    /// share of hits where image.background is transparent. Z is the depth along the view axis, and
+    /// depth.Z the one along the ray. Both are 1e10 for sky. There are normals and positions, which
+    /// are 0 for sky, and states (0 sky, 1 hit, 2 unconverged: the ray reached its step limit).
+    /// Pictures of two or more samples have variance.Y, the variance of the luminance. With --until
+    /// there is samples.Y, and with --stats there is steps.Y. The attributes contain the preset and
+    /// the camera.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
 
-    /// Width and height in pixels, in place of the preset's
+    /// Width and height in pixels [default: the preset's]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
 
-    /// Rays through each pixel, in place of the preset's: 1 is quick, 16 is smooth
+    /// Samples, which are rays through each pixel: 1 is quick, 16 is smooth [default: the preset's]
     #[arg(long, value_name = "N", value_parser = pixel_samples())]
     pub(crate) samples: Option<u32>,
 
-    /// Error of the picture, 0 to 1, below which a tile gets no more samples, in place of the preset's
+    /// Stop sampling a tile when its error is below this, from 0 to 1 [default: the preset's]
     ///
-    /// Tiles of 64 x 64 pixels end alone, at 8, 16, 32 and so on samples, and have at most --samples.
-    /// 0.004 is one level of 8 bits; 0 takes all samples everywhere.
+    /// A tile has 64 x 64 pixels. Its error is measured after 8, 16, 32 and so on samples. It has at
+    /// most --samples. 0.004 is one level of 8 bits; 0 takes all samples everywhere.
     #[arg(long, value_name = "NOISE", value_parser = noise, allow_negative_numbers = true)]
     pub(crate) until: Option<f64>,
 
     /// Set one value of the preset; may be given again
     ///
     /// Values are TOML. Words, fields like fbm:64x64,seed=3 and paths like maps/d8.png need
-    /// no quotes. Another scene.kind or scene.formula drops the preset's other values of the
-    /// scene.
+    /// no quotes. If you set another scene.kind or scene.formula, all other keys of [scene] return
+    /// to their defaults.
     #[arg(long, value_name = "SECTION.KEY=VALUE", allow_hyphen_values = true)]
     #[arg(add = completions::settings())]
     pub(crate) set: Vec<String>,
@@ -90,13 +92,13 @@ pub struct Render {
     #[command(flatten)]
     pub(crate) options: Options,
 
-    /// Go on with a picture that was not finished, from its last band, to the same bytes
+    /// Continue an unfinished picture. The result has the same bytes as a picture made at once
     ///
-    /// A PNG of more than 16 megapixels is rendered in bands of rows. Each finished band is kept in
-    /// FILE.png.part beside the picture, which goes when the picture is whole. After an interrupt, a
-    /// full disk or a kill, the same command with --resume goes on; without it, such a file is never
-    /// overwritten. With --resume a smaller picture has bands too. If nothing is kept, the picture
-    /// begins at its first row.
+    /// A PNG of more than 16 megapixels is rendered in bands of rows. FILE.png.part beside the picture
+    /// keeps each finished band. It is removed when the picture is complete. After an interrupt, a
+    /// full disk or a kill, the same command with --resume continues the picture. Without --resume,
+    /// such a file is never overwritten. With --resume a smaller picture has bands too. If there is no
+    /// such file, the picture begins at its first row.
     #[arg(long, conflicts_with_all = ["tile", "stats"])]
     pub(crate) resume: bool,
 

@@ -187,7 +187,9 @@ pub fn summary(output: &Path, [w, h]: [u32; 2], figures: &Figures) -> String {
     let [sky, hit, unconverged] = tally.shares().map(|s| 100.0 * s);
     let shadows = match 100.0 * tally.share(tally.undecided) {
         share if share < 0.05 => String::new(),
-        share => format!(", ray of light out of steps {share:.1} %"),
+        share => {
+            format!(", {share:.1} % of the pixels have a light ray that reached its step limit")
+        }
     };
     format!(
         "{}  {w} x {h}  {cones}march and trace {:.0} ms{color}  hit {hit:.1} %, sky {sky:.1} %, unconverged {unconverged:.1} %{shadows}",

@@ -1,4 +1,4 @@
-//! Finished bands of a big picture, in a file beside it until the picture is whole.
+//! Finished bands of a big picture, in a file beside it until the picture is complete.
 //!
 //! The file is a line that says what it belongs to, and then the bands in order: the bytes of
 //! their rows, their [`Tally`], and a hash of both. A band is in it once it is on the disk.

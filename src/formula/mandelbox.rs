@@ -42,8 +42,8 @@ settings! {
     /// The Mandelbox and its parameters.
     pub struct Mandelbox {
         scale: f64 = 2.0, number(-100.0, 100.0), "factor by which each iteration scales the point after the folds; its absolute value must be at least 1.001";
-        min_radius: f64 = 0.5, number(1e-6, 1e3), "inner radius of the ball fold";
-        fixed_radius: f64 = 1.0, number(1e-6, 1e3), "outer radius of the ball fold";
+        min_radius: f64 = 0.5, number(1e-6, 1e3), "inner radius of the ball fold; at most fixed_radius";
+        fixed_radius: f64 = 1.0, number(1e-6, 1e3), "outer radius of the ball fold; at least min_radius";
         fold_limit: f64 = 1.0, number(1e-3, 1e3), "half edge of the box at whose sides the box fold mirrors points";
         rotation: DVec3 = DVec3::ZERO, triple(-36e3, 36e3),
             "rotation about x, then y, then z in degrees, between the folds and the scale" => Program;

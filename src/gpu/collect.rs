@@ -110,7 +110,7 @@ impl Parts {
         let words = |i: usize| -> Result<Vec<u32>, DeviceError> {
             from.read(device, starts[i], self.all()[i].words as usize)
         };
-        let whole = Place::new(layout, 1, frame);
+        let whole = BlockPlace::new(layout, 1, frame);
         let states_of = |words: Vec<u32>| -> Vec<Option<State>> {
             words.iter().map(|w| state(*w, generation)).collect()
         };
@@ -132,7 +132,7 @@ impl Parts {
                 Pass::March(level) => level.divisor,
                 _ => 1,
             };
-            let place = Place::new(layout, divisor, frame);
+            let place = BlockPlace::new(layout, divisor, frame);
             let first = layout.state(divisor) as usize;
             let cells = first..first + layout.count(divisor) as usize;
             let area = layout.count(1) as usize;
@@ -225,13 +225,13 @@ fn code(state: Option<State>) -> u8 {
 }
 
 /// The place of a block in a layer of a frame.
-struct Place {
+struct BlockPlace {
     origin: [u32; 2],
     cells: [u32; 2],
     width: u32,
 }
 
-impl Place {
+impl BlockPlace {
     /// The place of a block in the layer of a divisor.
     fn new(layout: &Layout, divisor: u32, frame: &Frame) -> Self {
         let from = |axis: usize| layout.block.origin[axis] - frame.origin[axis];

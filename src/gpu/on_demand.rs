@@ -17,17 +17,17 @@ pub struct Threads {}
 /// A task that another thread may run, where there are any.
 #[cfg(not(target_arch = "wasm32"))]
 mod task {
-    pub trait Sent: Send {}
-    impl<T: Send> Sent for T {}
+    pub trait MaybeSend: Send {}
+    impl<T: Send> MaybeSend for T {}
     pub type Deferred<T> = Box<dyn FnOnce(&super::TaskStatus) -> T + Send>;
 }
 #[cfg(target_arch = "wasm32")]
 mod task {
-    pub trait Sent {}
-    impl<T> Sent for T {}
+    pub trait MaybeSend {}
+    impl<T> MaybeSend for T {}
     pub type Deferred<T> = Box<dyn FnOnce(&super::TaskStatus) -> T>;
 }
-use task::{Deferred, Sent};
+use task::{Deferred, MaybeSend};
 
 /// The answer of work that is done when it is asked for.
 pub struct Background<T> {
@@ -40,7 +40,7 @@ impl<T: 'static> Background<T> {
     pub fn start(
         _: &mut Threads,
         first: &str,
-        work: impl FnOnce(&TaskStatus) -> T + Sent + 'static,
+        work: impl FnOnce(&TaskStatus) -> T + MaybeSend + 'static,
     ) -> Self {
         Self {
             told: TaskStatus::new(first),

@@ -23,12 +23,15 @@ use crate::scene::Assets;
 pub struct Pick {
     device: Arc<Device>,
     /// Until it has answered.
-    task: Option<Background<Result<Asked, RenderError>>>,
-    asked: Option<Asked>,
+    task: Option<Background<Result<SubmittedPick, RenderError>>>,
+    asked: Option<SubmittedPick>,
 }
 
 impl Pick {
-    pub(super) fn new(device: Arc<Device>, task: Background<Result<Asked, RenderError>>) -> Self {
+    pub(super) fn new(
+        device: Arc<Device>,
+        task: Background<Result<SubmittedPick, RenderError>>,
+    ) -> Self {
         Self {
             device,
             task: Some(task),
@@ -64,12 +67,12 @@ impl Pick {
 }
 
 /// A question that was submitted.
-pub struct Asked {
+pub struct SubmittedPick {
     answer: Staging,
     eye: DVec3,
 }
 
-impl Asked {
+impl SubmittedPick {
     /// Compiles the program if it is new, and submits the question.
     pub(super) fn new(
         shared: &Shared,

@@ -11,7 +11,7 @@ use crate::gpu::background::{Background, Threads};
 use crate::gpu::device::Device;
 pub use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
-use crate::gpu::pick::{Asked, Pick};
+use crate::gpu::pick::{Pick, SubmittedPick};
 use crate::gpu::target::Needs;
 use crate::gpu::work::{FrameRequest, Shared, Work};
 use crate::pass::pick::At;
@@ -181,7 +181,7 @@ impl Renderer {
         self.reopen_if_lost()?;
         let (shared, sources) = (self.shared.clone(), self.sources.clone());
         let (plan, assets) = (plan.clone(), assets.clone());
-        let ask = move |_: &_| Asked::new(&shared, sources.as_ref(), &plan, &assets, at);
+        let ask = move |_: &_| SubmittedPick::new(&shared, sources.as_ref(), &plan, &assets, at);
         let asked = Background::start(&mut self.threads, "pick", ask);
         Ok(Pick::new(self.device.clone(), asked))
     }

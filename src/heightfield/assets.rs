@@ -10,7 +10,7 @@ use bytemuck::cast_slice;
 use glam::DVec2;
 
 use crate::base::key::Fault;
-use crate::base::last::{Last, is_last, last_or_new};
+use crate::base::one_value_cache::{OneValueCache, is_last, last_or_new};
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, ShareWatch};
 use crate::heightfield::load::PatternSpec;
 use crate::heightfield::paint::{Colors, Paint};
@@ -31,10 +31,10 @@ type PaintKey = (SurfaceKey, Generator, f64);
 /// Loaded heights, made cone maps and read textures.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
-    surfaces: Last<SurfaceKey, Ground>,
-    cones: Last<ConesKey, Option<Supply>>,
-    paints: Last<PaintKey, Paint>,
-    textures: Last<PathBuf, Texture>,
+    surfaces: OneValueCache<SurfaceKey, Ground>,
+    cones: OneValueCache<ConesKey, Option<Supply>>,
+    paints: OneValueCache<PaintKey, Paint>,
+    textures: OneValueCache<PathBuf, Texture>,
 }
 
 /// A surface, and a note about the file of its heights.
@@ -163,8 +163,8 @@ impl Assets {
         grain: f64,
     ) -> Result<Ready, PrepareError> {
         let without_maps = Self {
-            cones: Last::default(),
-            paints: Last::default(),
+            cones: OneValueCache::default(),
+            paints: OneValueCache::default(),
             ..self.clone()
         };
         without_maps.assembled(settings, grain, &mut without_cones)

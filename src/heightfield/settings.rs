@@ -29,7 +29,7 @@ settings! {
         normals: Normals = Normals::Patches, word(&Normals::WORDS),
             "what light sees of a bilinear surface: its patches, or a smooth surface through its samples; hits stay the same, and boxes stay flat" => Program;
         tiles: [u32; 2] = [1, 1], counts(1, 256),
-            "number of copies of the map along x and y" => Assets;
+            "number of copies of the map along x and y; more than 1 only where the map wraps, and at most 65536 cells in all along each" => Assets;
         width: f64 = 12.0, number(1e-6, 1e6),
             "world length of the block's longer side";
         depth: f64 = 2.0, number(1e-6, 1e6),
@@ -41,7 +41,7 @@ settings! {
         paint: Option<Generator> = None, word(PAINTS),
             "what picks the colour from the palette: the height, or the width of the cones that this generator makes" => Assets;
         texture: String = NO_TEXTURE.into(), text(),
-            "a PNG, JPEG or WebP that colours each tile in place of the palette; \"none\" for none" => Assets;
+            "a PNG, JPEG or WebP that colours each tile in place of the palette, only with paint = \"height\"; \"none\" for none" => Assets;
         /// How rays are traced.
         ..tracer_settings: TracerSettings;
     }

@@ -17,7 +17,7 @@ const PIXELS_PER_DEGREE: f64 = 67.0;
 /// pixels are sRGB colours from 0 to 1, row by row.
 pub fn flip(size: [u32; 2], reference: &[DVec3], test: &[DVec3]) -> f64 {
     let size = size.map(|n| n as usize);
-    let [one, two] = [reference, test].map(|pixels| Seen::new(size, pixels));
+    let [one, two] = [reference, test].map(|pixels| PerceivedImage::new(size, pixels));
     let most = hyab(hunt(DVec3::Y), hunt(DVec3::Z)).powf(COLOR_POWER);
     let pairs = (0..one.color.len()).into_par_iter();
     let error = |i: usize| {
@@ -47,13 +47,13 @@ const SENSITIVITY: [[(f64, f64); 2]; 3] = [
 ];
 
 /// A picture as the eye perceives it.
-struct Seen {
+struct PerceivedImage {
     color: Vec<DVec3>,
     edges: Vec<f64>,
     points: Vec<f64>,
 }
 
-impl Seen {
+impl PerceivedImage {
     fn new(size: [usize; 2], pixels: &[DVec3]) -> Self {
         let opponent: Vec<DVec3> = pixels.iter().map(|c| opponent(linear(*c))).collect();
         let channel = |i: usize| opponent.iter().map(|c| c[i]).collect::<Vec<f64>>();

@@ -1,9 +1,9 @@
 //! Glow: light that the air sends out near the surface, summed up along the ray of a pixel.
 //! Twins: `wgsl/pass/glow.wgsl`, `glow_off.wgsl`.
 //!
-//! The air at the distance d from the surface sends out `exp(-d / width)` per width. What comes from
-//! a way through it is the integral, in which fog of the depth f lets `exp(-f)` through. It says
-//! nothing of steps or cones, so it is the same however the ray was marched.
+//! The air at the distance d from the surface sends out `exp(-d / width)` per width. A ray gathers the
+//! integral of this over its way. Fog of the depth f lets `exp(-f)` of it through. The integral does not
+//! depend on steps or cones, so it is the same however the ray was marched.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};

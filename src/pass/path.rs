@@ -1,6 +1,6 @@
 //! Light by paths: rays to a point of the sun and of lamps, and a ray in a direction that the material
-//! chooses, from surface to surface. The mean over the samples is the light that a picture without
-//! such noise would have (Kajiya, The rendering equation, 1986). Twin: `wgsl/pass/path.wgsl`.
+//! chooses, from surface to surface. The mean over the samples tends to the true light (Kajiya, The
+//! rendering equation, 1986). Twin: `wgsl/pass/path.wgsl`.
 
 use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 //! Tiles whose picture is good enough get no more samples.
 //!
-//! The samples of a pixel are spread evenly, so their own spread says too much of the error of their
+//! The samples of a pixel are spread evenly, so their variance overestimates the error of their
 //! mean. So the mean of their first half is compared with that of the second one: for independent
 //! halves, a quarter of the squared difference is the variance of the mean of all. Evenly spread
 //! samples do better. The error of a tile is the root mean square over its pixels and channels, of

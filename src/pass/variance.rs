@@ -1,6 +1,6 @@
-//! The variance of a pixel, for denoisers: that of the luminance of its light, the mean of its samples,
-//! if they were independent. They are spread evenly, so the error of the mean is smaller. The
-//! GPU does the same in `wgsl/pass/color.wgsl`.
+//! The variance of a pixel's luminance, for denoisers. It is that of the mean of its samples, computed
+//! as if they were independent. They are spread evenly, so the error of the mean is smaller. The GPU
+//! does the same in `wgsl/pass/color.wgsl`.
 
 use glam::DVec3;
 

@@ -31,18 +31,20 @@ named_enum! {
         Position = "position" =>
             "world positions, each axis from its least to its greatest in the picture; sky black",
         /// The work of each pixel.
-        Steps = "steps" => "evaluations: violet none, yellow the 99th percentile and above",
+        Steps = "steps" =>
+            "how often the distance to the surface was computed: violet none, yellow the 99th percentile and above",
         /// What each pixel is.
-        State = "state" => "sky dark blue, hit light grey, unconverged magenta",
+        State = "state" =>
+            "sky dark blue, hit light grey, unconverged (the ray reached its step limit) magenta",
         /// Samples of each pixel.
         Samples = "samples" =>
-            "share of image.samples that a pixel has, as grey: black none, white all; less where image.until ends a tile",
+            "share of image.samples that a pixel has, as grey: black none, white all; image.until stops sampling smooth tiles early",
         /// How much the samples of each pixel differ.
         Variance = "variance" =>
-            "standard error of a pixel's luminance if its samples were random, as grey: black 0, white 0.1 and more; an EXR has its square",
+            "square root of the variance of a pixel's luminance, computed as if its samples were random: black 0, white 0.1 and more; an EXR has the variance",
         /// Errors of the depth.
         Error = "error" =>
-            "error of the depth against the truth, a slow reference that is rendered too, in footprints (half a pixel's width): grey 0, red 8 too deep or no hit, blue 8 too near",
+            "error of the depth. A slow reference, the truth, is rendered too. Grey is no error. Red is 8 half pixels too deep, or no hit. Blue is 8 half pixels too near",
     }
 }
 

@@ -98,7 +98,7 @@ impl Place {
     /// The disk is full or `content` fails.
     pub fn write<E: From<OutputError>>(
         &mut self,
-        content: impl FnOnce(&mut BufWriter<Told<'_>>) -> Result<(), E>,
+        content: impl FnOnce(&mut BufWriter<ErrorKeepingFile<'_>>) -> Result<(), E>,
     ) -> Result<(), E> {
         let shown = self.shown.clone();
         let fail = |e: io::Error| OutputError::full(&shown, &e);
@@ -106,7 +106,7 @@ impl Place {
             self.file.set_len(0).map_err(fail)?;
             self.file.rewind().map_err(fail)?;
         }
-        let mut to = BufWriter::new(Told {
+        let mut to = BufWriter::new(ErrorKeepingFile {
             file: &mut self.file,
             fault: None,
         });
@@ -133,12 +133,12 @@ impl Place {
 
 /// A file that remembers why it could not be written.
 #[derive(Debug)]
-pub struct Told<'a> {
+pub struct ErrorKeepingFile<'a> {
     file: &'a mut File,
     fault: Option<io::Error>,
 }
 
-impl Write for Told<'_> {
+impl Write for ErrorKeepingFile<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.file.write(bytes).inspect_err(|e| {
             // One that can be tried again is none.
@@ -154,7 +154,7 @@ impl Write for Told<'_> {
     }
 }
 
-impl Seek for Told<'_> {
+impl Seek for ErrorKeepingFile<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
     }

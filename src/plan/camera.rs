@@ -11,17 +11,17 @@ use crate::settings;
 settings! {
     /// Where the camera stands and where it looks.
     pub struct Camera {
-        eye: DVec3 = DVec3::new(10.0, -17.0, 12.0), triple(-1e9, 1e9), "position of the camera";
+        eye: DVec3 = DVec3::new(10.0, -17.0, 12.0), triple(-1e9, 1e9), "position of the camera; not the target";
         target: DVec3 = DVec3::ZERO, triple(-1e9, 1e9), "point that the camera looks at, in the middle of the image";
-        up: DVec3 = DVec3::Z, triple(-1e9, 1e9), "direction that points up in the image";
+        up: DVec3 = DVec3::Z, triple(-1e9, 1e9), "direction that points up in the image; not zero and not along the view";
         fov: f64 = 40.0, number(1.0, 360.0), "vertical field of view in degrees, at most 170 unless the projection is fisheye; an orthographic view shows as much at the target as a perspective one does, and an equirectangular one shows everything";
         projection: Projection = Projection::Perspective, word(Projection::WORDS), "how directions become an image: perspective; orthographic, by parallel rays from the plane of the eye; fisheye, where the angle to the view is proportional to the distance from the middle, up to 180 degrees; equirectangular, a panorama of 360 x 180 degrees for an image twice as wide as high" => Program;
-        aperture: f64 = 0.0, number(0.0, 0.25), "radius of the lens as a share of the distance to the focus: 0 for none, 0.01 for a blurred background; a picture of one sample has no blur";
+        aperture: f64 = 0.0, number(0.0, 0.25), "radius of the lens as a share of the distance to the focus: 0 for none, 0.01 for a blurred background; a picture of one sample has no blur, and a fisheye or an equirectangular view has no lens";
         focus: Option<f64> = None, auto_number(1e-9, 1e9), "distance to the plane that is sharp, along the view axis; auto is that of the target";
         blades: Option<u32> = None, auto_count(3, 16), "blades of the lens, which are the corners of blurred lights; auto is a round lens";
         shift: f64 = 0.0, number(-5.0, 5.0), "how far the image plane of a perspective view is shifted to the right, as a share of the image's height: the view turns there, and keeps its lines parallel";
-        rise: f64 = 0.0, number(-5.0, 5.0), "how far it is shifted up; 0.3 shows the top of a tower whose walls stay upright";
-        stereo: Stereo = Stereo::Off, word(&Stereo::WORDS), "two views in a picture of perspective, each with half its width: pair with the left eye's view on the left, for glasses and parallel viewing, or cross with it on the right, for crossed eyes; the target is at the depth of the screen, and the window shows one view from between the eyes" => Nothing;
+        rise: f64 = 0.0, number(-5.0, 5.0), "how far the image plane of a perspective view is shifted up; 0.3 shows the top of a tower whose walls stay upright";
+        stereo: Stereo = Stereo::Off, word(&Stereo::WORDS), "two views side by side, perspective only, each half as wide as the picture, whose width is even: pair with the left eye's view on the left, for glasses and parallel viewing, or cross with it on the right, for crossed eyes; the target is at the depth of the screen, and the window shows one view from between the eyes" => Nothing;
         eyes: f64 = 0.03, number(0.0, 0.5), "distance between the eyes of stereo as a share of the distance from eye to target" => Nothing;
     }
 }

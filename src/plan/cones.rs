@@ -1,8 +1,8 @@
-//! Whether cones pay (docs/method.md, 2).
+//! Whether cones make a render faster (docs/method.md, 2).
 //!
 //! Cones save the steps that the rays of a block share. Close to the surface every pixel needs
 //! its own steps, and after cones these differ more between neighbours, which wait for each other.
-//! So cones pay where a ray alone needs many steps. A few rays tell how many.
+//! So cones are faster where a ray alone needs many steps. A few rays tell how many.
 
 use crate::base::outcome::Counts;
 use crate::base::view::View;

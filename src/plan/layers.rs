@@ -61,7 +61,7 @@ fn colors() -> Vec<DVec3> {
 settings! {
     /// Traps and layers.
     pub struct Layers {
-        trap: Trap = Trap::Auto, word(&Trap::WORDS), "what picks the colour of a fractal: auto is the formula's own mixture; or how near the orbit comes to a point, line, plane, sphere or cross, how many iterations it takes to escape, or how often it is folded" => Program;
+        trap: Trap = Trap::Auto, word(&Trap::WORDS), "what picks the colour of a fractal, and only auto for other scenes: auto is the formula's own mixture; or how near the orbit comes to a point, line, plane, sphere or cross, how many iterations it takes to escape, or how often it is folded" => Program;
         trap_scale: f64 = 1.0, number(-1000.0, 1000.0), "factor on the number of the trap, which is 0 at the shape and below 1, or grows by 0.1 with each iteration or fold";
         trap_offset: f64 = 0.0, number(-1000.0, 1000.0), "what is added to it";
         layer2_trap: Trap = Trap::Auto, word(OVER), "the trap of a second layer of colour over the first" => Program;

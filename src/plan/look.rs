@@ -80,7 +80,7 @@ named_enum! {
 settings! {
     /// How a picture looks. Colours are sRGB triples from 0 to 1.
     pub struct Look {
-        light: DVec3 = DVec3::new(-0.3, -0.7, 0.75), triple(-1e6, 1e6), "direction to the light";
+        light: DVec3 = DVec3::new(-0.3, -0.7, 0.75), triple(-1e6, 1e6), "direction to the light; not zero";
         light_color: DVec3 = DVec3::new(1.0, 0.90, 0.76), triple(0.0, 1.0), "colour of the light, sRGB";
         mode: LightMode = LightMode::Quick, word(&LightMode::WORDS), "how light is found: quick by formulas, path by rays from surface to surface, whose noise goes away with many samples" => Program;
         bounces: u32 = 2, count(0, 16), "in mode path, how often light goes from surface to surface before the last one; 0 for light of the sun and the sky alone, which near surfaces stop within occlusion_reach";

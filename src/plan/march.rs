@@ -4,8 +4,8 @@ use toml::Value;
 
 use crate::base::cone::ConeRule;
 use crate::base::key::{
-    Fault, Kind, Place, Slot, auto, auto_count, auto_number, count_in, number, number_in, numbers,
-    word,
+    Fault, Kind, Slot, ValueSlot, auto, auto_count, auto_number, count_in, number, number_in,
+    numbers, word,
 };
 use crate::base::named::named_enum;
 use crate::plan::pyramid::{Level, levels};
@@ -124,7 +124,7 @@ const COARSEST: u32 = 16;
 settings! {
     /// How a picture is marched.
     pub struct Marching {
-        mode: Mode = Mode::Safe, word(&Mode::WORDS), "the method; benchmarks.md explains and compares the modes" => Program;
+        mode: Mode = Mode::Safe, word(&Mode::WORDS), "the method; benchmarks.md explains and compares the modes; proven needs scene.estimate = \"tight\" over a formula" => Program;
         coarsest: Option<u32> = None, divisor(),
             "side in pixels of the blocks of the first cone pass, 1 for no cones; auto is 16, or 1 for a formula in modes safe and proven where a ray alone needs less than 10 evaluations";
         detail: f64 = 1.0, number(1e-3, 1e3),
@@ -133,7 +133,7 @@ settings! {
             "share of the hit threshold by which steps keep away from the surface; more costs time and lowers the error";
         relaxation: Relaxation = Relaxation::Auto, relaxation(), "factor on the steps of rays; auto follows the change of the estimate from step to step, and off is 1";
         fudge: Vec<f64> = vec![1.0], numbers(6, 0.01, 1.0),
-            "factors on the width of the cones in mode calibrated, for each pass from coarse to fine; the last one repeats";
+            "factors on the width of the cones in mode calibrated, for each pass from coarse to fine; at most one for each pass, and the last one repeats";
         steps: Option<u32> = None, auto_count(1, 1_000_000),
             "step limit of each cone in a pass, and of each ray; auto is 256, and for rays over a heightfield as many as they can need";
         stride: Option<f64> = None, auto_number(1e-3, 1.0),
@@ -156,7 +156,7 @@ fn relaxation(at: &mut Relaxation) -> impl Slot {
         _ => number_in(value, 1.0, 1.99).map(Relaxation::Factor),
     };
     let expects = "\"off\", \"auto\" or a factor from 1 to 1.99";
-    Place::new(at, expects, write, read)
+    ValueSlot::new(at, expects, write, read)
 }
 
 /// A power of two, or `"auto"`.

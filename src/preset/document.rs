@@ -15,7 +15,7 @@ pub(crate) const TRACK_KEYS: [&str; 3] = ["key", "between", "keys"];
 
 /// Where an entry comes from.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Said {
+pub(crate) enum Origin {
     /// At a byte of the preset's text.
     File(usize),
     /// In an override, as it was given.
@@ -34,7 +34,7 @@ pub(crate) struct Entry {
     /// The value as it was written, shortened.
     pub shown: String,
     /// Where it comes from.
-    pub said: Said,
+    pub origin: Origin,
 }
 
 impl Entry {
@@ -91,7 +91,7 @@ impl Override {
             key: key.into(),
             value: read,
             shown: brief(value),
-            said: Said::Set(given(text)),
+            origin: Origin::Set(given(text)),
         }))
     }
 }
@@ -183,7 +183,7 @@ pub(crate) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError>
             key: key.get_ref().to_string(),
             value: read,
             shown,
-            said: Said::File(at),
+            origin: Origin::File(at),
         })
     };
     let mut entries = Vec::new();
@@ -199,7 +199,7 @@ pub(crate) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError>
                 let at = track.span().start;
                 let read = track_of(track.get_ref()).map_err(|why| content(at, why))?;
                 entries.push(Entry {
-                    said: Said::File(at),
+                    origin: Origin::File(at),
                     ..read
                 });
             }
@@ -215,9 +215,9 @@ pub(crate) fn parse(text: &str, origin: &str) -> Result<Vec<Entry>, PresetError>
             return Err(content(at, why));
         }
     }
-    entries.sort_by_key(|e| match e.said {
-        Said::File(at) => at,
-        Said::Set(_) => usize::MAX,
+    entries.sort_by_key(|e| match e.origin {
+        Origin::File(at) => at,
+        Origin::Set(_) => usize::MAX,
     });
     Ok(entries)
 }
@@ -249,7 +249,7 @@ fn track_of(track: &DeValue<'_>) -> Result<Entry, String> {
         key: key.into(),
         shown: shown.ok_or(form)?,
         value: Value::Table(rest),
-        said: Said::File(0),
+        origin: Origin::File(0),
     })
 }
 

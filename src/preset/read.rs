@@ -8,7 +8,7 @@ use crate::base::key::{Fault, Key, number_in};
 use crate::plan::Plan;
 use crate::plan::film::numbers_of;
 use crate::preset::document::{
-    Entry, Override, SECTIONS, Said, TRACK, brief, line_of, parse, unknown_section,
+    Entry, Origin, Override, SECTIONS, TRACK, brief, line_of, parse, unknown_section,
 };
 use crate::preset::error::PresetError;
 use crate::preset::keys::keys;
@@ -122,7 +122,7 @@ impl Source {
 
     fn plan(&self, entries: &[Entry]) -> Result<Plan, PresetError> {
         for entry in entries {
-            let is_track = entry.section == TRACK && matches!(entry.said, Said::File(_));
+            let is_track = entry.section == TRACK && matches!(entry.origin, Origin::File(_));
             let known = entry.section.is_empty() || SECTIONS.contains(&entry.section.as_str());
             if !known && !is_track {
                 return Err(self.at(entry, unknown_section(&entry.section)));
@@ -225,7 +225,7 @@ impl Source {
     fn fault(&self, plan: &Plan, entries: &[Entry], fault: Fault) -> PresetError {
         let said = entries.iter().rfind(|e| e.path() == fault.key);
         let what = match said {
-            Some(entry) if matches!(entry.said, Said::Set(_)) => {
+            Some(entry) if matches!(entry.origin, Origin::Set(_)) => {
                 return self.value(entry, &fault.why);
             }
             Some(entry) => format!("{} = {}", fault.key, entry.shown),
@@ -247,28 +247,28 @@ impl Source {
     }
 
     fn line(&self, entry: &Entry) -> Option<usize> {
-        match entry.said {
-            Said::File(at) => Some(line_of(&self.text, at)),
-            Said::Set(_) => None,
+        match entry.origin {
+            Origin::File(at) => Some(line_of(&self.text, at)),
+            Origin::Set(_) => None,
         }
     }
 
     /// An error about an entry's value.
     fn value(&self, entry: &Entry, why: &str) -> PresetError {
-        match entry.said {
-            Said::File(_) => {
+        match entry.origin {
+            Origin::File(_) => {
                 let what = format!("{} = {}", brief(&entry.path()), entry.shown);
                 self.at(entry, format!("{what}: {why}"))
             }
             // The text of the override names key and value.
-            Said::Set(_) => self.at(entry, why.into()),
+            Origin::Set(_) => self.at(entry, why.into()),
         }
     }
 
     fn at(&self, entry: &Entry, why: String) -> PresetError {
-        match &entry.said {
-            Said::File(_) => self.content(self.line(entry), why),
-            Said::Set(text) => PresetError::Override {
+        match &entry.origin {
+            Origin::File(_) => self.content(self.line(entry), why),
+            Origin::Set(text) => PresetError::Override {
                 overrides: text.clone(),
                 why,
             },
@@ -329,9 +329,9 @@ fn last<'e>(entries: &'e [Entry], key: &str) -> Option<&'e Entry> {
 /// The overrides in the section of a fault, or all overrides if it has none.
 fn overrides_to_blame(entries: &[Entry], path: &str) -> Vec<String> {
     let section = path.split_once('.').map_or("", |(section, _)| section);
-    let sets = entries.iter().filter_map(|e| match &e.said {
-        Said::Set(text) => Some((e.section.as_str(), text.clone())),
-        Said::File(_) => None,
+    let sets = entries.iter().filter_map(|e| match &e.origin {
+        Origin::Set(text) => Some((e.section.as_str(), text.clone())),
+        Origin::File(_) => None,
     });
     let (near, far): (Vec<_>, Vec<_>) = sets.partition(|(s, _)| *s == section);
     let blamed = if near.is_empty() { far } else { near };

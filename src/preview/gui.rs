@@ -22,7 +22,7 @@ const BAR: f32 = 10.0;
 #[derive(Default)]
 struct Asked {
     panel: panel::Asked,
-    timeline: timeline::Asked,
+    timeline: timeline::TimelineRequest,
     open: Option<&'static str>,
     restore: Option<bool>,
     /// Where panels are.

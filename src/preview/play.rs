@@ -9,14 +9,14 @@ const SAME: f64 = 1e-6;
 
 /// A key on the timeline.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct TimelineKey {
     /// The setting of its track, as `section.key`.
     pub of: String,
     /// Its time in beats.
     pub time: f64,
 }
 
-impl Place {
+impl TimelineKey {
     /// Its track, and its index there; `None` if it is gone.
     fn find<'a>(&self, plan: &'a mut Plan) -> Option<(&'a mut Track, usize)> {
         let track = plan.tracks.iter_mut().find(|track| track.of == self.of)?;
@@ -35,7 +35,7 @@ pub struct Play {
     /// The part that is played again and again; `None` for all of the film.
     pub range: Option<[f64; 2]>,
     /// The chosen key.
-    pub chosen: Option<Place>,
+    pub chosen: Option<TimelineKey>,
 }
 
 impl Play {
@@ -132,7 +132,7 @@ pub fn set_view(plan: &mut Plan, beat: f64) {
 
 /// Sets a key to the present value of its setting; a key of the camera to the present view.
 /// Returns whether the key is still there.
-pub fn overwrite(plan: &mut Plan, place: &Place) -> bool {
+pub fn overwrite(plan: &mut Plan, place: &TimelineKey) -> bool {
     if place.find(plan).is_none() {
         return false;
     }
@@ -144,7 +144,7 @@ pub fn overwrite(plan: &mut Plan, place: &Place) -> bool {
 
 /// Moves a key in time, or a copy of it. Keys of one track never share a time, so a key may stop
 /// beside another. Returns its new place.
-pub fn retime(plan: &mut Plan, place: &Place, to: f64, copy: bool) -> Place {
+pub fn retime(plan: &mut Plan, place: &TimelineKey, to: f64, copy: bool) -> TimelineKey {
     let to = to.clamp(0.0, plan.time.length);
     let Some((track, index)) = place.find(plan) else {
         return place.clone();
@@ -162,14 +162,14 @@ pub fn retime(plan: &mut Plan, place: &Place, to: f64, copy: bool) -> Place {
     };
     let at = track.keys.partition_point(|key| key.time < to);
     track.keys.insert(at, TrackKey { time: to, ..key });
-    Place {
+    TimelineKey {
         time: to,
         ..place.clone()
     }
 }
 
 /// Takes a key away, and a track that has no more.
-pub fn remove(plan: &mut Plan, place: &Place) {
+pub fn remove(plan: &mut Plan, place: &TimelineKey) {
     if let Some((track, index)) = place.find(plan) {
         track.keys.remove(index);
         plan.tracks.retain(|track| !track.keys.is_empty());
@@ -269,7 +269,7 @@ mod tests {
         plan.camera.eye = DVec3::ONE;
         assert_eq!(pose_at(&mut plan, 4.0), None);
         assert!(plan.camera.eye.distance(eye) < 1e-12);
-        let place = |of: &str, time| Place {
+        let place = |of: &str, time| TimelineKey {
             of: of.into(),
             time,
         };

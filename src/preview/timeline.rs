@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, CursorIcon, FontId, Pos2, Rect, ScrollArea, Sense, Stroke, Ui, Vec2};
 
 use crate::plan::Plan;
-use crate::preview::play::{Place, Play, retime};
+use crate::preview::play::{Play, TimelineKey, retime};
 use crate::time::track::Track;
 
 /// Height of a row and of the ruler, and width of the names, in points.
@@ -17,7 +17,7 @@ const MARK: f32 = 5.0;
 
 /// What the timeline asks for.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Asked {
+pub struct TimelineRequest {
     /// The plan with other keys.
     pub plan: Option<Plan>,
     /// Whether a key is dragged, so that all places until its end are one step.
@@ -60,8 +60,8 @@ fn step(length: f64) -> f64 {
 }
 
 /// Shows the timeline and edits it.
-pub fn show(ui: &mut Ui, plan: &Plan, play: &mut Play) -> Asked {
-    let mut asked = Asked::default();
+pub fn show(ui: &mut Ui, plan: &Plan, play: &mut Play) -> TimelineRequest {
+    let mut asked = TimelineRequest::default();
     let all = ui.available_rect_before_wrap();
     let scale = Scale {
         rect: Rect::from_min_max(
@@ -95,7 +95,7 @@ fn row(
     play: &mut Play,
     scale: &Scale,
     (track, middle): (&Track, f32),
-    asked: &mut Asked,
+    asked: &mut TimelineRequest,
 ) {
     ui.painter().text(
         Pos2::new(scale.rect.left() - NAMES + 4.0, middle),
@@ -107,7 +107,7 @@ fn row(
     let line = Stroke::new(1.0, Color32::from_gray(60));
     ui.painter().hline(scale.rect.x_range(), middle, line);
     for (index, key) in track.keys.iter().enumerate() {
-        let place = Place {
+        let place = TimelineKey {
             of: track.of.clone(),
             time: key.time,
         };
@@ -116,7 +116,7 @@ fn row(
 }
 
 /// Marks of beats, the played part, and where the moment is dragged.
-fn ruler(ui: &mut Ui, plan: &Plan, play: &mut Play, scale: &Scale, asked: &mut Asked) {
+fn ruler(ui: &mut Ui, plan: &Plan, play: &mut Play, scale: &Scale, asked: &mut TimelineRequest) {
     let rect = Rect::from_min_size(scale.rect.min, Vec2::new(scale.rect.width(), RULER));
     let response = ui.interact(rect, ui.scope_id().with("ruler"), Sense::click_and_drag());
     if let Some(at) = response.interact_pointer_pos() {
@@ -182,8 +182,8 @@ fn mark(
     plan: &Plan,
     play: &mut Play,
     scale: &Scale,
-    (place, index, y): (Place, usize, f32),
-    asked: &mut Asked,
+    (place, index, y): (TimelineKey, usize, f32),
+    asked: &mut TimelineRequest,
 ) {
     let center = Pos2::new(scale.x(place.time), y);
     let rect = Rect::from_center_size(center, Vec2::splat(2.0 * MARK + 4.0));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::base::last::{Last, is_last, last_or_new};
+use crate::base::one_value_cache::{OneValueCache, is_last, last_or_new};
 use crate::heightfield::assets::Assets as HeightfieldAssets;
 use crate::scene::sky::Sky;
 
@@ -12,7 +12,7 @@ use crate::scene::sky::Sky;
 pub struct Assets {
     /// Those of heightfields.
     pub heightfield: HeightfieldAssets,
-    skies: Last<PathBuf, Sky>,
+    skies: OneValueCache<PathBuf, Sky>,
 }
 
 impl Assets {

@@ -24,7 +24,7 @@ pub struct Hit {
 pub struct Surface {
     /// Unit normal.
     pub normal: DVec3,
-    /// Three numbers from 0 to 1 that pick a colour of the palette. In colored scenes
+    /// Three numbers from 0 to 1 that pick a colour of the palette. In coloured scenes
     /// ([`Solid::is_colored`]) it is a linear colour.
     pub pigment: DVec3,
 }

@@ -10,7 +10,7 @@ use crate::tools::tiny;
 const OPTIONS: &str = r#"
 --layer colour ; 2 ; --layer|possible values: color, depth
 --depth 12 ; 2 ; --depth|8, 16
---quality 0 ; 2 ; --quality|1..=100
+--quality 0 ; 2 ; --quality|must be a whole number from 1 to 100
 -o a.gif ; 2 ; `a.gif`|.png|.jpg|.webp|.exr
 -o a ; 2 ; `a`|.png|.exr
 -o a.exr --depth 16 ; 2 ; EXR|--depth
@@ -45,7 +45,6 @@ const OPTIONS: &str = r#"
 --size=5x0 ; 2 ; --size|like 1280x720
 --size=abc ; 2 ; --size|like 1280x720
 --samples 0 ; 2 ; --samples|must be a whole number from 1 to 65536
---quality 101 -o a.jpg ; 2 ; --quality|must be a whole number from 1 to 100
 --size=99999x1 ; 2 ; --size|like 1280x720
 --size=64 ; 2 ; --size|like 1280x720
 --size=-1x5 ; 2 ; --size|like 1280x720

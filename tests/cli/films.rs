@@ -149,7 +149,7 @@ fn values_between_two_keys_may_not_fit() {
     assert_eq!(fault.key, "scene.scale");
     let folder = Folder::new();
     folder.write("film.toml", text);
-    let begins = "frame 98: at beat 3.2666666666666666: scene.scale: the size";
+    let begins = "frame 98: at beat 3.2666666666666666: scene.scale: its absolute value";
     folder.fails("animate film.toml -o f-%03d.png --device cpu", 1, begins);
 }
 

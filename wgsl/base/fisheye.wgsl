@@ -1,5 +1,5 @@
 // The fisheye projection: the angle to the view axis is proportional to the distance from the
-// middle of the image (equidistant). Beyond 180 degrees there is nothing but the way straight back.
+// middle of the image (equidistant). Places beyond 180 degrees all look straight back.
 
 /// The direction through a point of the image, given in pixels from the upper left corner.
 fn view_direction(x: f32, y: f32) -> vec3<f32> {

@@ -1,7 +1,7 @@
 // How a surface reflects light: a diffuse base under a coat of tiny mirrors (GGX, with Smith's
 // correlated shadowing and Schlick's Fresnel term). Light that goes from mirror to mirror is given
 // back (Turquin, Practical multiple scattering compensation for microfacet models, 2019), and
-// the base gets what the coat lets through. So no light is lost but by the albedo.
+// the base gets what the coat lets through. So only the albedo absorbs light.
 //
 // Vectors are in the frame of the surface, whose normal is z.
 

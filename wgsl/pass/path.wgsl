@@ -1,6 +1,6 @@
 // Light by paths: rays to a point of the sun and of lamps, and a ray in a direction that the material
-// chooses, from surface to surface. The mean over the samples is the light that a picture without
-// such noise would have (Kajiya, The rendering equation, 1986).
+// chooses, from surface to surface. The mean over the samples tends to the true light (Kajiya, The
+// rendering equation, 1986).
 
 /// One of many paths says little of its pixel.
 const LIGHT_IS_FLAGGED = false;

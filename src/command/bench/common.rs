@@ -26,7 +26,7 @@ pub struct Common {
     /// Presets; all built-in ones if none is named
     #[arg(add = completions::presets())]
     names: Vec<PathBuf>,
-    /// Width and height in pixels, in place of the presets'
+    /// Width and height in pixels [default: those of the presets]
     #[arg(long, value_name = "WxH", value_parser = arguments::size)]
     size: Option<[u32; 2]>,
     /// auto, gpu, software, cpu, an index or a part of a name

@@ -24,7 +24,7 @@ use crate::command::sink::{ending, is_stdout};
 use crate::gpu::RenderError;
 use crate::measure::compare::compare;
 use crate::measure::flip::flip;
-use crate::measure::set::{self, SetSample, sharpness};
+use crate::measure::sharpness::{self, SetSample, sharpness};
 use crate::measure::truth::{Cache, Truth, cached};
 use crate::picture::frame::Frame;
 use crate::picture::{Layer, Shades};
@@ -71,7 +71,7 @@ pub fn run(args: &ErrorBench) -> Result<()> {
         let fitting: Vec<(&Setting, Plan)> = fitting.collect();
         let truths = truths(cache.as_ref(), &all.assets, subject, &fitting)?;
         let stride = truths[&truth_key(&subject.plan)].note.stride;
-        let set = set::sample(&subject.plan, &all.assets, stride)?;
+        let set = sharpness::sample(&subject.plan, &all.assets, stride)?;
         let references = (&truths, &set);
         let measured = measure(
             &mut all.executor,

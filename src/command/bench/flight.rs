@@ -81,7 +81,7 @@ struct Row {
 }
 
 /// Times the pictures of one preset.
-struct Flown<'a> {
+struct FlightRun<'a> {
     pictures: Pictures,
     progress: &'a mut Reporter,
     turns: Vec<f64>,
@@ -102,7 +102,7 @@ fn at(times: &[f64], share: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-impl Flown<'_> {
+impl FlightRun<'_> {
     /// Milliseconds until there is a picture of a plan: a full one, unless the plan moves.
     fn time(&mut self, plan: &Plan, moving: bool) -> Result<f64> {
         let began = Instant::now();
@@ -163,7 +163,7 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         ..Extras::default()
     };
     pictures.keep(colors, true);
-    let mut flown = Flown {
+    let mut flown = FlightRun {
         pictures,
         progress,
         turns: Vec::new(),

@@ -43,9 +43,10 @@ pub enum Bench {
     /// wide a cone above that place stays empty. A tracer finds where a ray hits the surface, mostly by
     /// means of a cone map.
     Cones(cones::ConesBench),
-    /// Propose faster values of scene.lipschitz, march.shell and march.fudge for mode calibrated
+    /// Propose values of scene.lipschitz, march.shell and march.fudge for mode calibrated
     ///
-    /// At most a given share of the pixels becomes wrong.
+    /// They get at most a given share of the pixels wrong. The command also says whether they are
+    /// faster than mode safe.
     Calibrate(calibrate::CalibrateBench),
     /// How quickly a preview answers, without its window
     #[cfg(feature = "preview")]

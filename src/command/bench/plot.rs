@@ -5,7 +5,7 @@
 //! colour. The line joins the settings that no other beats in both time and error: the Pareto front.
 //!
 //! Drawn by hand: the logarithmic axes of `plotters` have no ticks within a decade, where most
-//! measurements lie, and its dots cannot tell their names to a pointer.
+//! measurements lie, and its dots have no tooltips.
 
 use crate::command::bench::row::Row;
 

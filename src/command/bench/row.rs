@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::measure::compare::Report;
-use crate::measure::set::Sharpness;
+use crate::measure::sharpness::Sharpness;
 use crate::measure::truth::TruthNote;
 
 /// A measured setting. Shares are of all pixels, 0..1; errors in footprints.

@@ -1,16 +1,16 @@
-//! Values that take long to make, kept until their settings change.
+//! A cache of one value that takes long to make, kept until its key changes.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The last value that was made, with its key. Clones share it.
-pub type Last<K, V> = Arc<Mutex<Option<(K, Arc<V>)>>>;
+pub type OneValueCache<K, V> = Arc<Mutex<Option<(K, Arc<V>)>>>;
 
 /// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.
 ///
 /// # Errors
 /// Those of `make`.
 pub fn last_or_new<K: PartialEq, V, E>(
-    last: &Last<K, V>,
+    last: &OneValueCache<K, V>,
     key: K,
     make: impl FnOnce(&K) -> Result<V, E>,
 ) -> Result<Arc<V>, E> {
@@ -27,7 +27,7 @@ pub fn last_or_new<K: PartialEq, V, E>(
 }
 
 /// Whether the value of a key is kept. It does not wait for one that is being made.
-pub fn is_last<K: PartialEq, V>(last: &Last<K, V>, key: &K) -> bool {
+pub fn is_last<K: PartialEq, V>(last: &OneValueCache<K, V>, key: &K) -> bool {
     let last = last.try_lock();
     last.is_ok_and(|last| last.as_ref().is_some_and(|(of, _)| of == key))
 }
@@ -38,7 +38,7 @@ mod tests {
 
     #[test]
     fn a_value_is_made_once_and_again_when_its_key_changes() {
-        let last = Last::<u32, u32>::default();
+        let last = OneValueCache::<u32, u32>::default();
         let mut made = 0;
         for (key, times) in [(1, 1), (1, 1), (2, 2), (1, 3)] {
             let value = last_or_new(&last.clone(), key, |k| {

@@ -1,9 +1,9 @@
-//! How sharp a picture is: how far what it shows lies before the *set*, the shape itself
+//! How sharp a picture is: how far its visible surface lies in front of the *set*, the shape itself
 //! (docs/method.md, 5).
 //!
-//! A ray ends at the hit threshold, before the set. How far before it depends on the estimate: a
-//! slack one ends rays early. So pictures of different estimates are compared at equal real
-//! sharpness, not at equal thresholds.
+//! A ray ends at the hit threshold, in front of the set. How far in front depends on the estimate.
+//! With a slack estimate, rays end early. So pictures of different estimates are compared at equal
+//! sharpness, and not at equal thresholds.
 
 use serde::{Deserialize, Serialize};
 
