@@ -1,4 +1,4 @@
-// The stand-in of `base/counters.wgsl` where work is not counted.
+// The stand-in of `counters.wgsl` where work is not counted.
 
 fn count_evaluation() {}
 
