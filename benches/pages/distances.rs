@@ -37,6 +37,7 @@ const DEPTHS: Extras = Extras {
     shown: false,
     unread: false,
     reuse: false,
+    held: false,
 };
 const COUNTED: Extras = Extras {
     count: true,
