@@ -207,7 +207,7 @@ fn long_work_tells_its_progress_in_lines() {
             "rendering: cone map by walk, ",
             " s left of this step",
         ),
-        (error, "rendering the truth: round 1 of at most 5, ", " % "),
+        (error, "rendering the truth: round 1 of at most 5, ", " %"),
         (
             "conemap inspect fbm:8192x4096",
             "inspecting: heights, ",
