@@ -245,7 +245,7 @@ fn broken_twins(path: &str, text: &str) -> Vec<String> {
     vec![format!("{path}: of the twin {twin}, {fault}")]
 }
 
-/// Places that the changes of a page show, and that are not in their files.
+/// Places that the changes of a page show, and that are not in their files, or twice.
 fn lost_places(page: &str, file: impl Fn(&str) -> String) -> Vec<String> {
     let mut lost = Vec::new();
     for block in page.split("```diff\n").skip(1) {
@@ -253,10 +253,13 @@ fn lost_places(page: &str, file: impl Fn(&str) -> String) -> Vec<String> {
         let (path, parts) = change.split_once('\n').unwrap();
         let text = format!("\n{}", file(path));
         for part in parts.split("@@\n") {
-            let old = part.lines().filter_map(|l| l.strip_prefix([' ', '-']));
-            let place: String = old.map(|line| format!("\n{line}")).collect();
-            let is_there = text.matches(&format!("{place}\n")).count() == 1;
-            lost.extend((!is_there).then(|| format!("{path}: {place}")));
+            let [old, new] = [[' ', '-'], [' ', '+']].map(|signs| {
+                let lines = part.lines().filter_map(|line| line.strip_prefix(signs));
+                lines.map(|line| format!("\n{line}")).collect::<String>() + "\n"
+            });
+            // Who has followed the page has the new lines.
+            let is_there = text.matches(&old).count() == 1 || text.contains(&new);
+            lost.extend((!is_there).then(|| format!("{path}: {old}")));
         }
     }
     lost
@@ -265,7 +268,12 @@ fn lost_places(page: &str, file: impl Fn(&str) -> String) -> Vec<String> {
 #[test]
 fn what_the_page_on_extending_changes_is_there() {
     let change = "Add c:\n\n```diff\nsrc/x.rs\n a\n-b\n+c\n@@\n d\n```\n";
-    for (text, lost) in [("a\nb\ne\nd\n", 0), ("a\ne\nb\nd\n", 1), ("a\nbd\n", 2)] {
+    for (text, lost) in [
+        ("a\nb\ne\nd\n", 0),
+        ("a\nc\nd\n", 0),
+        ("a\ne\nb\nd\n", 1),
+        ("a\nbd\n", 2),
+    ] {
         let found = lost_places(change, |_| text.into());
         assert_eq!(found.len(), lost, "{text:?}: {found:?}");
     }

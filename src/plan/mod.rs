@@ -168,7 +168,7 @@ impl Plan {
         Some(keys)
     }
 
-    /// Checks that all settings fit together. No file is read: [`Assets::load`] does that.
+    /// Checks that all settings fit together. No file is read: [`Assets::load`](crate::scene::Assets::load) does that.
     ///
     /// # Errors
     /// The first value that does not fit, with a valid alternative.
