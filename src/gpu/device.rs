@@ -96,12 +96,7 @@ impl Device {
             let (name, why) = (name.clone(), words.join(" "));
             note(&slot, DeviceError::Reported { name, why });
         }));
-        let probe = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("probe"),
-            size: 4,
-            usage: wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let probe = probe(&device, wgpu::BufferUsages::COPY_DST);
         let timed = device.features().contains(Features::TIMESTAMP_QUERY);
         Self {
             tick_ns: timed.then(|| queue.get_timestamp_period()),
@@ -123,6 +118,15 @@ impl Device {
     fn is_gone(&self) -> bool {
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         self.queue.write_buffer(&self.probe, 0, &[0; 4]);
+        now(scope.pop()).flatten().is_some()
+    }
+
+    /// The same, once an error has come: it makes a buffer. A lost device makes invalid ones, and
+    /// only their use is an error.
+    fn makes_nothing(&self) -> bool {
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let buffer = probe(&self.device, wgpu::BufferUsages::MAP_READ);
+        buffer.map_async(wgpu::MapMode::Read, .., |_| {});
         now(scope.pop()).flatten().is_some()
     }
 
@@ -217,7 +221,9 @@ impl Device {
         let noted = slot.clone();
         drop(slot);
         Ok(match noted {
-            Some(DeviceError::Reported { why, .. }) if self.is_gone() => Some(self.note_loss(&why)),
+            Some(DeviceError::Reported { why, .. }) if self.is_gone() || self.makes_nothing() => {
+                Some(self.note_loss(&why))
+            }
             other => other,
         })
     }
@@ -231,6 +237,16 @@ pub(super) fn now<T>(future: impl Future<Output = T>) -> Option<T> {
         Poll::Ready(answer) => Some(answer),
         Poll::Pending => None,
     }
+}
+
+/// A buffer to ask a device with.
+fn probe(device: &wgpu::Device, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("probe"),
+        size: 4,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }
 
 /// Notes an error of a device. A loss replaces any other error; otherwise the first one stays.

@@ -4,10 +4,36 @@
 use glam::DVec3;
 
 use crate::base::outcome::State;
+use crate::base::shader::Module;
 use crate::base::view::Beam;
+use crate::pass::features;
 use crate::pass::look::Light;
+use crate::pass::turn::{background, until};
 use crate::pass::{fog, glow, layers, path, quick, shafts};
-use crate::scene::{Hit, Solid, Surface};
+use crate::plan::{Extras, Plan};
+use crate::scene::{AnySolid, Hit, Solid, Surface};
+use crate::wgsl;
+
+/// The entry point of the pass, and its own modules.
+pub(super) fn program(
+    plan: &Plan,
+    solid: &AnySolid,
+    extras: Extras,
+) -> (&'static str, Vec<Module>) {
+    let look = &plan.look;
+    let switch = |on: bool| f64::from(u8::from(on));
+    let mut all = vec![until(plan), background(plan, extras)];
+    all.extend([wgsl!("pass/look.wgsl"), features::sky(look)]);
+    all.extend(layers::modules(&look.layers, solid));
+    all.extend(features::modules(look));
+    all.push(wgsl!(
+        "pass/color.wgsl",
+        "COLOR_KEEPS_NORMALS" = switch(extras.normals || plan.has_variance(extras)),
+        "COLOR_KEEPS_VARIANCE" = switch(plan.has_variance(extras)),
+        "COLOR_IS_PIGMENT" = switch(solid.is_colored())
+    ));
+    ("color", all)
+}
 
 /// A pixel's colour.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,8 +3,15 @@
 //! Twin: `wgsl/pass/march.wgsl`.
 
 use crate::base::outcome::Counts;
+use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::scene::{Advance, Solid};
+use crate::wgsl;
+
+/// The entry point of the pass, and its own modules.
+pub(super) fn program() -> (&'static str, Vec<Module>) {
+    ("march", vec![wgsl!("pass/march.wgsl")])
+}
 
 /// Why a cone ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

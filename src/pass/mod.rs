@@ -13,7 +13,8 @@
 //! - [`features`]: the parts of a look that can be absent
 //! - [`progress`]: how far a render has come; `explain`: its programs, without a GPU
 //!
-//! Each pass declares its program ([`program`]), and [`layout`] where its results are.
+//! Each pass declares its program in its own file, and its bindings in WGSL, where kernels read them.
+//! [`layout`] says which cells a stage visits, and where its results are.
 
 pub mod color;
 pub mod emission;
@@ -61,29 +62,12 @@ pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Pro
         true => wgsl!("pass/counters.wgsl"),
         false => wgsl!("pass/counters_off.wgsl"),
     });
-    let entry = match pass {
-        Pass::Color => {
-            modules.extend([turn::until(plan), turn::background(plan, extras)]);
-            modules.extend([wgsl!("pass/look.wgsl"), features::sky(&plan.look)]);
-            modules.extend(layers::modules(&plan.look.layers, solid));
-            modules.extend(features::modules(&plan.look));
-            modules.push(wgsl!(
-                "pass/color.wgsl",
-                "COLOR_KEEPS_NORMALS" =
-                    f64::from(u8::from(extras.normals || plan.has_variance(extras))),
-                "COLOR_KEEPS_VARIANCE" = f64::from(u8::from(plan.has_variance(extras))),
-                "COLOR_IS_PIGMENT" = f64::from(u8::from(solid.is_colored()))
-            ));
-            "color"
-        }
-        Pass::Trace => {
-            modules.extend([turn::until(plan), wgsl!("pass/trace.wgsl")]);
-            "trace"
-        }
-        Pass::March(_) | Pass::Prepare(_) => {
-            modules.push(wgsl!("pass/march.wgsl"));
-            "march"
-        }
+    let (entry, own) = match pass {
+        Pass::Color => color::program(plan, solid, extras),
+        Pass::Trace => trace::program(plan),
+        // A generator makes a map by programs of its own, before the cones that need it.
+        Pass::March(_) | Pass::Prepare(_) => march::program(),
     };
+    modules.extend(own);
     Program::new(entry, modules)
 }

@@ -2,8 +2,17 @@
 //! Twin: `wgsl/pass/trace.wgsl`.
 
 use crate::base::outcome::{Counts, State};
+use crate::base::shader::Module;
 use crate::base::view::Beam;
+use crate::pass::turn::until;
+use crate::plan::Plan;
 use crate::scene::{Hit, Solid, Step};
+use crate::wgsl;
+
+/// The entry point of the pass, and its own modules.
+pub(super) fn program(plan: &Plan) -> (&'static str, Vec<Module>) {
+    ("trace", vec![until(plan), wgsl!("pass/trace.wgsl")])
+}
 
 /// Follows one ray from a proven front by at most `limit` steps.
 pub fn trace<S: Solid>(

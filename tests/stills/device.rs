@@ -84,7 +84,8 @@ fn a_render_stops_on_request_after_any_pass() {
         });
         assert!(matches!(result, Err(RenderError::Cancelled)), "{stop_at}");
         assert_eq!(done.len(), stop_at);
-        assert!(done.is_sorted() && done.iter().all(|d| (0.0..=1.0).contains(d)));
+        let fits = done.is_sorted() && done.iter().all(|d| (0.0..=1.0).contains(d));
+        assert!(fits, "{done:?}");
     }
     // It has lost nothing by that.
     let mut last = 0.0;

@@ -228,11 +228,17 @@ impl Work {
             let answer = inputs.wait();
             self.answered(answer)?;
         }
-        let mut told = 0;
+        let (mut told, mut most) = (0, 0.0_f64);
+        // A pass that has ended is told of after the progress beyond it.
+        let mut tell = |mut now: Progress| {
+            most = most.max(now.done);
+            now.done = most;
+            watch(&now)
+        };
         loop {
             self.advance(SUBMISSION_MS)?;
             // Software Vulkan runs a submission before it returns: ask before the next one.
-            if !watch(&self.progress()) {
+            if !tell(self.progress()) {
                 return Err(RenderError::Cancelled);
             }
             if let Some(run) = &mut self.run {
@@ -243,7 +249,7 @@ impl Work {
                 return Err(RenderError::Cancelled);
             };
             for progress in run.news(told) {
-                if !watch(&progress) {
+                if !tell(progress) {
                     return Err(RenderError::Cancelled);
                 }
                 self.shared.device.check()?;
