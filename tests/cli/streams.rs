@@ -198,8 +198,8 @@ fn long_work_tells_its_progress_in_lines() {
     let error = "render mandelbox --device cpu --size 800x600 --layer error";
     let steps = "bench steps bench-far terrain --mode truth --device cpu --size 3000x3000";
     let convert = "conemap convert map.png --from dummer -o m.exr";
-    let (rgba, zeros) = (ColorType::Rgba, vec![0; 1 << 27]);
-    let map = png([8192, 4096], rgba, BitDepth::Eight, &zeros);
+    let (rgba, zeros) = (ColorType::Rgba, vec![0; 1 << 28]);
+    let map = png([8192, 8192], rgba, BitDepth::Eight, &zeros);
     for (args, says, part) in [
         (format!("{LONG} -o a.png").as_str(), "rendering: ", " % ("),
         (
