@@ -298,7 +298,13 @@ impl Screen {
         };
         self.draw(&frame, view, over);
         window.pre_present_notify();
+        let image = frame.texture.clone();
         device.queue.present(frame);
+        if device.check().is_err() {
+            // wgpu does not present the image of a lost device, and it would panic when the surface
+            // is dropped with that image.
+            image.destroy();
+        }
         if worn {
             self.configure();
         }
