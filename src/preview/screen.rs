@@ -137,12 +137,6 @@ impl Screen {
         })
     }
 
-    /// The surface alone. It is to be dropped after all that knows its device: a submission that
-    /// failed may still hold an image of it, and wgpu would panic.
-    pub fn into_surface(self) -> wgpu::Surface<'static> {
-        self.surface
-    }
-
     /// The device that draws.
     pub fn device(&self) -> &Arc<Device> {
         &self.device

@@ -30,7 +30,7 @@ impl Live {
         if self.losses > MOST_LOSSES {
             return Err(lost.into());
         }
-        let old = self.stage.reopen()?;
+        self.stage.reopen()?;
         let mut pictures = Pictures::new(self.stage.screen.device().clone());
         pictures.assets = self.pictures.assets.clone();
         self.pictures = pictures;
@@ -65,8 +65,6 @@ impl Live {
                 Err(why) => self.tell(why, true),
             }
         }
-        // Now nothing else knows the old device.
-        drop(old);
         Ok(())
     }
 

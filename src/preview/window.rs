@@ -147,15 +147,16 @@ impl Stage {
         })
     }
 
-    /// Opens the device again after a loss. Returns the old surface.
+    /// Opens the device again after a loss, with another surface.
     ///
     /// # Errors
     /// It does not open.
-    pub fn reopen(&mut self) -> Result<Surface<'static>, PreviewError> {
+    pub fn reopen(&mut self) -> Result<(), PreviewError> {
         let surface = surface_of(self.adapters.instance(), &self.window)?;
         let device = Device::open(&self.adapter)?;
         let screen = Screen::new(surface, device, &self.adapter, size_of(&self.window))?;
-        Ok(std::mem::replace(&mut self.screen, screen).into_surface())
+        self.screen = screen;
+        Ok(())
     }
 }
 
