@@ -12,7 +12,7 @@ mod common {
     pub mod files;
 }
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use common::files::files_below;
@@ -102,6 +102,103 @@ fn upward_paths(path: &str, text: &str) -> Vec<String> {
     upward
         .map(|name| format!("{path}: `{room}` must not name `{name}`"))
         .collect()
+}
+
+/// The name that a line of WGSL defines for all modules.
+fn defined_name(line: &str) -> Option<&str> {
+    // After its attributes.
+    let line = line
+        .rsplit_once(") ")
+        .filter(|_| line.starts_with('@'))
+        .map_or(line, |l| l.1);
+    let (kind, rest) = line.split_once([' ', '<'])?;
+    let rest = rest
+        .split_once("> ")
+        .filter(|_| kind == "var")
+        .map_or(rest, |r| r.1);
+    let is_kind = ["fn", "struct", "const", "override", "alias", "var"].contains(&kind);
+    is_kind.then(|| rest.split(|c: char| !is_word(c)).next())?
+}
+
+fn is_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// The words of a WGSL text that are neither fields nor local variables.
+fn used_names(text: &str) -> BTreeSet<&str> {
+    let (mut used, mut locals) = (BTreeSet::new(), BTreeSet::new());
+    let mut rest = text;
+    while let Some(start) = rest.find(is_word) {
+        let before = text[..text.len() - rest.len() + start].trim_end();
+        let word = rest[start..].split(|c: char| !is_word(c)).next().unwrap();
+        rest = &rest[start + word.len()..];
+        if before.ends_with('.') {
+            continue;
+        }
+        let is_new = before.ends_with("let") || before.ends_with("var");
+        match is_new || rest.trim_start().starts_with(':') {
+            true => locals.insert(word),
+            false => used.insert(word),
+        };
+    }
+    used.difference(&locals).copied().collect()
+}
+
+/// Names in the WGSL files of a room that only rooms define which are not below it.
+fn upward_names(files: &[(String, String)]) -> Vec<String> {
+    let room = |path: &str| path.split('/').nth(1).unwrap().to_string();
+    let texts: Vec<_> = files
+        .iter()
+        .map(|(path, text)| (path, room(path), code(text)))
+        .collect();
+    let mut definers: BTreeMap<&str, BTreeSet<&String>> = BTreeMap::new();
+    for (_, room, text) in &texts {
+        for name in text.lines().filter_map(defined_name) {
+            definers.entry(name).or_default().insert(room);
+        }
+    }
+    let mut found = Vec::new();
+    for (path, own, text) in &texts {
+        let is_below = |other: &&String| *other == own || floor(other) < floor(own);
+        let is_upward = |name: &&str| {
+            let rooms = definers.get(name);
+            rooms.is_some_and(|rooms| !rooms.iter().any(is_below))
+        };
+        let names = used_names(text).into_iter().filter(is_upward);
+        found.extend(names.map(|name| format!("{path}: {name}")));
+    }
+    found
+}
+
+#[test]
+fn shaders_name_only_what_is_below() {
+    let files = [
+        (
+            "wgsl/base/a.wgsl",
+            "var<private> a: u32 = 0u;\nfn b(p: u32) {}\nconst P = 1u;",
+        ),
+        (
+            "wgsl/scene/b.wgsl",
+            "@group(0) @binding(1) var<storage, read> s: u32;\nstruct T { x: f32 }\nfn d() {}",
+        ),
+        (
+            "wgsl/formula/c.wgsl",
+            "fn c(d: u32) { b(a); e(d.s); }\nfn f() -> T { return s; }",
+        ),
+        (
+            "wgsl/formula/d.wgsl",
+            "// d\nfn e(x: u32) {\n    let s = x;\n    d(s);\n}",
+        ),
+    ];
+    let files = files.map(|(path, text)| (path.to_string(), text.to_string()));
+    let found = [
+        "wgsl/formula/c.wgsl: T",
+        "wgsl/formula/c.wgsl: s",
+        "wgsl/formula/d.wgsl: d",
+    ];
+    assert_eq!(upward_names(&files), found);
+    let found = upward_names(&files_below("wgsl"));
+    assert!(found.is_empty(), "violations:\n{}", found.join("\n"));
 }
 
 /// The item that `#[cfg(feature = "cli")]` stands before, and what is left of a text without it.

@@ -1,4 +1,8 @@
-//! The result of a step, the state of a pixel, and counters of work.
+//! The result of a step, the state of a pixel, where a ray met the scene, and counters of work.
+//! Twin: `wgsl/base/outcome.wgsl`.
+
+use crate::base::shader::Module;
+use crate::wgsl;
 
 /// A cone between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +60,17 @@ impl State {
     }
 }
 
+/// Where a ray met the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray.
+    pub t: f64,
+    /// The part that was met: a face or a cell.
+    pub id: u32,
+    /// The place on it.
+    pub uv: [f64; 2],
+}
+
 /// The work of one cell or pixel, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -63,4 +78,13 @@ pub struct Counts {
     pub evaluations: u32,
     /// Iterations of the formula in these evaluations.
     pub iterations: u32,
+}
+
+/// The modules of outcomes, with counters that count or with those that do not.
+pub fn modules(counted: bool) -> [Module; 2] {
+    let counters = match counted {
+        true => wgsl!("base/counters.wgsl"),
+        false => wgsl!("base/counters_off.wgsl"),
+    };
+    [wgsl!("base/outcome.wgsl"), counters]
 }

@@ -16,6 +16,7 @@ use crate::base::{shader::Module, srgb::linear};
 use crate::heightfield::heights::brought_in;
 use crate::heightfield::{HeightSurface, Patches};
 use crate::raster::open::{check_size, open};
+use crate::raster::texels::between;
 use crate::wgsl;
 
 /// A picture over a height surface.
@@ -67,18 +68,12 @@ impl Texture {
             let share = (f64::from(own[a]) + uv[a] + middle) / f64::from(n);
             share * f64::from(self.size[a]) - 0.5
         };
-        let (x, y) = (place(0), place(1));
-        let (fx, fy) = (x - x.floor(), y - y.floor());
-        let index = |a: usize, i: f64, step: i64| {
-            brought_in(i.floor() as i64 + step, self.size[a], heights.wrap()[a]) as usize
-        };
-        let texel = |dx: i64, dy: i64| {
-            let (column, row) = (index(0, x, dx), index(1, y, dy));
+        let index = |a: usize, i: i64| brought_in(i, self.size[a], heights.wrap()[a]) as usize;
+        between(place(0), place(1), |column, row| {
+            let (column, row) = (index(0, column), index(1, row));
             let [r, g, b] = self.texels[row * self.size[0] as usize + column].map(f64::from);
             linear(DVec3::new(r, g, b) / 255.0)
-        };
-        let low = texel(0, 0).lerp(texel(1, 0), fx);
-        low.lerp(texel(0, 1).lerp(texel(1, 1), fx), fy)
+        })
     }
 
     /// The WGSL module.

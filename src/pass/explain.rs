@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use super::program;
 use crate::base::shader::Program;
-use crate::heightfield::conemap::generate::task::program_of;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::Assets;
@@ -33,10 +32,7 @@ pub fn explain(plan: &Plan, assets: &Assets, extras: Extras) -> Result<String, P
         };
         let [w, h] = pass.cells(plan.pixels().size);
         let _ = writeln!(text, "  {:<12} {w:>6} x {h:<6} steps {limit}", pass.name());
-        let program = match pass {
-            Pass::Prepare(map) => program_of(map.generator),
-            _ => program(plan, &solid, pass, extras),
-        };
+        let program = program(plan, &solid, pass, extras);
         if !programs.contains(&program) {
             programs.push(program);
         }

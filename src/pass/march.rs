@@ -10,7 +10,10 @@ use crate::wgsl;
 
 /// The entry point of the pass, and its own modules.
 pub(super) fn program() -> (&'static str, Vec<Module>) {
-    ("march", vec![wgsl!("pass/march.wgsl")])
+    (
+        "march",
+        vec![wgsl!("pass/tally.wgsl"), wgsl!("pass/march.wgsl")],
+    )
 }
 
 /// Why a cone ended.

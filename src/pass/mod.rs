@@ -45,29 +45,28 @@ pub mod turn;
 pub mod until;
 pub mod variance;
 
+use crate::base::outcome;
 use crate::base::shader::Program;
+use crate::heightfield::conemap::generate::task::program_of;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::AnySolid;
 use crate::wgsl;
 pub use explain::explain;
 pub use features::LookFeature;
 
-/// The program of a pass over cells or pixels.
+/// The program of a pass.
 pub fn program(plan: &Plan, solid: &AnySolid, pass: Pass, extras: Extras) -> Program {
+    let (entry, own) = match pass {
+        Pass::Prepare(map) => return program_of(map.generator),
+        Pass::March(_) => march::program(),
+        Pass::Trace => trace::program(plan),
+        Pass::Color => color::program(plan, solid, extras),
+    };
     let mut modules = solid.twin().modules();
     modules.extend(plan.view().modules());
-    modules.push(wgsl!("pass/shared.wgsl"));
+    modules.extend(outcome::modules(extras.count && pass.marches()));
+    modules.extend([wgsl!("scene/contract.wgsl"), wgsl!("pass/shared.wgsl")]);
     modules.extend(turn::modules());
-    modules.push(match extras.count && pass.marches() {
-        true => wgsl!("pass/counters.wgsl"),
-        false => wgsl!("pass/counters_off.wgsl"),
-    });
-    let (entry, own) = match pass {
-        Pass::Color => color::program(plan, solid, extras),
-        Pass::Trace => trace::program(plan),
-        // A generator makes a map by programs of its own, before the cones that need it.
-        Pass::March(_) | Pass::Prepare(_) => march::program(),
-    };
     modules.extend(own);
     Program::new(entry, modules)
 }

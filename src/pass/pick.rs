@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
-use crate::base::outcome::State;
+use crate::base::outcome::{self, State};
 use crate::base::shader::Program;
 use crate::base::view::View;
 use crate::scene::AnySolid;
@@ -103,10 +103,7 @@ impl PickAnswer {
 pub fn program(view: &View, scene: &AnySolid) -> Program {
     let mut modules = scene.twin().modules();
     modules.extend(view.modules());
-    modules.extend([
-        wgsl!("pass/shared.wgsl"),
-        wgsl!("pass/counters_off.wgsl"),
-        wgsl!("pass/pick.wgsl"),
-    ]);
+    modules.extend(outcome::modules(false));
+    modules.extend([wgsl!("scene/contract.wgsl"), wgsl!("pass/pick.wgsl")]);
     Program::new("pick", modules)
 }

@@ -11,7 +11,12 @@ use crate::wgsl;
 
 /// The entry point of the pass, and its own modules.
 pub(super) fn program(plan: &Plan) -> (&'static str, Vec<Module>) {
-    ("trace", vec![until(plan), wgsl!("pass/trace.wgsl")])
+    let own = [
+        wgsl!("pass/tally.wgsl"),
+        until(plan),
+        wgsl!("pass/trace.wgsl"),
+    ];
+    ("trace", own.into())
 }
 
 /// Follows one ray from a proven front by at most `limit` steps.

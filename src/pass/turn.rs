@@ -198,7 +198,7 @@ impl StageKind {
     /// The program of the stage.
     pub fn program(self, plan: &Plan, solid: &AnySolid, extras: Extras) -> Program {
         let over_cells = |entry, own: &[Module]| {
-            let mut all = vec![wgsl!("pass/shared.wgsl")];
+            let mut all = vec![wgsl!("base/outcome.wgsl"), wgsl!("pass/shared.wgsl")];
             all.extend(modules());
             all.extend_from_slice(own);
             Program::new(entry, all)

@@ -16,12 +16,12 @@ use crate::preset::{self, SECTIONS};
 use crate::preview::document::{Document, unused};
 use crate::preview::error::PreviewError;
 use crate::preview::flight::{focus, look, orbit};
-use crate::preview::ground;
 use crate::preview::gui::is_in;
 use crate::preview::input::{Action, Drag, action};
 use crate::preview::keep;
 use crate::preview::live::{Live, quoted};
 use crate::preview::play::{set_view, with_still};
+use crate::preview::probe;
 use crate::preview::still::Still;
 use crate::preview::views::Shot;
 
@@ -314,7 +314,7 @@ impl Live {
         match button {
             MouseButton::Left if self.modifiers.state().alt_key() => self.ask(plan),
             MouseButton::Left => {
-                let met = ground::met(&plan, self.assets(), self.pixel());
+                let met = probe::pixel(&plan, self.assets(), self.pixel());
                 let hit = met.filter(|met| met.state == State::Hit);
                 let point = hit.map_or(plan.camera.target, |met| met.point);
                 let now = Instant::now();

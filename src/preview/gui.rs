@@ -20,8 +20,8 @@ const BAR: f32 = 10.0;
 
 /// What the user asked for in one painting.
 #[derive(Default)]
-struct Asked {
-    panel: panel::Asked,
+struct Requests {
+    panel: panel::PanelRequest,
     timeline: timeline::TimelineRequest,
     open: Option<&'static str>,
     restore: Option<bool>,
@@ -37,7 +37,7 @@ impl Live {
             return;
         }
         let input = self.gui.take_egui_input(&self.stage.window);
-        let mut asked = Asked::default();
+        let mut asked = Requests::default();
         let ctx = self.ctx.clone();
         let output = ctx.run_ui(input, |ui| self.lay_out(ui, &mut asked));
         self.gui
@@ -58,7 +58,7 @@ impl Live {
         self.answer(asked);
     }
 
-    fn lay_out(&mut self, ui: &mut Ui, asked: &mut Asked) {
+    fn lay_out(&mut self, ui: &mut Ui, asked: &mut Requests) {
         let ctx = ui.ctx().clone();
         let plan = self.document.plan.clone();
         if self.visible.panel {
@@ -121,7 +121,7 @@ impl Live {
     }
 
     /// The preset, and how one flies.
-    fn head(&mut self, ui: &mut Ui, asked: &mut Asked) {
+    fn head(&mut self, ui: &mut Ui, asked: &mut Requests) {
         ui.add_space(4.0);
         ui.horizontal(|ui| {
             let mark = if self.document.is_changed() { " *" } else { "" };
@@ -156,7 +156,7 @@ impl Live {
         ui.separator();
     }
 
-    fn answer(&mut self, asked: Asked) {
+    fn answer(&mut self, asked: Requests) {
         self.panel_drag = asked.panel.dragging || asked.timeline.dragging;
         if let Some(name) = asked.open {
             self.open(name);

@@ -14,11 +14,11 @@ use crate::plan::{Extras, Plan};
 use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
 use crate::preview::flight::Flight;
-use crate::preview::ground;
 use crate::preview::input::{Drag, thrust};
 use crate::preview::meter::{Figures, Meter};
 use crate::preview::pictures::Pictures;
 use crate::preview::play::Play;
+use crate::preview::probe;
 use crate::preview::question::Question;
 use crate::preview::reload::{Watched, files_in, sources};
 use crate::preview::screen::Shown;
@@ -298,7 +298,7 @@ impl Live {
         let plan = self.shown();
         // Heights that are still made leave nothing to hit.
         let far = plan.camera.eye.distance(plan.camera.target);
-        let clearance = ground::clearance(&plan, self.assets()).unwrap_or(far);
+        let clearance = probe::clearance(&plan, self.assets()).unwrap_or(far);
         self.document.begin();
         let camera = &mut self.document.plan.camera;
         self.flight.step(camera, &thrust, clearance, seconds);

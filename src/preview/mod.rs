@@ -8,7 +8,7 @@
 //! - `input`: what keys and drags mean
 //! - [`document`]: the plan that is edited, its history and its file; `keep`: unsaved work;
 //!   `reload`: files that change
-//! - [`flight`]: how the camera moves; [`ground`]: what the CPU can tell about the scene at once;
+//! - [`flight`]: how the camera moves; [`probe`]: what the CPU can tell about the scene at once;
 //!   `question`: what there is at a pixel
 //! - [`pictures`], each a `picture`: small ones at once, full ones at rest; `still`: one for a file;
 //!   `views`: what of them is shown; `screen`: the window's surface, [`draw`]: its
@@ -23,7 +23,6 @@ pub mod draw;
 pub mod error;
 mod film;
 pub mod flight;
-pub mod ground;
 mod gui;
 mod input;
 mod keep;
@@ -34,6 +33,7 @@ mod panel;
 mod picture;
 pub mod pictures;
 pub mod play;
+pub mod probe;
 mod question;
 mod reload;
 mod screen;

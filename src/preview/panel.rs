@@ -19,7 +19,7 @@ const NUMBER_WIDTH: f32 = 48.0;
 
 /// What the panel asks for.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Asked {
+pub struct PanelRequest {
     /// A new value for a key, as `section` and `name`.
     pub set: Option<(&'static str, &'static str, Value)>,
     /// The setting, as `section.key`, that gets a key of the timeline.
@@ -29,8 +29,8 @@ pub struct Asked {
 }
 
 /// Shows all keys.
-pub fn show(ui: &mut Ui, plan: &Plan, defaults: &Plan) -> Asked {
-    let mut asked = Asked::default();
+pub fn show(ui: &mut Ui, plan: &Plan, defaults: &Plan) -> PanelRequest {
+    let mut asked = PanelRequest::default();
     let (mut plan, mut defaults) = (plan.clone(), defaults.clone());
     for section in SECTIONS {
         let open = matches!(section, "scene" | "look");
@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, plan: &Plan, defaults: &Plan) -> Asked {
 }
 
 /// One key: its name, its value and, if it is not the default, a button to reset it.
-fn row(ui: &mut Ui, section: &'static str, key: &Key<'_>, usual: &Value, asked: &mut Asked) {
+fn row(ui: &mut Ui, section: &'static str, key: &Key<'_>, usual: &Value, asked: &mut PanelRequest) {
     let now = key.slot.get();
     let help = format!("{}\n\n{}\n{}", key.help, key.slot.expects(), cost(key.redo));
     ui.horizontal(|ui| {
@@ -102,7 +102,7 @@ fn is_wide([low, high]: [f64; 2]) -> bool {
     low >= 0.0 && high / low.max(high * 1e-4) >= 100.0
 }
 
-fn noted(response: &Response, asked: &mut Asked) -> bool {
+fn noted(response: &Response, asked: &mut PanelRequest) -> bool {
     asked.dragging |= response.dragged();
     response.changed()
 }
@@ -113,7 +113,7 @@ fn editor(
     id: (&str, &str),
     kind: &Kind,
     now: &Value,
-    asked: &mut Asked,
+    asked: &mut PanelRequest,
 ) -> Option<Value> {
     match kind {
         Kind::Number(range) => number(ui, *range, now.as_float()?, asked).map(Value::Float),
@@ -138,7 +138,7 @@ fn editor(
     }
 }
 
-fn number(ui: &mut Ui, range: [f64; 2], now: f64, asked: &mut Asked) -> Option<f64> {
+fn number(ui: &mut Ui, range: [f64; 2], now: f64, asked: &mut PanelRequest) -> Option<f64> {
     let [low, high] = range;
     let mut x = now;
     // A slider over a very large range has no useful places; such numbers are dragged.
@@ -211,7 +211,7 @@ fn is_color(range: [f64; 2]) -> bool {
     range == [0.0, 1.0]
 }
 
-fn triple(ui: &mut Ui, range: [f64; 2], now: &Value, asked: &mut Asked) -> Option<Value> {
+fn triple(ui: &mut Ui, range: [f64; 2], now: &Value, asked: &mut PanelRequest) -> Option<Value> {
     let mut three = floats(now)?;
     let changed = match is_color(range) {
         true => color(ui, &mut three, asked),
@@ -230,7 +230,7 @@ fn triple(ui: &mut Ui, range: [f64; 2], now: &Value, asked: &mut Asked) -> Optio
     changed.then(|| three.to_vec().into())
 }
 
-fn color(ui: &mut Ui, three: &mut [f64; 3], asked: &mut Asked) -> bool {
+fn color(ui: &mut Ui, three: &mut [f64; 3], asked: &mut PanelRequest) -> bool {
     let mut rgb = three.map(|x| x as f32);
     let mut bytes = rgb.map(|x| (255.0 * x).round() as u8);
     let response = ui.color_edit_button_srgb(&mut bytes);
@@ -248,7 +248,7 @@ fn triples(
     most: usize,
     range: [f64; 2],
     now: &Value,
-    asked: &mut Asked,
+    asked: &mut PanelRequest,
 ) -> Option<Value> {
     let mut all: Vec<[f64; 3]> = now.as_array()?.iter().filter_map(floats).collect();
     let mut changed = false;
@@ -275,7 +275,7 @@ fn auto(
     id: (&str, &str),
     kind: &Kind,
     now: &Value,
-    asked: &mut Asked,
+    asked: &mut PanelRequest,
 ) -> Option<Value> {
     let is_auto = now.as_str() == Some("auto");
     if *kind == Kind::Other {

@@ -6,8 +6,8 @@ use crate::gpu::pick::Pick;
 use crate::measure::truth;
 use crate::pass::pick::{At, Picked};
 use crate::plan::Plan;
-use crate::preview::ground::{self, Met};
 use crate::preview::live::Live;
+use crate::preview::probe::{self, Probed};
 
 /// A question to the device, and what the CPU knows already.
 pub struct Question {
@@ -16,7 +16,7 @@ pub struct Question {
     pixel: [u32; 2],
     /// Evaluations of a ray in f64.
     evaluations: u32,
-    truth: Met,
+    truth: Probed,
 }
 
 impl Question {
@@ -46,9 +46,9 @@ impl Live {
     /// Asks what there is at the pixel under the cursor.
     pub fn ask(&mut self, plan: Plan) {
         let pixel = self.pixel();
-        let met = ground::met(&plan, self.assets(), pixel);
-        let truth = ground::met(&truth::asked(&plan), self.assets(), pixel);
-        let (Some(met), Some(truth)) = (met, truth) else {
+        let found = probe::pixel(&plan, self.assets(), pixel);
+        let truth = probe::pixel(&truth::asked(&plan), self.assets(), pixel);
+        let (Some(found), Some(truth)) = (found, truth) else {
             self.tell("the scene is not ready yet", false);
             return;
         };
@@ -62,7 +62,7 @@ impl Live {
                     pick,
                     plan,
                     pixel,
-                    evaluations: met.evaluations,
+                    evaluations: found.evaluations,
                     truth,
                 });
             }

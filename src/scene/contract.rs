@@ -1,23 +1,13 @@
 //! What passes ask a scene. They know nothing else about it.
+//! Twin: `wgsl/scene/contract.wgsl`.
 
 use glam::DVec3;
 
 use crate::base::array::SceneArray;
 use crate::base::outcome::Counts;
-pub use crate::base::outcome::{Advance, Step};
+pub use crate::base::outcome::{Advance, Hit, Step};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
-
-/// Where a ray met the scene.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Hit {
-    /// Distance along the ray.
-    pub t: f64,
-    /// The part that was met: a face or a cell.
-    pub id: u32,
-    /// The place on it.
-    pub uv: [f64; 2],
-}
 
 /// What the colour pass needs to know about a hit.
 #[derive(Clone, Copy, Debug, PartialEq)]

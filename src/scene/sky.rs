@@ -13,7 +13,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use crate::base::array::SceneArray;
-use crate::raster::hdr;
+use crate::raster::{hdr, texels::between};
 
 /// Cells about the up axis and along it. A cell is as wide as the sun.
 const SKY_CELLS: [u32; 2] = [512, 256];
@@ -144,14 +144,11 @@ impl Sky {
         let [w, h] = self.size.map(f64::from);
         let down = own.truncate().length().atan2(own.z) / PI;
         let (x, y) = (turns(own) * w - 0.5, down * h - 0.5);
-        let (fx, fy) = (x - x.floor(), y - y.floor());
-        let texel = |dx: i64, dy: i64| {
-            let column = (x.floor() as i64 + dx).rem_euclid(i64::from(self.size[0]));
-            let row = (y.floor() as i64 + dy).clamp(0, i64::from(self.size[1]) - 1);
+        between(x, y, |column, row| {
+            let column = column.rem_euclid(i64::from(self.size[0]));
+            let row = row.clamp(0, i64::from(self.size[1]) - 1);
             self.texel(column as usize, row as usize)
-        };
-        let first = texel(0, 0).lerp(texel(1, 0), fx);
-        first.lerp(texel(0, 1).lerp(texel(1, 1), fx), fy)
+        })
     }
 
     /// Radiance of a white wall that faces a direction, if nothing but the sky lights it.

@@ -197,7 +197,7 @@ fn the_command_that_is_given_is_explained() {
         text(&folder.done(&explain)).contains(part)
     };
     // Nothing is counted, coloured or kept that nobody asked for.
-    let counters = "wgsl/pass/counters.wgsl";
+    let counters = "wgsl/base/counters.wgsl";
     let (color, keeps) = ("wgsl/pass/color.wgsl", "COLOR_KEEPS_NORMALS=1");
     for (more, part, wanted) in [
         ("", counters, false),

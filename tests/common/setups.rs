@@ -1,6 +1,7 @@
 //! What is joined and bound to ask the shaders about a plan, and questions for them.
 
 use bytemuck::bytes_of;
+use conemarch::base::outcome;
 use conemarch::base::shader::Module;
 use conemarch::formula::Formula;
 use conemarch::plan::Plan;
@@ -42,9 +43,10 @@ pub fn probe_of(plan: &Plan, probe: Module) -> Probe {
     let solid = solid(plan);
     let mut modules = solid.twin().modules();
     modules.extend(plan.view().modules());
+    modules.extend(outcome::modules(false));
     modules.extend([
+        wgsl!("scene/contract.wgsl"),
         wgsl!("pass/shared.wgsl"),
-        wgsl!("pass/counters_off.wgsl"),
         probe,
     ]);
     let mut parameters = solid.twin().uniforms();

@@ -2,6 +2,7 @@
 //! anything before the front that is claimed for it, and fronts come near what is met.
 
 use bytemuck::cast_slice;
+use conemarch::base::outcome;
 use conemarch::base::shader::Module;
 use conemarch::base::view::{Beam, CHORD_SLACK};
 use conemarch::heightfield::MaxMip;
@@ -231,11 +232,11 @@ fn told_by_device(seeds: std::ops::Range<u64>, change: Change) -> Vec<String> {
         let (seen, random) = (any(7000 + seed), &mut Random::new(8000 + seed));
         let solid = seen.solid();
         let mut modules = solid.modules();
+        modules.extend(outcome::modules(false));
         modules.extend([
             wgsl!("base/view.wgsl"),
             wgsl!("base/perspective.wgsl"),
-            wgsl!("pass/shared.wgsl"),
-            wgsl!("pass/counters_off.wgsl"),
+            wgsl!("scene/contract.wgsl"),
             probe!("advance"),
         ]);
         let mut parameters = solid.uniforms();

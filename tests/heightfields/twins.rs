@@ -8,13 +8,13 @@
 use std::sync::Arc;
 
 use bytemuck::bytes_of;
+use conemarch::base::outcome;
 use conemarch::base::shader::Program;
 use conemarch::heightfield::conemap::MapKind;
 use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::pattern::Pattern;
 use conemarch::heightfield::tracer::{Accuracy, LocalRay, SURFACE, Step, Tracer, TracerKind};
-use conemarch::wgsl;
 use glam::DVec3;
 use wgpu::naga::valid::Capabilities;
 
@@ -47,8 +47,7 @@ fn every_tracer(surface: &Arc<HeightSurface>) -> Vec<Named> {
 /// The probe of a tracer.
 fn probe_of(tracer: &Tracer) -> Probe {
     let mut modules = tracer.modules();
-    modules.push(wgsl!("pass/shared.wgsl"));
-    modules.push(wgsl!("pass/counters_off.wgsl"));
+    modules.extend(outcome::modules(false));
     modules.push(probe!("heightmap"));
     let arrays = tracer.arrays();
     let arrays = arrays.iter().map(|array| (array.name, array.bytes()));

@@ -91,7 +91,7 @@ fn what_is_asked_for_beside_the_picture_is_explained() {
     let counted = explain(|e| e.count = true);
     for (entry, counts) in [("march", true), ("trace", true), ("color", false)] {
         for (text, on) in [(&plain, false), (&counted, counts)] {
-            assert_joins(program_lines(text, entry), on, "wgsl/pass/counters.wgsl");
+            assert_joins(program_lines(text, entry), on, "wgsl/base/counters.wgsl");
         }
     }
     assert!(plain.contains("COLOR_KEEPS_NORMALS=0"));
@@ -115,7 +115,7 @@ fn what_is_prepared_for_a_heightfield_is_explained() {
     for program in programs_of(&plan, &solid(&plan)) {
         let listing = program.describe();
         let extras =
-            listing.contains("pass/counters.wgsl") || listing.contains("COLOR_KEEPS_NORMALS=1");
+            listing.contains("base/counters.wgsl") || listing.contains("COLOR_KEEPS_NORMALS=1");
         let plain = format!("  {}\n{listing}", program.entry);
         assert_eq!(text.contains(&plain), !extras, "{plain}\n{text}");
     }
@@ -147,8 +147,8 @@ fn work_is_counted_only_where_it_is_asked_for() {
             };
             let program = program(&plan, &solid, pass, extras);
             let counted = count && pass != Pass::Color;
-            assert_eq!(has(&program, "wgsl/pass/counters.wgsl"), counted);
-            assert_eq!(has(&program, "wgsl/pass/counters_off.wgsl"), !counted);
+            assert_eq!(has(&program, "wgsl/base/counters.wgsl"), counted);
+            assert_eq!(has(&program, "wgsl/base/counters_off.wgsl"), !counted);
         }
     }
 }
@@ -211,9 +211,12 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/four_folds.wgsl
         wgsl/base/view.wgsl
         wgsl/base/perspective.wgsl
+        wgsl/base/outcome.wgsl
+        wgsl/scene/contract.wgsl
         wgsl/pass/shared.wgsl
         wgsl/pass/turn.wgsl
         wgsl/pass/queue.wgsl
+        wgsl/pass/tally.wgsl
         wgsl/pass/march.wgsl
       trace
         wgsl/base/real.wgsl
@@ -225,9 +228,12 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/four_folds.wgsl
         wgsl/base/view.wgsl
         wgsl/base/perspective.wgsl
+        wgsl/base/outcome.wgsl
+        wgsl/scene/contract.wgsl
         wgsl/pass/shared.wgsl
         wgsl/pass/turn.wgsl
         wgsl/pass/queue.wgsl
+        wgsl/pass/tally.wgsl
         wgsl/pass/trace.wgsl
       color
         wgsl/base/real.wgsl
@@ -239,6 +245,8 @@ fn the_mandelbox_is_explained() {
         wgsl/formula/four_folds.wgsl
         wgsl/base/view.wgsl
         wgsl/base/perspective.wgsl
+        wgsl/base/outcome.wgsl
+        wgsl/scene/contract.wgsl
         wgsl/pass/shared.wgsl
         wgsl/pass/turn.wgsl
         wgsl/pass/queue.wgsl

@@ -5,3 +5,10 @@ alias real = f32;
 alias real2 = vec2<f32>;
 alias real3 = vec3<f32>;
 alias real4 = vec4<f32>;
+
+/// Four points.
+struct Points {
+    x: real4,
+    y: real4,
+    z: real4,
+}

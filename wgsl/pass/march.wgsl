@@ -52,5 +52,5 @@ fn march(
     if s == STATE_HIT || s == STATE_UNCONVERGED {
         queue_parent(packed);
     }
-    counters_store(index);
+    tally_store(index);
 }

@@ -53,5 +53,5 @@ fn trace(
     if HIT_CARRIES_MARK {
         cell_store_mark(index, Mark(hit.id, hit.uv.x, hit.uv.y));
     }
-    counters_store(index);
+    tally_store(index);
 }

@@ -74,13 +74,6 @@ fn widened(inside: f32, outside: f32) -> f32 {
     return select(inside, max(inside, outside), outside > 0.0);
 }
 
-/// Four points.
-struct Points {
-    x: real4,
-    y: real4,
-    z: real4,
-}
-
 /// The value of the field.
 fn field_value(q: vec3<f32>) -> f32 {
     let inside = f32(estimate(scene_point(q), distance_scene.iterations));

@@ -44,7 +44,7 @@ pub fn clearance(plan: &Plan, assets: &Assets) -> Option<f64> {
 
 /// What the ray of a pixel meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Met {
+pub struct Probed {
     /// The distance along the ray.
     pub distance: f64,
     /// The point in the world.
@@ -56,7 +56,7 @@ pub struct Met {
 }
 
 /// What the ray of a pixel meets; `None` while heights are missing.
-pub fn met(plan: &Plan, assets: &Assets, pixel: [u32; 2]) -> Option<Met> {
+pub fn pixel(plan: &Plan, assets: &Assets, pixel: [u32; 2]) -> Option<Probed> {
     if !plan.scene.has_assets(assets) {
         return None;
     }
@@ -64,7 +64,7 @@ pub fn met(plan: &Plan, assets: &Assets, pixel: [u32; 2]) -> Option<Met> {
     let steps = plan.ray_steps(&solid);
     let (distance, state, work) = solid.run(Ray(plan, pixel, steps));
     let ray = plan.view().view_ray(pixel);
-    Some(Met {
+    Some(Probed {
         distance,
         point: plan.camera.eye + ray.at(distance),
         state,
@@ -83,7 +83,7 @@ mod tests {
         let text = "[scene]\nkind = 'heightfield'\nfield = 'fbm:32x32'\n";
         let (plan, assets) = (preset::read(text, "a test"), Assets::default());
         let plan = plan.expect("a preset");
-        let known = |plan: &Plan| met(plan, &assets, [3, 3]);
+        let known = |plan: &Plan| pixel(plan, &assets, [3, 3]);
         assert_eq!(known(&plan), None);
         plan.scene
             .solid(&plan.viewpoint(), &assets)
