@@ -65,8 +65,8 @@ impl Plan {
     pub fn set_numbers(&mut self, path: &str, numbers: &[f64]) -> Result<(), String> {
         let set = self.with_key(path, |key| {
             let value = value_of(&key.slot.kind(), numbers).ok_or_else(|| match numbers {
-                [_] => "this key is no number".to_string(),
-                _ => "this key is no point and no colour".into(),
+                [_] => "this key takes no number".to_string(),
+                _ => "this key takes no three numbers".into(),
             })?;
             key.slot
                 .set(&value)

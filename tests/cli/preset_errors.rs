@@ -91,7 +91,7 @@ track = 3|[scene]|kind = "slab" => p.toml:1: a track is written [[track]]
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[2, 40], [1, 50]] => p.toml:3: track.camera.fov = [[2, 40], [1, 50]]: the times must ascend
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 40], [11, 50]] => p.toml:3: track.camera.fov = [[0, 40], [11, 50]]: the time 11 is not within 0 and time.length, 10
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 400]] => p.toml:3: track.camera.fov = [[0, 400]]: [400.0]: must be a number from 1 to 360
-[scene]|kind = "slab"|[[track]]|key = "march.mode"|keys = [[0, 1]] => p.toml:3: track.march.mode = [[0, 1]]: [1.0]: this key is no number
+[scene]|kind = "slab"|[[track]]|key = "march.mode"|keys = [[0, 1]] => p.toml:3: track.march.mode = [[0, 1]]: [1.0]: this key takes no number
 [scene]|kind = "slab"|[[track]]|key = "time.fps"|keys = [[0, 25]] => p.toml:3: track.time.fps = [[0, 25]]: time and image stay the same
 [scene]|kind = "slab"|[[track]]|key = "camera.fov"|keys = [[0, 40]]|[[track]]|key = "camera.fov"|keys = [[0, 40]] => p.toml:6: track.camera.fov = [[0, 40]]: a second track of this key
 [scene]|kind = "slab"|[camera]|target = [0, 0, 0]|[[track]]|key = "camera.eye"|keys = [[0, [0, 0, 0]]] => p.toml:5: track.camera.eye = [[0, [0, 0, 0]]]: at beat 0: the eye and the target are the same point
