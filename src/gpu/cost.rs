@@ -17,6 +17,8 @@ const FIRST_SLICE_OF_PATHS: u32 = 64 * 16;
 /// large one.
 const MOST_SHORTER: f64 = 1.0 / 16.0;
 const MOST_LONGER: f64 = 4.0;
+/// A dispatch over the dearest cells may take so many times as long as one is made for.
+const PEAK: f64 = 1.5;
 /// How much of the peak stays at each report.
 const PEAK_STAYS: f64 = 0.95;
 /// Rounds beyond the first that are expected of a stage with a step limit.
@@ -32,7 +34,7 @@ pub struct Cost {
     /// Estimated milliseconds of a dispatch.
     pub dispatch_ms: f64,
     /// The most milliseconds that a unit of the slice took lately. Ground takes much longer than the
-    /// sky before it. A first dispatch may take as long as a dispatch may.
+    /// sky before it.
     peak_ms: f64,
     /// Dispatches of the stage in the last block, cut as it is now.
     last: Option<u32>,
@@ -48,14 +50,16 @@ impl Cost {
         Self {
             slice,
             dispatch_ms: FIRST_MS,
-            peak_ms: LONGEST_MS / f64::from(slice),
+            peak_ms: 2.0 * FIRST_MS / f64::from(slice),
             last: None,
         }
     }
 
-    /// The milliseconds that a dispatch may take.
-    pub fn longest_ms(&self) -> f64 {
-        self.dispatch_ms.max(self.peak_ms * f64::from(self.slice))
+    /// The milliseconds that a dispatch of a stage may take.
+    pub fn longest_ms(&self, stage: &Stage) -> f64 {
+        let all = stage.tiles.saturating_mul(stage.chunk);
+        let peak = self.peak_ms * f64::from(self.slice.min(all));
+        self.dispatch_ms.max(peak)
     }
 
     /// Dispatches that visit every cell once.
@@ -91,7 +95,7 @@ impl Cost {
             self.scale((aim_ms / each_ms).max(MOST_SHORTER));
         } else if longer {
             let factor = (0.7 * aim_ms / self.dispatch_ms).min(MOST_LONGER);
-            let factor = factor.min(aim_ms / (self.peak_ms * slice));
+            let factor = factor.min(PEAK * aim_ms / (self.peak_ms * slice));
             if factor > 1.0 {
                 self.scale(factor);
             }

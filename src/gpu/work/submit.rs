@@ -71,7 +71,7 @@ impl Run {
         let mut ends_block = false;
         while estimate < budget_ms {
             let (_, index) = self.place(cursor);
-            let each = self.reusable.costs[index].longest_ms();
+            let each = self.reusable.costs[index].longest_ms(&stages[index]);
             let room = ((budget_ms - estimate) / each).max(1.0) as u32;
             let count = self.dispatches.min(room);
             dispatch(index, count);
