@@ -31,7 +31,7 @@ pub struct ViewUniform {
     /// Unit vector into the image.
     pub forward: Vec3,
     /// How far rays of a pixel go from its centre, in pixels.
-    pub reach: f32,
+    pub filter_radius: f32,
     /// Width and height of the full image in pixels.
     pub size: [u32; 2],
     /// The footprint at distance 1 along the view axis; of parallel rays, at any distance.
@@ -174,7 +174,7 @@ pub struct View {
     /// Width and height of the full image in pixels.
     pub size: [u32; 2],
     /// How far rays of a pixel go from its centre along each axis, in pixels.
-    pub reach: f64,
+    pub filter_radius: f64,
     /// What rays start from; `None` for the eye.
     pub lens: Option<Lens>,
     /// The footprint at distance 1 along the view axis, and of parallel rays at any distance: half a
@@ -199,7 +199,7 @@ impl View {
             across: pixel,
             shift: DVec2::ZERO,
             size,
-            reach: 0.0,
+            filter_radius: 0.0,
             lens: None,
             grain: 0.5 * pixel,
         }
@@ -213,7 +213,7 @@ impl View {
             up: self.up.as_vec3(),
             slack: self.slack() as f32,
             forward: self.forward.as_vec3(),
-            reach: self.reach as f32,
+            filter_radius: self.filter_radius as f32,
             size: self.size,
             grain: self.grain as f32,
             lens: self.lens.map_or(0.0, |lens| lens.radius) as f32,
@@ -240,7 +240,7 @@ impl View {
     /// How far from the eye rays start at most.
     pub fn spacing(&self) -> f64 {
         let lens = self.lens.map_or(0.0, |lens| lens.radius);
-        let half = self.size.map(|n| 0.5 * f64::from(n) + self.reach);
+        let half = self.size.map(|n| 0.5 * f64::from(n) + self.filter_radius);
         match self.projection {
             Projection::Orthographic => lens + self.across * half[0].hypot(half[1]),
             _ => lens,
@@ -264,8 +264,8 @@ impl View {
     /// view axis.
     pub fn finest(&self) -> Beam {
         let far = |axis: usize, first: bool| match first {
-            true => 0.5 - self.reach,
-            false => f64::from(self.size[axis]) - 0.5 + self.reach,
+            true => 0.5 - self.filter_radius,
+            false => f64::from(self.size[axis]) - 0.5 + self.filter_radius,
         };
         let corner = DVec2::new(far(0, self.shift.x <= 0.0), far(1, self.shift.y >= 0.0));
         self.projection.view_through(self, corner)
@@ -304,7 +304,7 @@ impl View {
         let low = cell.map(|c| c * divisor);
         let high = [0, 1].map(|i| (low[i] + divisor).min(self.size[i]));
         let middle = [0, 1].map(|i| 0.5 * f64::from(low[i] + high[i]));
-        let span = [0, 1].map(|i| f64::from(high[i] - low[i] - 1) + 2.0 * self.reach);
+        let span = [0, 1].map(|i| f64::from(high[i] - low[i] - 1) + 2.0 * self.filter_radius);
         self.projection.view_over(self, middle.into(), span.into())
     }
 }
@@ -317,7 +317,9 @@ mod tests {
     fn a_cone_holds_all_rays_of_its_pixels() {
         let (eye, target) = (DVec3::new(4.0, -9.0, 6.0), DVec3::ZERO);
         for fov in [1.0_f64, 48.5, 120.0, 170.0] {
-            for (reach, radius) in [(0.0, 0.0), (0.25, 0.0), (1.5, 0.0), (1.5, 0.5), (1.5, 3.0)] {
+            for (filter_radius, radius) in
+                [(0.0, 0.0), (0.25, 0.0), (1.5, 0.0), (1.5, 0.5), (1.5, 3.0)]
+            {
                 let lens = Lens {
                     radius,
                     focus: 12.0,
@@ -325,8 +327,8 @@ mod tests {
                 };
                 let view = View {
                     // Off the axis, too, by the width of the image.
-                    shift: DVec2::new(1.7, -1.0) * reach * (0.5 * fov.to_radians()).tan(),
-                    reach,
+                    shift: DVec2::new(1.7, -1.0) * filter_radius * (0.5 * fov.to_radians()).tan(),
+                    filter_radius,
                     lens: (radius > 0.0).then_some(lens),
                     ..View::new(eye, target, DVec3::Z, fov, [37, 21])
                 };
@@ -335,7 +337,7 @@ mod tests {
                     for divisor in [1, 2, 8, 32] {
                         let cone = view.view_cone([x / divisor, y / divisor], divisor);
                         for corner in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
-                            let offset = reach * DVec2::from(corner);
+                            let offset = filter_radius * DVec2::from(corner);
                             for share in [0.0, 0.3, 0.7].map(|x| DVec2::new(x, 1.0 - 1e-9)) {
                                 let ray = view.view_ray_from([x, y], offset, share);
                                 for t in [0.01, 1.0, 12.0, 24.0, 1e3] {
@@ -343,17 +345,17 @@ mod tests {
                                     let room = cone.r0 + cone.k * t;
                                     assert!(
                                         off <= room * (1.0 + 1e-12),
-                                        "{fov} {reach} {t} {off} {cone:?}"
+                                        "{fov} {filter_radius} {t} {off} {cone:?}"
                                     );
                                     widest = widest.max(off / room);
                                 }
-                                assert!(ray.grain <= cone.grain, "{fov} {reach} {divisor}");
+                                assert!(ray.grain <= cone.grain, "{fov} {filter_radius} {divisor}");
                             }
                         }
                     }
                 }
                 // Nor is it much wider than they need.
-                assert!(widest > 0.9, "{fov} {reach} {widest}");
+                assert!(widest > 0.9, "{fov} {filter_radius} {widest}");
             }
         }
     }

@@ -1,8 +1,10 @@
 //! `conemarch animate PRESET -o out-%05d.png`
 
-use std::io::Cursor;
+use std::fs;
+use std::io::{Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::thread::sleep;
 
 use anyhow::{Context, Result, anyhow};
 use clap::{Args, ValueHint};
@@ -10,15 +12,17 @@ use clap::{Args, ValueHint};
 use crate::command::arguments::{bits, noise, pixel_samples, size};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
+use crate::command::interrupt::{self, POLL};
 use crate::command::output::{Format, bits_of};
 use crate::command::print::{counted, say};
 use crate::command::progress::Reporter;
 use crate::command::render::{at_fault, loaded, moment};
-use crate::command::sink::{Parcel, Sink, ending, folder_of, spared};
-use crate::command::{completions, interrupt, memory};
+use crate::command::sink::{Results, Sink, ending, folder_of, spared};
+use crate::command::{completions, memory};
+use crate::gpu::RenderError;
 use crate::gpu::adapters::Choice;
 use crate::pass::progress::Progress;
-use crate::picture::{BitDepth, Layer, Shades, write_png};
+use crate::picture::{BitDepth, Layer, Shades, set_unfinished, write_png};
 use crate::plan::{Extras, Plan};
 use crate::preset;
 use crate::scene::Assets;
@@ -226,24 +230,22 @@ fn render(
     };
     let extras = Extras::default();
     let per_pixel = Format::Png.bytes_per_pixel(Layer::Color, plan, extras);
-    memory::check(&plan.resolved(extras), per_pixel, assets)?;
+    memory::check(&plan.resolved(extras), per_pixel, assets, &args.device)?;
     // A folder that cannot be written is found before the first frame.
     Sink::prepare(&pattern.name(*first))?;
     let (mut executor, who) = Executor::open(&args.device)?;
     say(&format!("rendering on {who}"));
     let mut progress = Reporter::start("rendering");
     for (done, (frame, plan)) in missing.iter().enumerate() {
+        let all = counted(missing.len(), "frame");
+        let kept = format!("{done} of {all} written; the same command goes on");
+        interrupt::keeps(Some(kept.clone()));
         let mut watch = |now: &Progress| {
             let share = (done as f64 + now.done) / missing.len() as f64;
             progress.report_part(now, share, &format!("frame {frame}, {}", now.pass))
         };
         let rendered = executor.picture(plan, assets, extras, &mut watch);
-        let rendered = rendered.with_context(|| {
-            format!(
-                "{done} of {} written; the same command goes on",
-                counted(missing.len(), "frame")
-            )
-        })?;
+        let rendered = rendered.context(kept)?;
         let mut content = Vec::new();
         let picture = Shades::new(Layer::Color, &rendered, plan);
         let depth = args.depth.unwrap_or_default();
@@ -251,7 +253,7 @@ fn render(
         let name = pattern.name(*frame);
         let text = preset::write_beside(plan, &name);
         write_png(to, &picture, depth, &plan.title, &text)?;
-        let mut parcel = Parcel::default();
+        let mut parcel = Results::default();
         parcel.put(Sink::prepare(&name)?, &content)?;
         parcel.hand_over()?;
     }
@@ -287,17 +289,22 @@ fn find_ffmpeg() -> Result<()> {
 /// Joins the frames to a video.
 fn join(film: &Plan, pattern: &Pattern, [first, last]: [u32; 2], video: &Path) -> Result<()> {
     let _progress = Reporter::start("joining the frames");
+    let kept = "the frames are written; the same command joins them";
+    interrupt::keeps(Some(kept.into()));
     let Pattern {
         before,
         digits,
         after,
     } = pattern;
-    // ffmpeg knows the format by the ending.
-    let named = tempfile::Builder::new()
+    // ffmpeg knows the format by the ending, so its file needs a folder of its own.
+    let folder = tempfile::Builder::new()
         .prefix(".")
-        .suffix(&format!(".{}", ending(video)))
-        .tempfile_in(folder_of(video))?;
-    let made = named.into_temp_path();
+        .suffix(".tmp")
+        .tempdir_in(folder_of(video))?;
+    let made = folder.path().join("video").with_extension(ending(video));
+    let is_unfinished = |is| [folder.path(), &made].map(|path| set_unfinished(path, is));
+    is_unfinished(true);
+    let mut said = tempfile::tempfile()?;
     let mut ffmpeg = Command::new("ffmpeg");
     ffmpeg
         .args(["-loglevel", "error", "-y", "-framerate"])
@@ -313,17 +320,30 @@ fn join(film: &Plan, pattern: &Pattern, [first, last]: [u32; 2], video: &Path) -
             "yuv420p",
         ])
         .arg(&made)
-        .stdin(Stdio::null());
-    let done = ffmpeg.output().context("ffmpeg does not start")?;
-    if !done.status.success() {
-        let said = String::from_utf8_lossy(&done.stderr);
-        return Err(anyhow!(
-            "ffmpeg did not write `{}`: {said}",
-            video.display()
-        ));
+        .stdin(Stdio::null())
+        .stderr(said.try_clone()?);
+    let mut ffmpeg = ffmpeg.spawn().context("ffmpeg does not start")?;
+    let status = loop {
+        if let Some(status) = ffmpeg.try_wait()? {
+            break status;
+        }
+        if interrupt::asked() {
+            ffmpeg.kill()?;
+            ffmpeg.wait()?;
+            return Err(RenderError::Cancelled).context(kept);
+        }
+        sleep(POLL);
+    };
+    let shown = video.display();
+    if !status.success() {
+        let mut why = String::new();
+        said.rewind()?;
+        said.read_to_string(&mut why)?;
+        return Err(anyhow!("ffmpeg did not write `{shown}`: {why}"));
     }
-    made.persist(video)?;
-    say(&video.display().to_string());
+    fs::rename(&made, video).with_context(|| format!("`{shown}` cannot be written"))?;
+    is_unfinished(false);
+    say(&shown.to_string());
     Ok(())
 }
 

@@ -17,7 +17,7 @@ use crate::command::unfinished::{Owner, Unfinished};
 use crate::command::{failure::usage, interrupt};
 use crate::pass::progress::Progress;
 use crate::picture::frame::Frame;
-use crate::picture::{BitDepth, Bloom, Gathered, Layer, Place, PngHead, Shades, write_png_rows};
+use crate::picture::{BitDepth, Bloom, Layer, Place, PngHead, Shades, SummedLight, write_png_rows};
 use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Plan, WINDOW_STEP};
 use crate::preset;
@@ -208,7 +208,7 @@ impl<'a> BigPicture<'a> {
         if !keeps_light(self.plan, self.layer) {
             return Ok(None);
         }
-        let mut gathered = Gathered::new(self.plan);
+        let mut gathered = SummedLight::new(self.plan);
         for band in 0..self.bands.count() {
             progress.report(0.0, "spreading light");
             interrupt::check()?;
@@ -216,7 +216,7 @@ impl<'a> BigPicture<'a> {
             let frame = lit(&rows, self.bands.block(band), self.plan);
             gathered.iter_mut().for_each(|all| all.add(&frame.radiance));
         }
-        Ok(gathered.map(Gathered::blurred))
+        Ok(gathered.map(SummedLight::blurred))
     }
 
     /// Ends a picture that `handed` over, or failed to.

@@ -29,8 +29,8 @@ static KEPT: Mutex<Option<String>> = Mutex::new(None);
 /// How long the work has to notice: a single pass may take much longer, and nobody waits
 /// for that.
 const PATIENCE: Duration = Duration::from_millis(700);
-/// Time between two looks for a signal: too short to be felt.
-const POLL: Duration = Duration::from_millis(20);
+/// Time between two looks for a signal, or for the end of another program: too short to be felt.
+pub const POLL: Duration = Duration::from_millis(20);
 
 /// From now on a signal is noted. A second one ends the process at once.
 pub fn listen() {

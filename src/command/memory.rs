@@ -6,6 +6,7 @@ use std::path::Path;
 use anyhow::{Result, anyhow};
 use indicatif::BinaryBytes;
 
+use crate::gpu::adapters::Choice;
 use crate::heightfield::assets::Preparation;
 use crate::plan::Plan;
 use crate::scene::Assets;
@@ -17,20 +18,25 @@ const UNKNOWN: u64 = 16 << 30;
 /// Vulkan a picture of 64 x 36 takes 102 to 122 MiB in all.
 const FIXED: u64 = 128 << 20;
 
-/// Bytes that are available now for pixels and maps.
-fn available() -> u64 {
-    free(&|file| fs::read_to_string(file).ok()).saturating_sub(FIXED)
+/// What a driver maps beside it, for stacks and heaps of its threads. It fills little of that, so only
+/// a limit of the address space counts it. With less, software Vulkan fails.
+const MAPPED: u64 = 1 << 30;
+
+/// Bytes that are available now for pixels and maps, with a driver or without.
+fn available(has_driver: bool) -> u64 {
+    let mapped = if has_driver { MAPPED } else { 0 };
+    free(mapped, &|file| fs::read_to_string(file).ok()).saturating_sub(FIXED)
 }
 
 /// Bytes that are free: the least of what the system, the control groups of the process, and its
-/// address space leave. `read` reads a file.
-fn free(read: &dyn Fn(&Path) -> Option<String>) -> u64 {
+/// address space leave, of which so many bytes are `mapped` by others. `read` reads a file.
+fn free(mapped: u64, read: &dyn Fn(&Path) -> Option<String>) -> u64 {
     let of = |file: &str, name: &str| line(name, &read(Path::new(file))?);
     let system = of("/proc/meminfo", "MemAvailable:").unwrap_or(UNKNOWN);
     let limits = read(Path::new("/proc/self/limits")).unwrap_or_default();
     let most = number("Max address space", &limits);
     let taken = of("/proc/self/status", "VmSize:").unwrap_or(0);
-    let space = most.map(|most| most.saturating_sub(taken));
+    let space = most.map(|most| most.saturating_sub(taken + mapped));
     let groups = read(Path::new("/proc/self/cgroup")).unwrap_or_default();
     let groups = groups.lines().filter_map(|group| left_by(group, read));
     groups.chain(space).fold(system, u64::min)
@@ -86,21 +92,30 @@ fn line(name: &str, text: &str) -> Option<u64> {
 ///
 /// # Errors
 /// It does not fit.
-pub fn check(plan: &Plan, bytes_per_pixel: u64, assets: &Assets) -> Result<()> {
-    let available = available();
+pub fn check(plan: &Plan, bytes_per_pixel: u64, assets: &Assets, who: &Choice) -> Result<()> {
+    let available = available(*who != Choice::Cpu);
     let lacking = match plan.window {
-        Some(window) => lacking_part(window.size, bytes_per_pixel, available),
+        Some(window) => lacking_part("a part", window.size, bytes_per_pixel, available, FINER),
         None => lacking(plan.size, bytes_per_pixel, available),
     };
     fits(lacking.or_else(|| lacking_for(plan, assets, available)))
 }
 
-/// Checks that so many pixels fit into memory.
+/// What helps if a part of a picture does not fit.
+pub const FINER: &str = "render parts of a finer --tile";
+
+/// Checks that what has so many pixels fits into memory.
 ///
 /// # Errors
-/// They do not fit.
-pub fn check_pixels(size: [u32; 2], bytes_per_pixel: u64) -> Result<()> {
-    fits(lacking_part(size, bytes_per_pixel, available()))
+/// It does not fit. The error says what helps.
+pub fn check_pixels(what: &str, size: [u32; 2], bytes_per_pixel: u64, helps: &str) -> Result<()> {
+    fits(lacking_part(
+        what,
+        size,
+        bytes_per_pixel,
+        available(false),
+        helps,
+    ))
 }
 
 /// Checks that making a cone map with so many ratios fits into memory.
@@ -108,7 +123,7 @@ pub fn check_pixels(size: [u32; 2], bytes_per_pixel: u64) -> Result<()> {
 /// # Errors
 /// It does not fit.
 pub fn check_map(ratios: u64) -> Result<()> {
-    fits(lacking_maps(ratios, available()))
+    fits(lacking_maps(ratios, available(true)))
 }
 
 fn fits(lacking: Option<String>) -> Result<()> {
@@ -129,7 +144,7 @@ fn lacking([w, h]: [u32; 2], bytes_per_pixel: u64, available: u64) -> Option<Str
     let there_is = there_is(needed, available);
     let fitting = (ADVISED * available as f64 / bytes_per_pixel as f64) as u64;
     let advice = if fitting == 0 {
-        "free some memory".into()
+        "free some memory, or raise the limits of the process".into()
     } else {
         let shrink = (fitting as f64 / pixels as f64).sqrt();
         let side = |n: u32, most: u64| ((f64::from(n) * shrink) as u64).clamp(1, most);
@@ -140,14 +155,18 @@ fn lacking([w, h]: [u32; 2], bytes_per_pixel: u64, available: u64) -> Option<Str
     Some(format!("a picture of {w}x{h} {there_is}; {advice}"))
 }
 
-/// A sentence if a part of a picture does not fit.
-fn lacking_part([w, h]: [u32; 2], bytes_per_pixel: u64, available: u64) -> Option<String> {
+/// A sentence if what has so many pixels does not fit, with what helps.
+fn lacking_part(
+    what: &str,
+    [w, h]: [u32; 2],
+    bytes_per_pixel: u64,
+    available: u64,
+    helps: &str,
+) -> Option<String> {
     let needed = u64::from(w) * u64::from(h) * bytes_per_pixel;
     (needed > available).then(|| {
         let there_is = there_is(needed, available);
-        format!(
-            "a part of {w}x{h} pixels of the picture {there_is}; free some, or render parts of a finer --tile"
-        )
+        format!("{what} of {w}x{h} pixels {there_is}; free some, or {helps}")
     })
 }
 
@@ -204,7 +223,7 @@ mod tests {
                 let advised = why.split("--size ").nth(1);
                 match advised.and_then(|rest| size(rest.split(' ').next()?).ok()) {
                     Some(advised) => assert_eq!(lacking(advised, 60, available), None),
-                    None => assert!(available < 67 && why.ends_with("free some memory")),
+                    None => assert!(available < 67 && why.ends_with("the limits of the process")),
                 }
             }
         }
@@ -220,22 +239,26 @@ mod tests {
     #[test]
     fn the_least_of_all_limits_counts() {
         let mib = |n: u64| (n << 20).to_string();
-        let files = |more: &[(&str, String)]| {
+        let left = |mapped: u64, more: &[(&str, String)]| {
             let mut files = vec![(
                 "/proc/meminfo".to_string(),
                 "MemAvailable: 9437184 kB".into(),
             )];
             files.extend(more.iter().map(|(f, text)| (f.to_string(), text.clone())));
-            free(&move |path| {
+            free(mapped, &move |path| {
                 let file = files.iter().find(|(file, _)| Path::new(file) == path);
                 file.map(|(_, text)| text.clone())
             }) >> 20
         };
+        let files = |more: &[(&str, String)]| left(0, more);
         assert_eq!(files(&[]), 9216);
         let space = format!("Max address space  {}  unlimited  bytes\n", mib(1000));
         let limits = ("/proc/self/limits", space);
         let status = ("/proc/self/status", "VmSize:  102400 kB\n".into());
-        assert_eq!(files(&[limits, status]), 900);
+        let space = [limits, status];
+        assert_eq!(files(&space), 900);
+        assert_eq!(left(300 << 20, &space), 600);
+        assert_eq!(left(MAPPED, &space), 0);
         // A job within a user's group, which is smaller, and holds files.
         let own = ("/proc/self/cgroup", "0::/user/job\n".to_string());
         let job = ("/sys/fs/cgroup/user/job/memory.max", "max".into());

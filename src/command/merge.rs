@@ -7,14 +7,17 @@ use anyhow::{Result, anyhow};
 use clap::{Args, ValueHint};
 
 use crate::command::failure::usage;
+use crate::command::interrupt;
+use crate::command::memory::{self, FINER};
 use crate::command::output::{Format, Options};
 use crate::command::print::{counted, say};
 use crate::command::progress::Reporter;
-use crate::command::sink::{Parcel, Sink, shown, spared};
+use crate::command::sink::{Results, Sink, shown, spared};
 use crate::command::tile::Note;
-use crate::command::{interrupt, memory};
 use crate::picture::frame::Frame;
-use crate::picture::{Gathered, Layer, Named, PngHead, Shades, write_exr_channels, write_png_rows};
+use crate::picture::{
+    Layer, Named, PngHead, Shades, SummedLight, write_exr_channels, write_png_rows,
+};
 use crate::plan::Plan;
 use crate::preset::{self, PNG_KEYWORD};
 use crate::raster::exr::{PartHead, all_channels, channel, light, part_head};
@@ -77,7 +80,14 @@ pub fn run(args: &Merge) -> Result<()> {
     };
     let bytes = if format == Format::Exr { 135 } else { 40 };
     let bytes = bytes + if Layer::Color.has_alpha(&plan) { 8 } else { 0 };
-    memory::check_pixels([plan.size[0], most.unwrap_or(1)], bytes)?;
+    let (what, helps) = match format {
+        Format::Png => ("a row of parts", FINER),
+        _ => (
+            "a picture",
+            "join them to a .png, which takes a row of parts at a time",
+        ),
+    };
+    memory::check_pixels(what, [plan.size[0], most.unwrap_or(1)], bytes, helps)?;
     let mut sink = Sink::prepare(&args.output)?;
     let mut progress = Reporter::start("joining the parts");
     let all = rows.len();
@@ -95,18 +105,18 @@ pub fn run(args: &Merge) -> Result<()> {
         title: &plan.title,
         preset: &text,
     };
-    let mut parcel = Parcel::default();
+    let mut parcel = Results::default();
     match (format, &mut sink) {
         (Format::Png, sink) => {
             // With bloom, each pixel's colour needs the light of all parts.
-            let mut gathered = Gathered::new(&plan);
+            let mut gathered = SummedLight::new(&plan);
             if let Some(all) = &mut gathered {
                 for row in &rows {
                     tell(0)?;
                     all.add(&light_of(row, &plan)?.radiance);
                 }
             }
-            let bloom = gathered.map(Gathered::blurred);
+            let bloom = gathered.map(SummedLight::blurred);
             let lines = rows.iter().enumerate().map(|(nth, row)| {
                 tell(nth)?;
                 let frame = light_of(row, &plan)?;
@@ -178,7 +188,7 @@ impl Part {
         };
         let (head, note) = read().map_err(|why: String| anyhow!("{}: {why}", path.display()))?;
         // What the head claims is read at once.
-        memory::check_pixels(head.size, 12)?;
+        memory::check_pixels("a part", head.size, 12, FINER)?;
         Ok(Self {
             path: path.into(),
             head,

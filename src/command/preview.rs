@@ -11,7 +11,7 @@ use crate::command::completions;
 use crate::command::executor::device;
 use crate::command::failure::usage;
 use crate::command::render::loaded;
-use crate::command::sink::{Parcel, Sink};
+use crate::command::sink::{Results, Sink};
 use crate::gpu::adapters::Choice;
 use crate::measure::truth::cache_folder;
 use crate::preset;
@@ -71,7 +71,7 @@ pub fn run(args: &Preview) -> Result<()> {
         started,
     })?;
     if let Some(stats) = stats {
-        let mut parcel = Parcel::default();
+        let mut parcel = Results::default();
         parcel.put_json(stats, &figures)?;
         parcel.hand_over()?;
     }

@@ -16,7 +16,7 @@ use crate::command::failure::usage;
 use crate::command::output::{Format, Options, default_name};
 use crate::command::print::{print, say};
 use crate::command::progress::Reporter;
-use crate::command::sink::{Parcel, Sink, apart, spared};
+use crate::command::sink::{Results, Sink, apart, spared};
 use crate::command::stats::{Figures, Stats, summary};
 use crate::command::tile::Tile;
 use crate::command::{completions, interrupt, memory, tile};
@@ -40,9 +40,10 @@ pub struct Render {
     ///
     /// Without -o the picture goes to the current folder as NAME.png, with --set as
     /// NAME-camera.fov=60.png, with another --size as NAME-640x360.png, with --samples as
-    /// NAME-samples=16.png, with --until likewise, and with another --layer as NAME.depth.png. Only a
-    /// picture of the same layer and settings is replaced, or one that is older than the preset's
-    /// .toml file.
+    /// NAME-samples=16.png, with --until as NAME-until=0.004.png, with --at as NAME-at=2.png, and with
+    /// another --layer as NAME.depth.png. Only a picture of the same layer, depth and settings is
+    /// replaced, or one that is older than the preset's .toml file. A picture that another
+    /// program has changed counts as the same, if that program kept the preset in it.
     ///
     /// PNG and EXR files carry their preset and can be rendered again; JPEG and WebP carry none.
     /// WebP is without loss.
@@ -185,7 +186,7 @@ pub fn run(args: &Render) -> Result<()> {
     let per_pixel = format.bytes_per_pixel(args.layer, &plan, extras);
     let mut largest = plan.resolved(extras).into_owned();
     largest.window = plan.window.or(bands.map(|bands| bands.block(0)));
-    memory::check(&largest, per_pixel, &assets)?;
+    memory::check(&largest, per_pixel, &assets, &args.device)?;
     for note in plan.scene.notes(&assets) {
         say(&format!("note: {note}"));
     }
@@ -205,7 +206,7 @@ pub fn run(args: &Render) -> Result<()> {
     if let Some(warning) = executor.precision_warning(&plan) {
         say(&format!("warning: {warning}"));
     }
-    let mut parcel = Parcel::default();
+    let mut parcel = Results::default();
     let mut big = None;
     let mut made = match (bands, picture) {
         (Some(bands), Sink::File(mut place)) => {

@@ -36,7 +36,7 @@ impl Sink {
     /// # Errors
     /// The disk is full, or standard output does not take all of it.
     pub fn finish(self, content: &[u8]) -> Result<()> {
-        let mut parcel = Parcel::default();
+        let mut parcel = Results::default();
         parcel.put(self, content)?;
         parcel.hand_over()
     }
@@ -125,12 +125,12 @@ fn file_of(path: &Path) -> PathBuf {
 
 /// The results of a command, which are handed over together at its end.
 #[derive(Debug, Default)]
-pub struct Parcel {
+pub struct Results {
     printed: Vec<u8>,
     places: Vec<Place>,
 }
 
-impl Parcel {
+impl Results {
     /// Adds a result.
     ///
     /// # Errors

@@ -14,7 +14,9 @@ use crate::base::one_value_cache::{OneValueCache, is_last, last_or_new};
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, ShareWatch};
 use crate::heightfield::load::PatternSpec;
 use crate::heightfield::paint::{Colors, Paint};
-use crate::heightfield::tracer::settings::{Make, PrepareError, Supply, on_cpu, without_cones};
+use crate::heightfield::tracer::settings::{
+    Make, PrepareError, TracerCones, on_cpu, without_cones,
+};
 use crate::heightfield::tracer::{Tracer, TracerKind};
 use crate::heightfield::{
     HeightSurface, Patches, height_surface::HeightSurfaceError, placement::Placement,
@@ -32,7 +34,7 @@ type PaintKey = (SurfaceKey, Generator, f64);
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
     surfaces: OneValueCache<SurfaceKey, Ground>,
-    cones: OneValueCache<ConesKey, Option<Supply>>,
+    cones: OneValueCache<ConesKey, Option<TracerCones>>,
     paints: OneValueCache<PaintKey, Paint>,
     textures: OneValueCache<PathBuf, Texture>,
 }
@@ -293,7 +295,7 @@ impl Assets {
         settings: &HeightfieldSettings,
         surface: &HeightSurface,
         make: Make<'_>,
-    ) -> Result<Arc<Option<Supply>>, PrepareError> {
+    ) -> Result<Arc<Option<TracerCones>>, PrepareError> {
         // The map of another tracer stays.
         if !settings.tracer_settings.tracer.needs_map() {
             return Ok(Arc::new(None));

@@ -29,7 +29,7 @@ struct Grid {
 
 /// The light of a picture while its rows come.
 #[derive(Clone, Debug)]
-pub struct Gathered {
+pub struct SummedLight {
     share: f64,
     size: [u32; 2],
     /// The row that comes next.
@@ -46,7 +46,7 @@ pub struct Bloom {
     views: Vec<Grid>,
 }
 
-impl Gathered {
+impl SummedLight {
     /// No rows yet of a plan's picture; `None` for a look without bloom.
     pub fn new(plan: &Plan) -> Option<Self> {
         let views = if plan.is_stereo() { 2 } else { 1 };
@@ -96,7 +96,7 @@ impl Gathered {
 impl Bloom {
     /// The bloom of a whole picture; `None` if the frame is a part, or the look has none.
     pub fn of(frame: &Frame, plan: &Plan) -> Option<Self> {
-        let mut gathered = Gathered::new(plan).filter(|_| frame.size == plan.size)?;
+        let mut gathered = SummedLight::new(plan).filter(|_| frame.size == plan.size)?;
         gathered.add(&frame.radiance);
         Some(gathered.blurred())
     }
@@ -225,7 +225,7 @@ mod tests {
         let [w, h] = plan.size;
         let places = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
         let light: Vec<[f32; 3]> = places.map(|(x, y)| [of(x, y); 3]).collect();
-        let mut gathered = Gathered::new(plan).expect("a look with bloom");
+        let mut gathered = SummedLight::new(plan).expect("a look with bloom");
         let bands = light.chunks(rows * w as usize);
         bands.for_each(|rows| gathered.add(rows));
         gathered.blurred()

@@ -88,8 +88,8 @@ fn channels(frame: &Frame, plan: &Plan) -> Named {
     let mut list = Vec::new();
     let mut channel = |name: &str, values| list.push((name.to_string(), values));
     let one = |of: &[[f32; 3]], i: usize| of.iter().map(|v| v[i]).collect::<Vec<f32>>();
-    let sights = plan.sights();
-    let position = frame.positions(&sights);
+    let rays = plan.picture_rays();
+    let position = frame.positions(&rays);
     for (i, (rgb, xyz)) in ["R", "G", "B"].iter().zip(["X", "Y", "Z"]).enumerate() {
         channel(rgb, one(&frame.radiance, i));
         channel(&format!("normal.{xyz}"), one(&frame.normal, i));
@@ -106,7 +106,7 @@ fn channels(frame: &Frame, plan: &Plan) -> Named {
     let forward = (plan.camera.target - plan.camera.eye).normalize();
     let depths = frame.depth.iter().enumerate();
     let planar = depths.map(|(i, t)| {
-        let slant = sights.ray(frame.pixel(i)).1.axis.dot(forward);
+        let slant = rays.ray(frame.pixel(i)).1.axis.dot(forward);
         finite((f64::from(*t) * slant) as f32)
     });
     channel("Z", planar.collect());

@@ -4,7 +4,7 @@ use crate::base::outcome::{Counts, State};
 use crate::base::view::{Beam, View, footprint};
 use crate::heightfield::assets::Preparation;
 use crate::plan::pyramid::Block;
-use crate::plan::stereo::Sights;
+use crate::plan::stereo::PictureRays;
 use crate::plan::{Extras, Pass, Plan};
 use serde::{Serialize, Serializer};
 
@@ -236,12 +236,12 @@ impl Frame {
     }
 
     /// The world position of each pixel's hit; zero for sky.
-    pub fn positions(&self, sights: &Sights) -> Vec<[f32; 3]> {
+    pub fn positions(&self, rays: &PictureRays) -> Vec<[f32; 3]> {
         let at = |(i, t): (usize, &f32)| {
             if t.is_infinite() {
                 return [0.0; 3];
             }
-            let (eye, ray) = sights.ray(self.pixel(i));
+            let (eye, ray) = rays.ray(self.pixel(i));
             let p = eye + ray.at(f64::from(*t));
             p.as_vec3().to_array()
         };

@@ -161,7 +161,7 @@ impl<'a> Shades<'a> {
             }
             Layer::Normal => Box::new(|i| vector(frame.normal[i]) * 0.5 + 0.5),
             Layer::Position => {
-                let positions = frame.positions(&plan.sights());
+                let positions = frame.positions(&plan.picture_rays());
                 let share = shares(&mut positions.iter().copied().map(vector));
                 Box::new(move |i| match vector(positions[i]) {
                     p if p.is_finite() => share(p),

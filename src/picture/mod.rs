@@ -21,7 +21,7 @@ mod png;
 mod stereo;
 mod web;
 
-pub use bloom::{Bloom, Gathered};
+pub use bloom::{Bloom, SummedLight};
 pub use error::OutputError;
 pub use exr::{FAR, Named, write_exr, write_exr_channels, write_exr_part};
 #[cfg(feature = "cli")]

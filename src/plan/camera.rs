@@ -11,9 +11,9 @@ use crate::settings;
 settings! {
     /// Where the camera stands and where it looks.
     pub struct Camera {
-        eye: DVec3 = DVec3::new(10.0, -17.0, 12.0), triple(-1e9, 1e9), "position of the camera; not the target";
+        eye: DVec3 = DVec3::new(10.0, -17.0, 12.0), triple(-1e9, 1e9), "position of the camera; must differ from the target";
         target: DVec3 = DVec3::ZERO, triple(-1e9, 1e9), "point that the camera looks at, in the middle of the image";
-        up: DVec3 = DVec3::Z, triple(-1e9, 1e9), "direction that points up in the image; not zero and not along the view";
+        up: DVec3 = DVec3::Z, triple(-1e9, 1e9), "direction that points up in the image; must be neither [0, 0, 0] nor along the view";
         fov: f64 = 40.0, number(1.0, 360.0), "vertical field of view in degrees, at most 170 unless the projection is fisheye; an orthographic view shows as much at the target as a perspective one does, and an equirectangular one shows everything";
         projection: Projection = Projection::Perspective, word(Projection::WORDS), "how directions become an image: perspective; orthographic, by parallel rays from the plane of the eye; fisheye, where the angle to the view is proportional to the distance from the middle, up to 180 degrees; equirectangular, a panorama of 360 x 180 degrees for an image twice as wide as high" => Program;
         aperture: f64 = 0.0, number(0.0, 0.25), "radius of the lens as a share of the distance to the focus: 0 for none, 0.01 for a blurred background; a picture of one sample has no blur, and a fisheye or an equirectangular view has no lens";

@@ -63,17 +63,17 @@ settings! {
     pub struct Layers {
         trap: Trap = Trap::Auto, word(&Trap::WORDS), "what picks the colour of a fractal, and only auto for other scenes: auto is the formula's own mixture; or how near the orbit comes to a point, line, plane, sphere or cross, how many iterations it takes to escape, or how often it is folded" => Program;
         trap_scale: f64 = 1.0, number(-1000.0, 1000.0), "factor on the number of the trap, which is 0 at the shape and below 1, or grows by 0.1 with each iteration or fold";
-        trap_offset: f64 = 0.0, number(-1000.0, 1000.0), "what is added to it";
+        trap_offset: f64 = 0.0, number(-1000.0, 1000.0), "number that is added to the trap's after the scale";
         layer2_trap: Trap = Trap::Auto, word(OVER), "the trap of a second layer of colour over the first" => Program;
         layer2_palette: Vec<DVec3> = colors(), triples(MOST_STOPS, 0.0, 1.0), "colours of the second layer, sRGB";
         layer2_scale: f64 = 1.0, number(-1000.0, 1000.0), "factor on the number of its trap";
-        layer2_offset: f64 = 0.0, number(-1000.0, 1000.0), "what is added to it";
+        layer2_offset: f64 = 0.0, number(-1000.0, 1000.0), "number that is added to the trap's after the scale";
         layer2_blend: Blend = Blend::Mix, word(&Blend::WORDS), "how it is laid over the first";
         layer2_weight: f64 = 0.5, number(0.0, 1.0), "its share of the colour";
         layer3_trap: Trap = Trap::Auto, word(OVER), "the trap of a third layer of colour over the others" => Program;
         layer3_palette: Vec<DVec3> = colors(), triples(MOST_STOPS, 0.0, 1.0), "colours of the third layer, sRGB";
         layer3_scale: f64 = 1.0, number(-1000.0, 1000.0), "factor on the number of its trap";
-        layer3_offset: f64 = 0.0, number(-1000.0, 1000.0), "what is added to it";
+        layer3_offset: f64 = 0.0, number(-1000.0, 1000.0), "number that is added to the trap's after the scale";
         layer3_blend: Blend = Blend::Mix, word(&Blend::WORDS), "how it is laid over the others";
         layer3_weight: f64 = 0.5, number(0.0, 1.0), "its share of the colour";
     }

@@ -155,7 +155,7 @@ impl Plan {
                 "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
                 "samples" = count(&mut self.samples, 1, MOST_PIXEL_SAMPLES), "rays through each pixel, whose colours are averaged: 1 is quick and has jagged edges, 16 is smooth, 256 is for print" => March;
                 "until" = number(&mut self.until, 0.0, 1.0), "error of the shown picture, from black 0 to white 1, below which a tile of 64 x 64 pixels gets no more samples: 0 for all samples everywhere, 0.004 for one level of 8 bits" => March;
-                "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower one has the same details, made small by its samples; auto is the picture's own height" => March;
+                "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower picture shows the same details, averaged by its samples; auto is the picture's own height" => March;
                 "background" = word(&mut self.background, &Background::WORDS), "what files have behind the hits: sky, or transparent for alpha, the share of a pixel's samples that hit, in PNG, WebP and EXR; fog still fades toward the sky's colour, and the window shows the sky" => Nothing;
                 "ppi" = auto_count(&mut self.ppi, 1, 10_000), "pixels per inch on paper, which PNG, JPEG and EXR tell printers; auto tells none" => Nothing;
             ],
@@ -211,7 +211,7 @@ impl Plan {
         let view = self.camera.view(self.size);
         let [own, shown] = [self.size[1], self.reference.unwrap_or(0)].map(f64::from);
         View {
-            reach: if self.samples > 1 { RADIUS } else { 0.0 },
+            filter_radius: if self.samples > 1 { RADIUS } else { 0.0 },
             lens: self.camera.lens().filter(|_| self.samples > 1),
             grain: view.grain * own / own.max(shown),
             ..view
@@ -281,7 +281,7 @@ impl Plan {
 
     /// The plan as it is rendered. It has no maps and textures that only colours need, and a single
     /// sample, if these extras ask for no colours. It has no cones where they do not pay, unless the
-    /// plan says how coarse they are; over heightfields they always pay.
+    /// plan says how coarse they are.
     pub fn resolved(&self, extras: Extras) -> Cow<'_, Self> {
         let mut plan = Cow::Borrowed(self);
         if let Some(scene) = self.scene.colorless()
@@ -304,7 +304,7 @@ impl Plan {
     /// Whether cones save more time than they take.
     fn cones_pay(&self) -> bool {
         let Some(solid) = self.scene.without_assets(&self.viewpoint()) else {
-            return self.size[0] * self.size[1] >= self.scene.cone_pixels();
+            return self.size.map(u64::from).iter().product::<u64>() >= self.scene.cone_pixels();
         };
         solid.run(Probe {
             view: self.view(),

@@ -104,9 +104,9 @@ impl Plan {
     }
 
     /// The rays of the picture's pixels.
-    pub fn sights(&self) -> Sights {
+    pub fn picture_rays(&self) -> PictureRays {
         let all = self.eyes().map_or(vec![self.clone()], Vec::from);
-        Sights {
+        PictureRays {
             width: self.size[0] / all.len() as u32,
             views: all.iter().map(Self::view).collect(),
         }
@@ -115,12 +115,12 @@ impl Plan {
 
 /// The rays of a picture of one view, or of two side by side.
 #[derive(Clone, Debug)]
-pub struct Sights {
+pub struct PictureRays {
     views: Vec<View>,
     width: u32,
 }
 
-impl Sights {
+impl PictureRays {
     /// Where the ray of a pixel's centre starts from, and the ray.
     pub fn ray(&self, [x, y]: [u32; 2]) -> (DVec3, Beam) {
         let at = (x / self.width) as usize;
@@ -184,9 +184,9 @@ mod tests {
         let mut plan = plan();
         for stereo in [Stereo::Pair, Stereo::Cross, Stereo::Off] {
             plan.camera.stereo = stereo;
-            let sights = plan.sights();
+            let rays = plan.picture_rays();
             for pixel in [[0, 0], [639, 7], [640, 7], [1279, 719]] {
-                let (eye, ray) = sights.ray(pixel);
+                let (eye, ray) = rays.ray(pixel);
                 let (view, at) = match plan.eyes() {
                     Some(eyes) => {
                         let half = pixel[0] / 640;

@@ -26,7 +26,7 @@ pub fn file_text(path: &Path) -> Result<String, String> {
     let unreadable = |e: std::io::Error| format!("cannot be read: {e}; {UNREADABLE}");
     let kind = fs::metadata(path).map_err(unreadable)?;
     if kind.is_dir() {
-        return Err("is a folder; name a .toml or .png file in it".into());
+        return Err("is a folder; name a .toml, .png or .exr file in it".into());
     }
     // Asked before the file is opened: opening a pipe waits until somebody writes into it,
     // and a device may never end. Streams of this process are open already.

@@ -34,7 +34,7 @@ pub fn keys() -> Vec<(String, &'static str, Vec<String>)> {
 }
 
 /// The words in quotes that a key expects, or those of a switch.
-fn words(expects: &str) -> Vec<String> {
+pub(super) fn words(expects: &str) -> Vec<String> {
     match expects {
         "true or false" => vec!["true".into(), "false".into()],
         _ => expects

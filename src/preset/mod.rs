@@ -1,7 +1,8 @@
 //! Presets: the text of a Plan.
 //!
 //! - `builtin`: those of the program; `source`: one by its name, `file_text`: one in a file
-//! - `document`, `read`: from TOML to a Plan; `write`: back; `beside`: for a file with names of others
+//! - `document`, `read`: from TOML to a Plan; `write`: back; `beside`: back, for a file in
+//!   another folder
 //! - `error`: why a preset is wrong; `nearest`: the word that may have been meant
 //! - `keys`: the list of all keys
 

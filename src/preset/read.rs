@@ -11,7 +11,7 @@ use crate::preset::document::{
     Entry, Origin, Override, SECTIONS, TRACK, brief, line_of, parse, unknown_section,
 };
 use crate::preset::error::PresetError;
-use crate::preset::keys::keys;
+use crate::preset::keys::{keys, words};
 use crate::preset::nearest::{nearest, perhaps};
 use crate::preset::source::Source;
 use crate::scene::{Assets, Scene};
@@ -77,6 +77,12 @@ impl Preset {
         let loaded = assets.load(&self.plan);
         loaded.map_err(|fault| self.source.fault(&self.plan, &self.entries, fault))
     }
+}
+
+/// The word that an entry's value probably means, in the middle of a sentence, or nothing.
+fn near<'a>(entry: &Entry, words: impl Iterator<Item = &'a str>) -> String {
+    let near = entry.value.as_str().and_then(|given| nearest(given, words));
+    near.map_or(String::new(), |near| format!(", perhaps \"{near}\""))
 }
 
 /// The plan of a preset's text; see [`Preset::read`].
@@ -165,8 +171,7 @@ impl Source {
         if let Some(word) = words.iter().find(|w| given == Some(w)) {
             return Ok(word);
         }
-        let near = given.and_then(|g| nearest(g, words.iter().copied()));
-        let near = near.map_or(String::new(), |n| format!(", perhaps \"{n}\""));
+        let near = near(entry, words.iter().copied());
         let one = format!("must be one of {}", quoted(words));
         Err(self.value(entry, &format!("{one}{near}")))
     }
@@ -218,7 +223,11 @@ impl Source {
             return Err(self.value(entry, &unknown_key(entry, &keys, &of)));
         };
         let set = key.slot.set(&entry.value);
-        set.map_err(|why| self.value(entry, &format!("must be {why}")))
+        set.map_err(|why| {
+            let words = words(&why);
+            let near = near(entry, words.iter().map(String::as_str));
+            self.value(entry, &format!("must be {why}{near}"))
+        })
     }
 
     /// A fault of the whole plan, reported at its key or at the overrides that cause it.

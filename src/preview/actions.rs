@@ -23,7 +23,7 @@ use crate::preview::live::{Live, quoted};
 use crate::preview::play::{set_view, with_still};
 use crate::preview::probe;
 use crate::preview::still::Still;
-use crate::preview::views::Shot;
+use crate::preview::views::ShownView;
 
 /// Two clicks within this time are a double click.
 const DOUBLE_CLICK: Duration = Duration::from_millis(350);
@@ -193,13 +193,13 @@ impl Live {
             return;
         }
         let now = match self.shot {
-            Shot::Fronts(n) => n,
+            ShownView::Fronts(n) => n,
             _ => levels,
         };
         let next = now.saturating_add_signed(by as isize).min(levels);
         self.shot = match next {
-            n if n == levels => Shot::Layer(Layer::Color),
-            n => Shot::Fronts(n),
+            n if n == levels => ShownView::Layer(Layer::Color),
+            n => ShownView::Fronts(n),
         };
     }
 
@@ -283,7 +283,7 @@ impl Live {
                 }
             }
         }
-        if let Shot::Layer(layer) = self.shot
+        if let ShownView::Layer(layer) = self.shot
             && layer != Layer::Color
         {
             line += &format!(" --layer {}", layer.name());

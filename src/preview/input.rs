@@ -7,7 +7,7 @@ use winit::keyboard::KeyCode;
 
 use crate::picture::Layer;
 use crate::preview::flight::Thrust;
-use crate::preview::views::Shot;
+use crate::preview::views::ShownView;
 
 /// The keys, and what they do. Two columns of them fit into 640 pixels.
 pub const HELP: [(&str, &str); 30] = [
@@ -57,7 +57,7 @@ pub enum Action {
     /// Hides or shows the figures of the passes.
     Figures,
     /// Shows a layer or the ways of cones.
-    Show(Shot),
+    Show(ShownView),
     /// Shows the fronts of another pass, so many later.
     NextPass(i32),
     /// The camera of the preset.
@@ -88,7 +88,7 @@ pub enum Action {
 
 /// What a key that goes down asks for at once.
 pub fn action(key: KeyCode, ctrl: bool, shift: bool) -> Option<Action> {
-    let layer = |layer| Some(Action::Show(Shot::Layer(layer)));
+    let layer = |layer| Some(Action::Show(ShownView::Layer(layer)));
     if ctrl {
         return match key {
             KeyCode::KeyZ if shift => Some(Action::Redo),
@@ -115,7 +115,7 @@ pub fn action(key: KeyCode, ctrl: bool, shift: bool) -> Option<Action> {
         KeyCode::Digit4 => layer(Layer::Position),
         KeyCode::Digit5 => layer(Layer::Steps),
         KeyCode::Digit6 => layer(Layer::State),
-        KeyCode::Digit7 => Some(Action::Show(Shot::Ends)),
+        KeyCode::Digit7 => Some(Action::Show(ShownView::Ends)),
         KeyCode::BracketLeft => Some(Action::NextPass(-1)),
         KeyCode::BracketRight => Some(Action::NextPass(1)),
         KeyCode::Space => Some(Action::Play),

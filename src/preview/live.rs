@@ -23,7 +23,7 @@ use crate::preview::question::Question;
 use crate::preview::reload::{Watched, files_in, sources};
 use crate::preview::screen::Shown;
 use crate::preview::still::Still;
-use crate::preview::views::Shot;
+use crate::preview::views::ShownView;
 use crate::preview::window::{Options, REST, Stage};
 use crate::scene::Assets;
 
@@ -73,7 +73,7 @@ pub struct Live {
     pub cursor: PhysicalPosition<f64>,
     pub drag: Option<Drag>,
     pub clicked: Option<Instant>,
-    pub shot: Shot,
+    pub shot: ShownView,
     pub visible: Visible,
     /// What lies over the picture: x, y, width and height of each part in pixels.
     pub over: Vec<[u32; 4]>,
@@ -151,7 +151,7 @@ impl Live {
             cursor: PhysicalPosition::default(),
             drag: None,
             clicked: None,
-            shot: Shot::Layer(Default::default()),
+            shot: ShownView::Layer(Default::default()),
             visible: Visible {
                 panel: true,
                 timeline: !preset.plan.tracks.is_empty(),
@@ -315,7 +315,7 @@ impl Live {
         }
         let extras = self.shot.extras();
         let figures = self.visible.figures;
-        let is_plain = self.shot == Shot::Layer(Layer::Color) && !figures;
+        let is_plain = self.shot == ShownView::Layer(Layer::Color) && !figures;
         let kept = Extras {
             time: figures,
             count: figures || extras.count,
@@ -359,7 +359,7 @@ impl Live {
         };
         let view = finished.plan.view();
         match (self.shot, finished.texture) {
-            (Shot::Layer(Layer::Color), Some(texture)) if finished.plan.look.bloom == 0.0 => {
+            (ShownView::Layer(Layer::Color), Some(texture)) if finished.plan.look.bloom == 0.0 => {
                 self.stage.screen.hold(texture, view);
             }
             (shot, _) => {

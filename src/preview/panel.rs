@@ -8,10 +8,8 @@ use toml::Value;
 
 use crate::base::key::{Key, Kind, Redo};
 use crate::plan::Plan;
+use crate::preset::SECTIONS;
 use crate::preview::gui::small;
-
-/// Sections as they are shown, in order.
-const SECTIONS: [&str; 6] = ["scene", "camera", "march", "look", "image", "time"];
 
 /// Widths of the names of keys and of one number of three, in points.
 const NAME_WIDTH: f32 = 92.0;

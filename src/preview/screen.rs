@@ -17,7 +17,7 @@ use crate::preview::draw::{
 use crate::preview::error::PreviewError;
 
 /// A finished picture.
-struct Held {
+struct FinishedPicture {
     texture: wgpu::Texture,
     bound: wgpu::BindGroup,
     view: View,
@@ -39,7 +39,7 @@ pub struct Screen {
     show_panel: wgpu::RenderPipeline,
     sampler: wgpu::Sampler,
     parameters: wgpu::Buffer,
-    held: Option<Held>,
+    held: Option<FinishedPicture>,
     panel: Panel,
     surface: wgpu::Surface<'static>,
 }
@@ -191,17 +191,19 @@ impl Screen {
     /// The texture for a picture of a size: the last one, if it fits.
     fn room(&mut self, view: View) -> &wgpu::Texture {
         let size = view.size;
-        let fits = |held: &Held| [held.texture.width(), held.texture.height()] == size;
+        let fits = |held: &FinishedPicture| [held.texture.width(), held.texture.height()] == size;
         let held = self.held.take().filter(fits);
-        let held = held.map(|held| Held { view, ..held }).unwrap_or_else(|| {
-            let texture = texture(&self.device, "shown", size, TextureUsages::COPY_DST);
-            let bound = self.bind(&texture);
-            Held {
-                texture,
-                bound,
-                view,
-            }
-        });
+        let held = held
+            .map(|held| FinishedPicture { view, ..held })
+            .unwrap_or_else(|| {
+                let texture = texture(&self.device, "shown", size, TextureUsages::COPY_DST);
+                let bound = self.bind(&texture);
+                FinishedPicture {
+                    texture,
+                    bound,
+                    view,
+                }
+            });
         &self.held.insert(held).texture
     }
 

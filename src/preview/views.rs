@@ -8,7 +8,7 @@ use crate::plan::{Extras, Plan};
 
 /// What the window shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shot {
+pub enum ShownView {
     /// A layer of the picture.
     Layer(Layer),
     /// For each pixel the pass that ended its way: a cone level that found nothing but sky, or the
@@ -18,7 +18,7 @@ pub enum Shot {
     Fronts(usize),
 }
 
-impl Shot {
+impl ShownView {
     /// What a render must keep for it.
     pub fn extras(self) -> Extras {
         match self {

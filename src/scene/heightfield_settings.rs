@@ -12,7 +12,7 @@ use crate::heightfield::tracer::settings::{Make, PrepareError};
 
 /// Cones pay from so many pixels on. Over the built-in heightfields, rays alone are faster at
 /// 160 x 90, neither at 320 x 180, and cones at 640 x 360.
-const CONE_PIXELS: u32 = 50_000;
+const CONE_PIXELS: u64 = 50_000;
 
 impl SceneSettings for HeightfieldSettings {
     fn kind(&self) -> &'static str {
@@ -51,7 +51,7 @@ impl SceneSettings for HeightfieldSettings {
         false
     }
 
-    fn cone_pixels(&self) -> u32 {
+    fn cone_pixels(&self) -> u64 {
         CONE_PIXELS
     }
 

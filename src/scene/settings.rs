@@ -100,7 +100,7 @@ pub trait SceneSettings {
     }
 
     /// The fewest pixels of a picture in which cones pay, whatever the view.
-    fn cone_pixels(&self) -> u32 {
+    fn cone_pixels(&self) -> u64 {
         0
     }
 

@@ -41,7 +41,7 @@ pub struct SlabUniform {
 settings! {
     /// The settings of a slab about the origin.
     pub struct SlabSettings {
-        normal: DVec3 = DVec3::Z, triple(-1e6, 1e6), "normal of the two flat faces: the direction at right angles to them; not zero";
+        normal: DVec3 = DVec3::Z, triple(-1e6, 1e6), "normal of the two flat faces: the direction at right angles to them; must not be [0, 0, 0]";
         half: f64 = 0.5, number(1e-6, 1e6), "half the thickness of the slab";
         radius: f64 = 6.0, number(1e-6, 1e6), "radius of the slab";
     }

@@ -1,12 +1,15 @@
 //! Films: tracks in presets, one moment of a film, and its frames.
 
 use std::fs;
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::Duration;
 
 use conemarch::plan::Plan;
 use conemarch::preset::{read, write};
 use glam::DVec3;
 
-use crate::folder::{Folder, output, said};
+use crate::folder::{Folder, output, said, signal};
 use crate::images::pixels;
 
 /// A film of 8 frames: a camera that circles, and a light that grows.
@@ -248,6 +251,50 @@ fn wrong_films_are_refused_before_the_first_frame() {
         said(&without)
     );
     assert_eq!(folder.files(), ["film.toml"]);
+}
+
+/// A program stands in for ffmpeg: it writes its last argument, or waits.
+#[cfg(unix)]
+#[test]
+fn a_video_appears_whole_or_not_at_all() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    folder.write("film.toml", FILM);
+    fs::create_dir(folder.0.join("bin")).unwrap();
+    let joins = |how: &str| {
+        let script = format!("#!/bin/sh\n[ $1 = -version ] && exit\nfor to; do :; done\n{how}\n");
+        folder.write("bin/ffmpeg", script);
+        let file = folder.0.join("bin/ffmpeg");
+        fs::set_permissions(file, fs::Permissions::from_mode(0o755)).unwrap();
+        let line = "animate film.toml -o f-%d.png --frames 0..1 --video v.mp4 --device cpu";
+        let mut command = folder.command(line);
+        let path = format!("{}:{}", folder.0.join("bin").display(), env!("PATH"));
+        command.env("PATH", path);
+        command
+    };
+    let frames = ["bin", "f-0.png", "f-1.png", "film.toml"];
+    let broken = output(&mut joins("echo half >$to; echo no room >&2; exit 1"));
+    assert_eq!(broken.status.code(), Some(1));
+    assert!(said(&broken).ends_with("ffmpeg did not write `v.mp4`: no room\n"));
+    assert_eq!(folder.files(), frames);
+    let mut waits = joins("echo half >$to; exec sleep 30");
+    let child = waits.stderr(Stdio::piped()).spawn().unwrap();
+    let waits = || folder.files().iter().any(|name| name.ends_with(".tmp"));
+    while !waits() {
+        sleep(Duration::from_millis(20));
+    }
+    signal(child.id(), "TERM");
+    let ended = child.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(143));
+    let says = "error: cancelled; the frames are written; the same command joins them\n";
+    assert!(said(&ended).ends_with(says), "{}", said(&ended));
+    assert_eq!(folder.files(), frames);
+    let joined = output(&mut joins("echo whole >$to"));
+    assert_eq!(joined.status.code(), Some(0), "{}", said(&joined));
+    assert_eq!(folder.bytes("v.mp4"), b"whole\n");
+    let mode = |name: &str| folder.0.join(name).metadata().unwrap().permissions().mode();
+    assert_eq!(mode("v.mp4"), mode("f-0.png"));
+    assert_eq!(folder.files().len(), frames.len() + 1);
 }
 
 #[test]

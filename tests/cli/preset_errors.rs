@@ -113,7 +113,7 @@ tiles = [1, 2] => p.toml:3: scene.tiles = [1, 2]: the map is repeated along y, b
 field = "fbm:9000x1" => p.toml:3: scene.field = "fbm:9000x1": `9000x1` is not a size
 field = "hills" => p.toml:3: scene.field = "hills": hills: there is no such file or field; fields are fbm
 field = "none/there.png" => p.toml:3: scene.field = "none/there.png": none/there.png:
-map = "exact" => p.toml:3: scene.map = "exact": the tracer walk cannot use such cones; it can use those of walk
+map = "exact" => p.toml:3: scene.map = "exact": the tracer `walk` cannot use the cones of the generator `exact`; it can use those of walk, or auto
 tracer = "max-mip"|map = "exact" => p.toml:4: scene.map = "exact": the tracer max-mip needs no cones
 tracer = "linear-binary"|map = "none/there.exr" => p.toml:4: scene.map = "none/there.exr": the tracer linear-binary needs no cones
 map = "none/there.exr" => p.toml:3: scene.map = "none/there.exr": none/there.exr:
@@ -172,6 +172,7 @@ camera.fov=[1 => --set camera.fov=[1: the value is not TOML
 camera.eye=[0, 0, 0] => --set camera.eye=[0, 0, 0]: p.toml:5: camera.target = [0, 0, 0]: the eye
 camera.fov=0 & camera.fov=50 => --set camera.fov=0: must be
 scene.scale=0.5 => --set scene.scale=0.5:
+look.mode=pth => --set look.mode=pth: must be one of "quick", "path", perhaps "path"
 scene.kind=cube & scene.kind=distance => --set scene.kind=cube: must be one of
 scene.formula=cube & scene.formula=balls => --set scene.formula=cube: must be one of
 "#;

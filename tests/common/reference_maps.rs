@@ -191,23 +191,23 @@ pub fn of(heights: &Heights, patches: Patches, kind: MapKind, offset: f64) -> Co
     }
 }
 
-/// Cones of the walk over a relief.
-pub fn walk(relief: &HeightSurface, offset: f64) -> ConeMap {
-    of(relief.heights(), relief.patches(), MapKind::Walk, offset)
+/// Cones of the walk over a height surface.
+pub fn walk(surface: &HeightSurface, offset: f64) -> ConeMap {
+    of(surface.heights(), surface.patches(), MapKind::Walk, offset)
 }
 
-/// Relaxed cones of the walk over a relief.
-pub fn walk_relaxed(relief: &HeightSurface, offset: f64) -> ConeMap {
+/// Relaxed cones of the walk over a height surface.
+pub fn walk_relaxed(surface: &HeightSurface, offset: f64) -> ConeMap {
     let kind = MapKind::WalkRelaxed;
-    of(relief.heights(), relief.patches(), kind, offset)
+    of(surface.heights(), surface.patches(), kind, offset)
 }
 
 /// Empty cones over samples, four or one to a sample, under the name of a kind.
-pub fn samples(relief: &HeightSurface, kind: MapKind) -> ConeMap {
+pub fn samples(surface: &HeightSurface, kind: MapKind) -> ConeMap {
     let made = match kind {
         MapKind::Quad => MapKind::Quad,
         _ => MapKind::Samples,
     };
-    let map = of(relief.heights(), relief.patches(), made, 0.0);
+    let map = of(surface.heights(), surface.patches(), made, 0.0);
     ConeMap { kind, ..map }
 }

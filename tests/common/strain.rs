@@ -43,7 +43,7 @@ pub fn faults(plan: &Plan, frame: &Frame) -> Vec<String> {
         let wanted = f32::from(u8::from(!sky(i)));
         length.is_nan() || (length - wanted).abs() >= UNIT
     });
-    let position = frame.positions(&plan.sights());
+    let position = frame.positions(&plan.picture_rays());
     bad("position", &|i| position[i].iter().any(|x| !x.is_finite()));
     let limit = plan.visits() * plan.ray_steps(&solid(plan));
     bad("evaluations", &|i| frame.work[i].evaluations > limit);

@@ -11,7 +11,7 @@ use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::{Heights, Patches};
 use conemarch::heightfield::pattern::Pattern;
 use conemarch::heightfield::tracer::cones::Lookup;
-use conemarch::heightfield::tracer::settings::{Supply, TracerSettings};
+use conemarch::heightfield::tracer::settings::{TracerCones, TracerSettings};
 use conemarch::heightfield::tracer::{
     Accuracy, LocalRay, Step, Trace, TraceError, TraceHit, Tracer, TracerKind,
 };
@@ -197,7 +197,7 @@ pub fn tracer(
     settings: &TracerSettings,
     map: Option<Arc<ConeMap>>,
 ) -> Result<Arc<Tracer>, TraceError> {
-    let cones = map.map(Supply::from);
+    let cones = map.map(TracerCones::from);
     settings.tracer.make(surface, cones.as_ref(), settings, 0.0)
 }
 

@@ -69,7 +69,7 @@ fn shadows_reach_across_the_block_from_wherever_they_are_seen() {
             plan.camera = camera([3.0, 0.0, height], [5.0, 0.0, 0.0], 70.0);
         }
         for (dark, lit) in both(&plan, NORMALS).into_iter().zip(both(&open, NORMALS)) {
-            let position = dark.positions(&plan.sights());
+            let position = dark.positions(&plan.picture_rays());
             let floor = |i: &usize| dark.normal[*i][2] > 0.99 && position[*i][2] < 0.1;
             let floor: Vec<usize> = (0..dark.state.len()).filter(floor).collect();
             assert!(floor.len() > 500, "{} pixels of floor", floor.len());

@@ -139,7 +139,7 @@ fn views(projection: Projection) -> Vec<View> {
         let view = camera.view(size);
         let lens = camera.lens().filter(|_| projection.has_lens());
         let samples = View {
-            reach: RADIUS,
+            filter_radius: RADIUS,
             ..view
         };
         [view, samples, View { lens, ..samples }]
@@ -183,7 +183,7 @@ fn every_ray_lies_in_the_cone_of_its_cell_in_every_projection() {
                             low[i] + within(count, share(random))
                         });
                         let place = DVec2::new(share(random), share(random));
-                        let offset = view.reach * (2.0 * place - 1.0);
+                        let offset = view.filter_radius * (2.0 * place - 1.0);
                         let ray = view.view_ray_from(
                             pixel,
                             offset,

@@ -83,8 +83,8 @@ fn a_window_is_a_part_of_the_picture_bit_for_bit() {
                 assert_eq!((found.size, found.origin), (size, origin));
                 assert_eq!(bits(&found), bits(&expected), "{}: {origin:?}", plan.title);
                 assert_eq!(
-                    found.positions(&plan.sights()),
-                    expected.positions(&plan.sights())
+                    found.positions(&plan.picture_rays()),
+                    expected.positions(&plan.picture_rays())
                 );
                 let shown =
                     |frame: &Frame, layer| Shades::new(layer, frame, plan).rows(BitDepth::Eight);

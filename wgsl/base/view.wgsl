@@ -14,7 +14,7 @@ struct ViewUniform {
     slack: f32,
     forward: vec3<f32>,
     /// How far rays of a pixel go from its centre, in pixels.
-    reach: f32,
+    filter_radius: f32,
     /// Width and height of the full image in pixels.
     size: vec2<u32>,
     /// The footprint at distance 1 along the view axis; of parallel rays, at any distance.
@@ -71,5 +71,5 @@ fn view_cone(cell: vec2<u32>, divisor: u32) -> Beam {
     let low = cell * divisor;
     let high = min(low + vec2<u32>(divisor), view.size);
     let middle = vec2<f32>(0.5 * f32(low.x + high.x), 0.5 * f32(low.y + high.y));
-    return view_over(middle, vec2<f32>(high - low - vec2<u32>(1u)) + 2.0 * view.reach);
+    return view_over(middle, vec2<f32>(high - low - vec2<u32>(1u)) + 2.0 * view.filter_radius);
 }

@@ -9,7 +9,8 @@ use crate::command::bench::files::{Files, RowFiles};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::print::say;
-use crate::command::{arguments, completions, memory};
+use crate::command::progress::Reporter;
+use crate::command::{arguments, completions, interrupt, memory};
 use crate::gpu::adapters::Choice;
 use crate::gpu::device::DeviceError;
 use crate::plan::Plan;
@@ -87,9 +88,12 @@ impl Common {
             names.extend(preset::BUILTIN.iter().map(|(name, _)| name.into()));
         }
         let mut subjects: Vec<Subject> = Vec::new();
+        let mut progress = Reporter::start("loading");
         for (i, named) in names.iter().enumerate() {
             let preset = preset::load(named, &[])?;
+            progress.report(i as f64 / names.len() as f64, &preset.name);
             preset.load_assets(assets)?;
+            interrupt::check()?;
             let Preset { name, mut plan, .. } = preset;
             // What is compared is a single ray of each pixel.
             plan = plan.one_sample();
@@ -99,7 +103,8 @@ impl Common {
                     "two presets are called `{name}`, and rows and pictures are told apart by the name; leave one out, or rename its file"
                 )));
             }
-            memory::check(&plan, BYTES_PER_PIXEL, assets).with_context(|| name.clone())?;
+            memory::check(&plan, BYTES_PER_PIXEL, assets, &self.device)
+                .with_context(|| name.clone())?;
             let what = of_how_many(&name, i, names.len());
             subjects.push(Subject { name, plan, what });
         }

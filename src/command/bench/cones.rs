@@ -26,7 +26,7 @@ use crate::heightfield::conemap::{ConeMap, MapKind};
 use crate::heightfield::height_surface::HeightSurface;
 use crate::heightfield::heights::{Heights, Patches};
 use crate::heightfield::pattern::Pattern;
-use crate::heightfield::tracer::settings::{Supply, TracerSettings};
+use crate::heightfield::tracer::settings::{TracerCones, TracerSettings};
 use crate::heightfield::tracer::{Accuracy, Tracer, TracerKind};
 use crate::measure::tracer_stats::{first_hits, measure, view_rays};
 
@@ -85,10 +85,10 @@ fn pairs() -> Vec<(TracerKind, Option<Generator>)> {
 /// Options of `bench cones`.
 #[derive(Debug, Args)]
 pub struct ConesBench {
-    /// Fields; the first five by default
+    /// Fields to measure [default: the first five]
     #[arg(value_name = "FIELD", value_parser = fields())]
     fields: Vec<Pattern>,
-    /// Samples, instead of 128x128 and 256x256
+    /// Columns and rows of the fields [default: 128x128 and 256x256]
     #[arg(long, value_name = "WxH", value_parser = samples)]
     size: Option<[u32; 2]>,
     /// Treat each sample as a flat box, instead of joining four samples by a patch
@@ -233,7 +233,7 @@ impl Measured<'_> {
                     }
                     continue;
                 }
-                let cones = map.map(|(_, map)| Supply::from(map.clone()));
+                let cones = map.map(|(_, map)| TracerCones::from(map.clone()));
                 let settings = TracerSettings::from(kind);
                 let tracer = kind.make(&self.surface, cones.as_ref(), &settings, 0.0)?;
                 rows.push(TracerRow {

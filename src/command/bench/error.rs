@@ -71,7 +71,10 @@ pub fn run(args: &ErrorBench) -> Result<()> {
         let fitting: Vec<(&Setting, Plan)> = fitting.collect();
         let truths = truths(cache.as_ref(), &all.assets, subject, &fitting)?;
         let stride = truths[&truth_key(&subject.plan)].note.stride;
+        let mut progress = Reporter::start("sampling the shape");
+        progress.report(0.0, &subject.what);
         let set = sharpness::sample(&subject.plan, &all.assets, stride)?;
+        drop(progress);
         let references = (&truths, &set);
         let measured = measure(
             &mut all.executor,

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::command::bench::row::flat;
 use crate::command::print::{print, tell};
-use crate::command::sink::{Parcel, Sink, apart, is_stdout, spared};
+use crate::command::sink::{Results, Sink, apart, is_stdout, spared};
 
 /// The options for rows, which all measurements share.
 #[derive(Debug, Args)]
@@ -41,7 +41,7 @@ impl RowFiles {
             csv: csv?,
             plot: plot?,
             printing: named.iter().any(|(_, path)| path.is_some_and(is_stdout)),
-            parcel: Parcel::default(),
+            parcel: Results::default(),
         })
     }
 }
@@ -55,7 +55,7 @@ pub struct Files {
     /// Whether standard output is one of them.
     printing: bool,
     /// Results that are written already.
-    pub parcel: Parcel,
+    pub parcel: Results,
 }
 
 impl Files {

@@ -17,7 +17,7 @@ use crate::command::failure::usage;
 use crate::command::print::{print, say};
 use crate::command::progress::Reporter;
 use crate::command::render::loaded;
-use crate::command::sink::{Parcel, Sink};
+use crate::command::sink::{Results, Sink};
 use crate::command::table::table;
 use crate::command::{completions, interrupt, memory};
 use crate::gpu::adapters::Choice;
@@ -287,7 +287,7 @@ pub fn run(args: &FlightBench) -> Result<()> {
         .as_bytes(),
     )?;
     if let Some(json) = json {
-        let mut parcel = Parcel::default();
+        let mut parcel = Results::default();
         parcel.put_json(json, &rows)?;
         parcel.hand_over()?;
     }

@@ -35,7 +35,8 @@ pub struct Make {
     #[arg(value_name = "HEIGHTS", value_hint = ValueHint::FilePath)]
     heights: OsString,
 
-    /// Where to write: a .png or .exr file, or - for PNG on standard output
+    /// Where to write: a .png or .exr file, or - for PNG on standard output [default: NAME-cones.exr in
+    /// the current folder]
     #[arg(short, long, value_name = "MAP", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
 

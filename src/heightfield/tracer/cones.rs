@@ -153,12 +153,15 @@ fn cones_steps(tracer: &Tracer, ray: &LocalRay, s: f64) -> u32 {
 
 impl Method for Cones {
     fn numbers(&self, settings: &TracerSettings, _pixel: f64) -> TracerParameters {
-        let settles = self.refine == Refine::Patches;
+        let is_solved = self.refine == Refine::Patches;
         TracerParameters {
             scale: settings.stretch.unwrap_or(self.scale),
             steps: settings.own_steps(),
             lod: settings.lod.filter(|_| self.by_view).unwrap_or(0.0),
-            rounds: settings.rounds.filter(|_| !settles).unwrap_or(self.rounds),
+            rounds: settings
+                .rounds
+                .filter(|_| !is_solved)
+                .unwrap_or(self.rounds),
         }
     }
 

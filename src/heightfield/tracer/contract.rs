@@ -17,7 +17,7 @@ use crate::base::{outcome::Counts, shader::Module};
 use crate::heightfield::conemap::generate::mips::stored;
 use crate::heightfield::height_surface::{HeightmapUniform, TracerParameters};
 use crate::heightfield::tracer::{
-    GridRay, cones::Lookup, grid::grid_begin, reference::Reference, settings::Supply,
+    GridRay, cones::Lookup, grid::grid_begin, reference::Reference, settings::TracerCones,
     settings::TracerSettings, walk_mip::NodeCones,
 };
 use crate::heightfield::{ConeMap, HeightSurface, MapKind};
@@ -147,7 +147,7 @@ pub trait Method: Debug + Sync {
     }
 
     /// The cones of nodes, if it reads those: the supplied ones, or new ones.
-    fn nodes(&self, _: &HeightSurface, _: &Supply) -> Option<NodeCones> {
+    fn nodes(&self, _: &HeightSurface, _: &TracerCones) -> Option<NodeCones> {
         None
     }
 

@@ -39,7 +39,7 @@ pub struct GridRay<'a> {
 
 /// The part of a ray over a node, from where the ray stands.
 #[derive(Clone, Copy, Debug)]
-pub struct Over {
+pub struct NodeSpan {
     /// Where the ray leaves the node.
     pub exit: f64,
     /// The axis of the line by which it leaves.
@@ -183,12 +183,12 @@ impl GridRay<'_> {
     }
 
     /// The part of the ray over a node.
-    pub fn over(&self, node: &Node) -> Over {
+    pub fn over(&self, node: &Node) -> NodeSpan {
         let [x, y] = [0, 1].map(|axis| self.crossing(axis, self.far_line(axis, node)));
         let (exit, axis) = if x <= y { (x, 0) } else { (y, 1) };
         let to = exit.min(self.trace.end);
         let z = self.ray.height(self.trace.s);
-        Over {
+        NodeSpan {
             exit,
             axis,
             to,
@@ -249,7 +249,7 @@ impl GridRay<'_> {
     }
 
     /// Goes on to `next`, or to the node's exit if that is farther, after nothing was met there.
-    pub fn leave(&mut self, node: &Node, over: &Over, next: f64) -> Step {
+    pub fn leave(&mut self, node: &Node, over: &NodeSpan, next: f64) -> Step {
         if next.max(over.exit) >= self.trace.end {
             return self.end();
         }

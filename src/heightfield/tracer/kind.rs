@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::base::named::named_enum;
 use crate::heightfield::HeightSurface;
 use crate::heightfield::conemap::MapKind::{self, Relaxed, Samples};
-use crate::heightfield::tracer::settings::{Supply, TracerSettings};
+use crate::heightfield::tracer::settings::{TracerCones, TracerSettings};
 use crate::heightfield::tracer::{
     Method, TraceError, Tracer, cone::check_map, cones, linear::LinearBinary,
     max_mip::MaxMipTracer, relaxed::WalkRelaxed, walk::Walk, walk_mip,
@@ -123,7 +123,7 @@ impl TracerKind {
     pub fn make(
         self,
         surface: &Arc<HeightSurface>,
-        cones: Option<&Supply>,
+        cones: Option<&TracerCones>,
         settings: &TracerSettings,
         pixel: f64,
     ) -> Result<Arc<Tracer>, TraceError> {

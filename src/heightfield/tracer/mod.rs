@@ -28,5 +28,5 @@ pub use contract::{
     BASE, FACE_BITS, LocalRay, Method, SURFACE, Step, Trace, TraceError, TraceHit, Tracer,
     WALL_X_HIGH, WALL_X_LOW, WALL_Y_HIGH, WALL_Y_LOW,
 };
-pub use grid::{GridRay, Over};
+pub use grid::{GridRay, NodeSpan};
 pub use kind::{Accuracy, Steps, TracerKind};

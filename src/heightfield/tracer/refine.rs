@@ -4,8 +4,8 @@
 //! The two points are a bracket, and every way of refinement keeps it a bracket. (Policarpo
 //! and Oliveira's listing 18-3 starts at the ray's origin instead, and may end anywhere.) If
 //! there are several crossings, any of them may be found. Bisection and the secant method end
-//! near the surface after some rounds, as in the papers. Settling bisects until few cells are
-//! left, and solves these exactly. Over boxes every bracket is settled after its rounds: a
+//! near the surface after some rounds, as in the papers. `Refine::Patches` bisects
+//! until few cells are left, and solves these exactly. Over boxes every bracket ends so: a
 //! point near a box does not tell whether the ray meets its top or its side.
 
 use crate::base::outcome::{Counts, Step};
@@ -23,11 +23,11 @@ pub enum Refine {
     Patches,
 }
 
-/// Bisections of a bracket that settles. It begins with at most 2^16 cells and ends with a
+/// Bisections of a bracket over patches or boxes. It begins with at most 2^16 cells and ends with a
 /// small part of one, which lies in at most three cells, around a corner.
-pub const SETTLE_ROUNDS: u32 = 24;
+pub const BISECTIONS: u32 = 24;
 /// Cells that are solved then: three, and one in reserve.
-pub const SETTLE_CELLS: u32 = 4;
+pub const SOLVED_CELLS: u32 = 4;
 
 /// The ray's height above the surface at s.
 pub fn refine_over(grid: &GridRay<'_>, s: f64) -> f64 {
@@ -107,14 +107,14 @@ fn refine_secant(grid: &GridRay<'_>, from: [f64; 2], rounds: u32, work: &mut Cou
 
 fn refine_patches(grid: &mut GridRay<'_>, bracket: [f64; 2], work: &mut Counts) -> Step {
     let [mut low, mut high] = bracket;
-    for _ in 0..SETTLE_ROUNDS {
+    for _ in 0..BISECTIONS {
         if grid.cell(low) == grid.cell(high) {
             break;
         }
         [low, high] = halved(grid, [low, high], work);
     }
     grid.land(low);
-    for _ in 0..SETTLE_CELLS {
+    for _ in 0..SOLVED_CELLS {
         let over = grid.over(&grid.surface.node(grid.trace.cell, 0));
         if grid.solve(over.exit.min(high)) {
             return Step::Hit;

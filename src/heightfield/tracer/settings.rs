@@ -77,7 +77,7 @@ impl From<Fault> for PrepareError {
 
 /// The cones that a tracer uses.
 #[derive(Clone, Debug)]
-pub struct Supply {
+pub struct TracerCones {
     /// The map.
     pub map: Arc<ConeMap>,
     /// The cones of nodes, for a tracer that reads those.
@@ -86,7 +86,7 @@ pub struct Supply {
     pub note: Option<String>,
 }
 
-impl<M: Into<Arc<ConeMap>>> From<M> for Supply {
+impl<M: Into<Arc<ConeMap>>> From<M> for TracerCones {
     fn from(map: M) -> Self {
         Self {
             map: map.into(),
@@ -278,7 +278,8 @@ impl TracerSettings {
         let usable = Generator::ALL.iter().filter(|g| fits(g));
         let names: Vec<&str> = usable.map(|g| g.name()).collect();
         Err(fault(format!(
-            "the tracer {name} cannot use such cones; it can use those of {}",
+            "the tracer `{name}` cannot use the cones of the generator `{}`; it can use those of {}, or auto",
+            self.map,
             names.join(", ")
         )))
     }
@@ -292,12 +293,12 @@ impl TracerSettings {
         surface: &HeightSurface,
         folder: &Path,
         make: Make<'_>,
-    ) -> Result<Option<Supply>, PrepareError> {
+    ) -> Result<Option<TracerCones>, PrepareError> {
         if !self.tracer.needs_map() {
             return Ok(None);
         }
         let mut supply = match self.generator() {
-            Some(generator) => Supply::from(self.made(generator, surface, make)?),
+            Some(generator) => TracerCones::from(self.made(generator, surface, make)?),
             None => self.read(folder, surface)?,
         };
         supply.nodes = self.tracer.facts().method.nodes(surface, &supply);
@@ -305,7 +306,7 @@ impl TracerSettings {
     }
 
     /// The cones of a file.
-    fn read(&self, folder: &Path, surface: &HeightSurface) -> Result<Supply, Fault> {
+    fn read(&self, folder: &Path, surface: &HeightSurface) -> Result<TracerCones, Fault> {
         let path = folder.join(&self.map);
         let file = read_map(&path).map_err(|e| fault(e.to_string()))?;
         let wanted = MapUse {
@@ -317,9 +318,9 @@ impl TracerSettings {
         file.check_use(&path, &wanted)
             .map_err(|e| fault(e.to_string()))?;
         let note = file.unknown();
-        Ok(Supply {
+        Ok(TracerCones {
             note: note.map(|note| format!("{} {note}", path.display())),
-            ..Supply::from(file.map)
+            ..TracerCones::from(file.map)
         })
     }
 
@@ -348,7 +349,7 @@ impl TracerSettings {
     pub fn tracer(
         &self,
         surface: &Arc<HeightSurface>,
-        cones: Option<&Supply>,
+        cones: Option<&TracerCones>,
         pixel: f64,
     ) -> Result<Arc<Tracer>, Fault> {
         let made = self.tracer.make(surface, cones, self, pixel);

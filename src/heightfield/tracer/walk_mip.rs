@@ -24,8 +24,8 @@ use crate::base::{outcome::Counts, shader::Module};
 use crate::heightfield::conemap::generate::mips::{ConeLevel, mips, stored};
 use crate::heightfield::height_surface::{Node, TracerParameters};
 use crate::heightfield::tracer::cone::{WALK_TRUST, cone_end};
-use crate::heightfield::tracer::settings::{Supply, TracerSettings};
-use crate::heightfield::tracer::{GridRay, Method, Over, Step, Tracer};
+use crate::heightfield::tracer::settings::{TracerCones, TracerSettings};
+use crate::heightfield::tracer::{GridRay, Method, NodeSpan, Step, Tracer};
 use crate::heightfield::{ConeMap, HeightSurface};
 use crate::wgsl;
 
@@ -63,7 +63,7 @@ pub fn walk_mip_level(surface: &HeightSurface, lod: f64, s: f64) -> u32 {
 }
 
 /// Marks the hit of a node: where the ray comes down to its maximum, or at once.
-fn walk_mip_meet(grid: &mut GridRay<'_>, node: &Node, over: &Over) -> Step {
+fn walk_mip_meet(grid: &mut GridRay<'_>, node: &Node, over: &NodeSpan) -> Step {
     let mut s = grid.trace.s;
     let fall = -grid.ray.axis.z;
     if over.height > 0.0 && fall > 0.0 {
@@ -95,7 +95,7 @@ impl Method for WalkMip {
         }
     }
 
-    fn nodes(&self, surface: &HeightSurface, supply: &Supply) -> Option<NodeCones> {
+    fn nodes(&self, surface: &HeightSurface, supply: &TracerCones) -> Option<NodeCones> {
         let made = || node_cones(surface, &supply.map);
         self.of_nodes
             .then(|| supply.nodes.clone().unwrap_or_else(made))

@@ -1,13 +1,13 @@
 // Refinement: from a point above the surface and a later point under it, a bracket, to a hit
-// between them. Bisection and the secant method end near the surface after some rounds. Settling
-// bisects until few cells are left, and solves these exactly. If there are several crossings, any
-// of them may be found. Over boxes every bracket is settled after its rounds: a point near a box
-// does not tell whether the ray meets its top or its side.
+// between them. Bisection and the secant method end near the surface after some rounds. The way
+// for patches bisects until few cells are left, and solves these exactly. If there are several
+// crossings, any of them may be found. Over boxes every bracket ends so: a point near a box does not
+// tell whether the ray meets its top or its side.
 
-/// Bisections of a bracket that settles, and cells that are solved then. What is left of 2^16
+/// Bisections of a bracket over patches or boxes, and cells that are solved then. What is left of 2^16
 /// cells is a small part of one, which lies in at most three cells, around a corner.
-const SETTLE_ROUNDS = 24u;
-const SETTLE_CELLS = 4u;
+const BISECTIONS = 24u;
+const SOLVED_CELLS = 4u;
 
 /// The ray's height above the surface at s.
 fn refine_over(o: vec3<f32>, d: vec3<f32>, s: f32) -> f32 {
@@ -76,7 +76,7 @@ fn refine_secant(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracke
 fn refine_patches(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, bracket: vec2<f32>) {
     var low = bracket.x;
     var high = bracket.y;
-    for (var i = 0u; i < SETTLE_ROUNDS; i++) {
+    for (var i = 0u; i < BISECTIONS; i++) {
         if all(grid_cell(o, d, low) == grid_cell(o, d, high)) {
             break;
         }
@@ -90,7 +90,7 @@ fn refine_patches(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, brack
     }
     // The first of these patches that is met is the hit.
     grid_land(o, d, trace, low);
-    for (var i = 0u; i < SETTLE_CELLS; i++) {
+    for (var i = 0u; i < SOLVED_CELLS; i++) {
         let exit = grid_exit(o, d, (*trace).cell, (*trace).cell + 1);
         if grid_solve(o, d, trace, min(exit.x, high)) {
             return;
