@@ -53,9 +53,12 @@ impl Bands {
     /// It is to be resumed, and it has no bands.
     pub fn of(args: &Render, plan: &Plan, format: Format, output: &Path) -> Result<Option<Self>> {
         let whole = output.metadata().is_ok_and(|m| !m.is_file()) || is_stdout(output);
-        let can = format == Format::Png && args.layer.is_local() && !whole && plan.window.is_none();
+        let can =
+            format == Format::Png && args.layer.facts().is_local && !whole && plan.window.is_none();
         if args.resume && !can {
-            let local = Layer::ALL.into_iter().filter(|layer| layer.is_local());
+            let local = Layer::ALL
+                .into_iter()
+                .filter(|layer| layer.facts().is_local);
             let local: Vec<&str> = local.map(Layer::name).collect();
             return Err(usage(format!(
                 "only a .png file of one of the layers {} can be resumed; leave --resume out, or write such a file",

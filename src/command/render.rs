@@ -126,7 +126,7 @@ pub struct Render {
 }
 
 fn layers() -> impl TypedValueParser<Value = Layer> {
-    words(Layer::ALL.map(|layer| (layer, layer.name(), layer.facts())))
+    words(Layer::ALL.map(|layer| (layer, layer.name(), layer.facts().help)))
 }
 
 /// Renders a preset.
@@ -359,7 +359,7 @@ fn explain(args: &Render, plan: &Plan, assets: &Assets, extras: Extras) -> Resul
 }
 
 fn extras(args: &Render, format: Format) -> Extras {
-    let mut extras = args.layer.extras();
+    let mut extras = args.layer.facts().extras;
     extras.normals |= format == Format::Exr;
     extras.variance |= format == Format::Exr;
     extras.count |= args.stats.is_some();

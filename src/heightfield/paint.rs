@@ -11,13 +11,15 @@ use crate::wgsl;
 
 /// What may pick the hue. `brute` is missing because its map is that of `exact`.
 pub const PAINTS: &[(&str, Option<Generator>)] = &{
-    // `brute` is the first generator.
     let mut paints = [("height", None); Generator::ALL.len()];
-    let mut i = 1;
-    while i < paints.len() {
-        let (name, generator) = Generator::WORDS[i];
-        paints[i] = (name, Some(generator));
-        i += 1;
+    let (mut from, mut to) = (0, 1);
+    while from < Generator::WORDS.len() {
+        let (name, generator) = Generator::WORDS[from];
+        if !matches!(generator, Generator::Brute) {
+            paints[to] = (name, Some(generator));
+            to += 1;
+        }
+        from += 1;
     }
     paints
 };

@@ -15,75 +15,92 @@ use crate::picture::frame::{Frame, in_image};
 use crate::plan::{Background, Extras, Plan};
 use crate::raster::png::{self, BitDepth};
 
+/// What is particular to a layer.
+#[derive(Clone, Copy, Debug)]
+pub struct LayerFacts {
+    /// What it shows.
+    pub help: &'static str,
+    /// Numbers per pixel, without alpha: one is enough for a depth.
+    pub channels: usize,
+    /// Whether a part of a picture can be shown without the rest.
+    pub is_local: bool,
+    /// What a render must keep for it.
+    pub extras: Extras,
+}
+
+/// Three numbers per pixel that need the whole picture, and no colours.
+fn marched(help: &'static str) -> LayerFacts {
+    LayerFacts {
+        help,
+        channels: 3,
+        is_local: false,
+        extras: Extras {
+            depth_only: true,
+            ..Extras::default()
+        },
+    }
+}
+
+/// Three numbers per pixel that need only the pixel's light, normal or samples.
+fn colored(help: &'static str) -> LayerFacts {
+    LayerFacts {
+        is_local: true,
+        extras: Extras::default(),
+        ..marched(help)
+    }
+}
+
 named_enum! {
-    /// What a picture can show, and its description.
+    /// What a picture can show.
     #[derive(Default)]
-    pub enum Layer: &'static str {
+    pub enum Layer: LayerFacts {
         /// Radiance as a screen shows it.
         #[default]
-        Color = "color" => "light, tone-mapped",
+        Color = "color" => colored("light, tone-mapped"),
         /// Distances along the rays.
-        Depth = "depth" => "distance from the eye as grey: nearest black, farthest 95 % white, sky white",
+        Depth = "depth" => LayerFacts {
+            channels: 1,
+            ..marched("distance from the eye as grey: nearest black, farthest 95 % white, sky white")
+        },
         /// Normals in the world.
-        Normal = "normal" =>
-            "world normals, x y z as red green blue, -1..1 to 0..1; sky mid grey",
+        Normal = "normal" => LayerFacts {
+            extras: Extras { normals: true, ..Extras::default() },
+            ..colored("world normals, x y z as red green blue, -1..1 to 0..1; sky mid grey")
+        },
         /// Positions in the world.
         Position = "position" =>
-            "world positions, each axis from its least to its greatest in the picture; sky black",
+            marched("world positions, each axis from its least to its greatest in the picture; sky black"),
         /// The work of each pixel.
-        Steps = "steps" =>
-            "how often the distance to the surface was computed: violet none, yellow the 99th percentile and above",
+        Steps = "steps" => LayerFacts {
+            extras: Extras { count: true, depth_only: true, ..Extras::default() },
+            ..marched("how often the distance to the surface was computed: violet none, yellow the 99th percentile and above")
+        },
         /// What each pixel is.
-        State = "state" =>
-            "sky dark blue, hit light grey, unconverged (the ray reached its step limit) magenta",
+        State = "state" => LayerFacts {
+            is_local: true,
+            ..marched("sky dark blue, hit light grey, unconverged (the ray reached its step limit) magenta")
+        },
         /// Samples of each pixel.
-        Samples = "samples" =>
-            "share of image.samples that a pixel has, as grey: black none, white all; image.until stops sampling smooth tiles early",
+        Samples = "samples" => LayerFacts {
+            channels: 1,
+            ..colored("share of image.samples that a pixel has, as grey: black none, white all; image.until stops sampling smooth tiles early")
+        },
         /// How much the samples of each pixel differ.
-        Variance = "variance" =>
-            "square root of the variance of a pixel's luminance, computed as if its samples were random: black 0, white 0.1 and more; an EXR has the variance",
+        Variance = "variance" => LayerFacts {
+            channels: 1,
+            extras: Extras { variance: true, ..Extras::default() },
+            ..colored("square root of the variance of a pixel's luminance, computed as if its samples were random: black 0, white 0.1 and more; an EXR has the variance")
+        },
         /// Errors of the depth.
         Error = "error" =>
-            "error of the depth. A slow reference, the truth, is rendered too. Grey is no error. Red is 8 half pixels too deep, or no hit. Blue is 8 half pixels too near",
+            marched("error of the depth. A slow reference, the truth, is rendered too. Grey is no error. Red is 8 half pixels too deep, or no hit. Blue is 8 half pixels too near"),
     }
 }
 
 impl Layer {
-    /// Numbers per pixel, without alpha: one is enough for a depth.
-    pub fn channels(self) -> usize {
-        if matches!(self, Self::Depth | Self::Samples | Self::Variance) {
-            1
-        } else {
-            3
-        }
-    }
-
     /// Whether files of the layer have alpha: colours over a transparent background.
     pub fn has_alpha(self, plan: &Plan) -> bool {
         self == Self::Color && plan.background == Background::Transparent
-    }
-
-    /// Whether a part of a picture can be shown without the rest.
-    pub fn is_local(self) -> bool {
-        matches!(
-            self,
-            Self::Color | Self::Normal | Self::State | Self::Samples | Self::Variance
-        )
-    }
-
-    /// What a render must keep for the layer.
-    pub fn extras(self) -> Extras {
-        Extras {
-            count: self == Self::Steps,
-            normals: self == Self::Normal,
-            variance: self == Self::Variance,
-            // The colour pass makes colours and normals, and counts samples.
-            depth_only: !matches!(
-                self,
-                Self::Color | Self::Normal | Self::Samples | Self::Variance
-            ),
-            ..Extras::default()
-        }
     }
 }
 
@@ -229,7 +246,7 @@ impl<'a> Shades<'a> {
 
     /// Whether one number per pixel is enough.
     pub fn is_grey(&self) -> bool {
-        self.layer.channels() == 1
+        self.layer.facts().channels == 1
     }
 
     /// Whether alpha follows the numbers of the layer.
@@ -262,7 +279,7 @@ impl<'a> Shades<'a> {
     /// All pixels as whole numbers up to `most`, rows over threads: three per pixel, four with alpha,
     /// one where the layer is grey. Colours of 8 bits are dithered.
     pub(crate) fn samples(&self, most: u16) -> Vec<u16> {
-        let channels = self.layer.channels() + usize::from(self.has_alpha());
+        let channels = self.layer.facts().channels + usize::from(self.has_alpha());
         let is_dithered = self.is_color() && most == BitDepth::Eight.most();
         let [width, height] = self.size.map(|n| n as usize);
         // The cast saturates, and turns NaN into black.

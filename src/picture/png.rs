@@ -35,7 +35,7 @@ pub struct PngHead<'a> {
 impl PngHead<'_> {
     /// Numbers of a pixel.
     fn channels(&self) -> usize {
-        self.layer.channels() + usize::from(self.alpha)
+        self.layer.facts().channels + usize::from(self.alpha)
     }
 
     /// Bytes of a row of pixels.

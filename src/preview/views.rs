@@ -22,7 +22,7 @@ impl ShownView {
     /// What a render must keep for it.
     pub fn extras(self) -> Extras {
         match self {
-            Self::Layer(layer) => layer.extras(),
+            Self::Layer(layer) => layer.facts().extras,
             Self::Ends | Self::Fronts(_) => Extras {
                 levels: true,
                 depth_only: true,

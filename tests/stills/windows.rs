@@ -88,7 +88,10 @@ fn a_window_is_a_part_of_the_picture_bit_for_bit() {
                 );
                 let shown =
                     |frame: &Frame, layer| Shades::new(layer, frame, plan).rows(BitDepth::Eight);
-                for layer in Layer::ALL.into_iter().filter(|layer| layer.is_local()) {
+                for layer in Layer::ALL
+                    .into_iter()
+                    .filter(|layer| layer.facts().is_local)
+                {
                     assert_eq!(shown(&found, layer), shown(&expected, layer), "{layer:?}");
                 }
             }

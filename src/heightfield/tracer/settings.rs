@@ -308,6 +308,11 @@ impl TracerSettings {
     /// The cones of a file.
     fn read(&self, folder: &Path, surface: &HeightSurface) -> Result<TracerCones, Fault> {
         let path = folder.join(&self.map);
+        if !self.map.contains(['.', '/', '\\']) && !path.exists() {
+            let names = Generator::ALL.map(Generator::name).join(", ");
+            let why = format!("there is no such file or generator; generators are {names}");
+            return Err(fault(why));
+        }
         let file = read_map(&path).map_err(|e| fault(e.to_string()))?;
         let wanted = MapUse {
             who: &format!("the tracer {}", self.tracer.name()),
