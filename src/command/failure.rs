@@ -3,7 +3,7 @@
 use clap::error::ErrorKind;
 use thiserror::Error;
 
-use crate::command::interrupt;
+use crate::command::interrupt::{self, CANCELLED};
 use crate::gpu::RenderError;
 use crate::heightfield::conemap::generate::generator::GenerateError;
 use crate::heightfield::file_error::FileError;
@@ -45,9 +45,6 @@ pub fn sentence(error: &anyhow::Error) -> String {
         (false, _) => one_line(&format!("{error:#}")),
     }
 }
-
-/// The sentence after an interrupt.
-pub const CANCELLED: &str = "cancelled; nothing was written";
 
 /// A text on one line.
 pub fn one_line(text: &str) -> String {

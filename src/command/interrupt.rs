@@ -9,7 +9,6 @@ use std::time::{Duration, Instant};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-use crate::command::failure::CANCELLED;
 use crate::command::print::say;
 use crate::gpu::RenderError;
 use crate::picture;
@@ -19,6 +18,9 @@ use crate::picture;
 const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
 #[cfg(not(unix))]
 const SIGNALS: [i32; 2] = [SIGINT, SIGTERM];
+
+/// The sentence after an interrupt.
+pub const CANCELLED: &str = "cancelled; nothing was written";
 
 /// The exit code that a signal asked for; 0 before.
 static ASKED: AtomicUsize = AtomicUsize::new(0);
