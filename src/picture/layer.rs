@@ -142,7 +142,7 @@ const HIT: DVec3 = DVec3::new(0.82, 0.82, 0.82);
 const UNCONVERGED: DVec3 = DVec3::new(1.0, 0.0, 1.0);
 
 impl<'a> Shades<'a> {
-    /// A layer of a frame that was rendered with [`Layer::extras`] from a plan. A part of a picture
+    /// A layer of a frame that was rendered with [`LayerFacts::extras`] from a plan. A part of a picture
     /// has no bloom: see [`Shades::of_part`].
     pub fn new(layer: Layer, frame: &'a Frame, plan: &Plan) -> Self {
         let bloom = match layer {
