@@ -26,7 +26,7 @@ pub use error::OutputError;
 pub use exr::{FAR, Named, write_exr, write_exr_channels, write_exr_part};
 #[cfg(feature = "cli")]
 pub use folder::Folder;
-pub use layer::{Layer, Shades, heat};
+pub use layer::{Layer, LayerFacts, Shades, heat};
 #[cfg(feature = "cli")]
 pub use place::{Place, clear, commit, set_unfinished};
 pub use png::{LAYER_KEYWORD, PngHead, write_png, write_png_rows};
