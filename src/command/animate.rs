@@ -253,9 +253,9 @@ fn render(
         let name = pattern.name(*frame);
         let text = preset::write_beside(plan, &name);
         write_png(to, &picture, depth, &plan.title, &text)?;
-        let mut parcel = Results::default();
-        parcel.put(Sink::prepare(&name)?, &content)?;
-        parcel.hand_over()?;
+        let mut results = Results::default();
+        results.put(Sink::prepare(&name)?, &content)?;
+        results.hand_over()?;
     }
     Ok(())
 }
@@ -321,6 +321,7 @@ fn join(film: &Plan, pattern: &Pattern, [first, last]: [u32; 2], video: &Path) -
         ])
         .arg(&made)
         .stdin(Stdio::null())
+        .stdout(Stdio::null())
         .stderr(said.try_clone()?);
     let mut ffmpeg = ffmpeg.spawn().context("ffmpeg does not start")?;
     let status = loop {

@@ -122,8 +122,8 @@ pub fn check_pixels(what: &str, size: [u32; 2], bytes_per_pixel: u64, helps: &st
 ///
 /// # Errors
 /// It does not fit.
-pub fn check_map(ratios: u64) -> Result<()> {
-    fits(lacking_maps(ratios, available(true)))
+pub fn check_map(ratios: u64, who: &Choice) -> Result<()> {
+    fits(lacking_maps(ratios, available(*who != Choice::Cpu)))
 }
 
 fn fits(lacking: Option<String>) -> Result<()> {

@@ -105,7 +105,7 @@ pub fn run(args: &Merge) -> Result<()> {
         title: &plan.title,
         preset: &text,
     };
-    let mut parcel = Results::default();
+    let mut results = Results::default();
     match (format, &mut sink) {
         (Format::Png, sink) => {
             // With bloom, each pixel's colour needs the light of all parts.
@@ -128,7 +128,7 @@ pub fn run(args: &Merge) -> Result<()> {
                 Sink::Stdout => {
                     let mut content = Vec::new();
                     write_png_rows::<anyhow::Error>(&mut content, &head, lines)?;
-                    parcel.print(&content);
+                    results.print(&content);
                 }
             }
         }
@@ -155,16 +155,16 @@ pub fn run(args: &Merge) -> Result<()> {
                 format.encode(&args.options, &plan, &whole, (Vec::new(), &args.output))?;
             match sink {
                 Sink::File(place) => place.write_all(&content)?,
-                Sink::Stdout => parcel.print(&content),
+                Sink::Stdout => results.print(&content),
             }
         }
     }
     drop(progress);
     interrupt::check()?;
     if let Sink::File(place) = sink {
-        parcel.add(place);
+        results.add(place);
     }
-    parcel.hand_over()?;
+    results.hand_over()?;
     for (device, count) in devices {
         say(&format!("{} by {device}", counted(count, "part")));
     }

@@ -71,9 +71,9 @@ pub fn run(args: &Preview) -> Result<()> {
         started,
     })?;
     if let Some(stats) = stats {
-        let mut parcel = Results::default();
-        parcel.put_json(stats, &figures)?;
-        parcel.hand_over()?;
+        let mut results = Results::default();
+        results.put_json(stats, &figures)?;
+        results.hand_over()?;
     }
     Ok(())
 }

@@ -206,7 +206,7 @@ pub fn run(args: &Render) -> Result<()> {
     if let Some(warning) = executor.precision_warning(&plan) {
         say(&format!("warning: {warning}"));
     }
-    let mut parcel = Results::default();
+    let mut results = Results::default();
     let mut big = None;
     let mut made = match (bands, picture) {
         (Some(bands), Sink::File(mut place)) => {
@@ -215,7 +215,7 @@ pub fn run(args: &Render) -> Result<()> {
             let made = big
                 .insert(begun)
                 .make(&mut executor, (&assets, extras), &mut place)?;
-            parcel.add(place);
+            results.add(place);
             made
         }
         (_, picture) => {
@@ -225,7 +225,7 @@ pub fn run(args: &Render) -> Result<()> {
                 &mut executor,
                 (format, &output),
             )?;
-            parcel.put(picture, &content.0)?;
+            results.put(picture, &content.0)?;
             content.1
         }
     };
@@ -237,11 +237,11 @@ pub fn run(args: &Render) -> Result<()> {
             warm_times(&mut executor, &plan, &assets, &mut made)?;
         }
         let stats = Stats::new(&name, &plan, &executor, &made);
-        parcel.put_json(figures, &stats)?;
+        results.put_json(figures, &stats)?;
     }
     let handed = interrupt::check()
         .map_err(Into::into)
-        .and_then(|()| parcel.hand_over());
+        .and_then(|()| results.hand_over());
     match big {
         Some(big) => big.end(handed)?,
         None => handed?,

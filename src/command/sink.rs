@@ -36,9 +36,9 @@ impl Sink {
     /// # Errors
     /// The disk is full, or standard output does not take all of it.
     pub fn finish(self, content: &[u8]) -> Result<()> {
-        let mut parcel = Results::default();
-        parcel.put(self, content)?;
-        parcel.hand_over()
+        let mut results = Results::default();
+        results.put(self, content)?;
+        results.hand_over()
     }
 }
 

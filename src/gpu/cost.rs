@@ -34,7 +34,8 @@ pub struct Cost {
     /// Estimated milliseconds of a dispatch.
     pub dispatch_ms: f64,
     /// The most milliseconds that a unit of the slice took lately. Ground takes much longer than the
-    /// sky before it.
+    /// sky before it. A first dispatch counts as twice `FIRST_MS`, so that what follows sky does not grow
+    /// by the whole of `MOST_LONGER`.
     peak_ms: f64,
     /// Dispatches of the stage in the last block, cut as it is now.
     last: Option<u32>,

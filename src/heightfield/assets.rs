@@ -86,10 +86,10 @@ impl Assets {
         if settings.reads_cones() {
             let surface = self.surface(settings)?;
             match self.cones(settings, &surface, &mut on_cpu) {
-                Ok(supply) => {
+                Ok(cones) => {
                     settings
                         .tracer_settings
-                        .tracer(&surface, (*supply).as_ref(), 0.0)?;
+                        .tracer(&surface, (*cones).as_ref(), 0.0)?;
                 }
                 Err(PrepareError::Fault(fault)) => return Err(fault),
                 // No generator runs for a map that is read.
@@ -190,9 +190,9 @@ impl Assets {
         {
             notes.extend(ground.note.clone());
             if settings.reads_cones()
-                && let Ok(supply) = self.cones(settings, &ground.surface, &mut on_cpu)
+                && let Ok(cones) = self.cones(settings, &ground.surface, &mut on_cpu)
             {
-                notes.extend(supply.iter().filter_map(|s| s.note.clone()));
+                notes.extend(cones.iter().filter_map(|s| s.note.clone()));
             }
         }
         if let Ok(Some(texture)) = self.texture(settings) {
@@ -321,9 +321,9 @@ impl Assets {
             paint_key(settings, by),
             |_| -> Result<_, PrepareError> {
                 if tracing.generator() == Some(by)
-                    && let Some(supply) = &*self.cones(settings, surface, make)?
+                    && let Some(cones) = &*self.cones(settings, surface, make)?
                 {
-                    return Ok(Paint::new(&supply.map));
+                    return Ok(Paint::new(&cones.map));
                 }
                 Ok(Paint::new(&tracing.made(by, surface, make)?))
             },

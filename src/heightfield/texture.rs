@@ -16,7 +16,7 @@ use crate::base::{shader::Module, srgb::linear};
 use crate::heightfield::heights::brought_in;
 use crate::heightfield::{HeightSurface, Patches};
 use crate::raster::open::{check_size, open};
-use crate::raster::texels::between;
+use crate::raster::texels::bilinear;
 use crate::wgsl;
 
 /// A picture over a height surface.
@@ -69,7 +69,7 @@ impl Texture {
             share * f64::from(self.size[a]) - 0.5
         };
         let index = |a: usize, i: i64| brought_in(i, self.size[a], heights.wrap()[a]) as usize;
-        between(place(0), place(1), |column, row| {
+        bilinear(place(0), place(1), |column, row| {
             let (column, row) = (index(0, column), index(1, row));
             let [r, g, b] = self.texels[row * self.size[0] as usize + column].map(f64::from);
             linear(DVec3::new(r, g, b) / 255.0)

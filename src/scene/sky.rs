@@ -13,7 +13,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use crate::base::array::SceneArray;
-use crate::raster::{hdr, texels::between};
+use crate::raster::{hdr, texels::bilinear};
 
 /// Cells about the up axis and along it. A cell is as wide as the sun.
 const SKY_CELLS: [u32; 2] = [512, 256];
@@ -144,7 +144,7 @@ impl Sky {
         let [w, h] = self.size.map(f64::from);
         let down = own.truncate().length().atan2(own.z) / PI;
         let (x, y) = (turns(own) * w - 0.5, down * h - 0.5);
-        between(x, y, |column, row| {
+        bilinear(x, y, |column, row| {
             let column = column.rem_euclid(i64::from(self.size[0]));
             let row = row.clamp(0, i64::from(self.size[1]) - 1);
             self.texel(column as usize, row as usize)

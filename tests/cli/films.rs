@@ -268,7 +268,8 @@ fn a_video_appears_whole_or_not_at_all() {
         fs::set_permissions(file, fs::Permissions::from_mode(0o755)).unwrap();
         let line = "animate film.toml -o f-%d.png --frames 0..1 --video v.mp4 --device cpu";
         let mut command = folder.command(line);
-        let path = format!("{}:{}", folder.0.join("bin").display(), env!("PATH"));
+        let others = std::env::var("PATH").unwrap();
+        let path = format!("{}:{others}", folder.0.join("bin").display());
         command.env("PATH", path);
         command
     };

@@ -116,7 +116,7 @@ field = "none/there.png" => p.toml:3: scene.field = "none/there.png": none/there
 map = "exact" => p.toml:3: scene.map = "exact": the tracer `walk` cannot use the cones of the generator `exact`; it can use those of walk, or auto
 tracer = "max-mip"|map = "exact" => p.toml:4: scene.map = "exact": the tracer max-mip needs no cones
 tracer = "linear-binary"|map = "none/there.exr" => p.toml:4: scene.map = "none/there.exr": the tracer linear-binary needs no cones
-map = "exakt" => p.toml:3: scene.map = "exakt": there is no such file or generator; generators are brute, 
+map = "exakt" => p.toml:3: scene.map = "exakt": there is no such file or generator; generators are brute,
 map = "none/there.exr" => p.toml:3: scene.map = "none/there.exr": none/there.exr:
 field = "fbm:8192x8192"|wrap = "xy"|tiles = [256, 256] => p.toml:5: scene.tiles = [256, 256]: 256 tiles of 8192 cells along axis 0 are out of range; there must be at least one tile and at most 65536 cells
 field = "fbm:4x1024"|wrap = "y"|tiles = [1, 65] => p.toml:5: scene.tiles = [1, 65]: 65 tiles of 1024 cells along axis 1 are out of range

@@ -90,7 +90,7 @@ pub fn run(args: &ErrorBench) -> Result<()> {
     all.files.show(&table::better_than_safe(&rows))?;
     all.files.show(&table::slides(&rows))?;
     if let Some(sink) = all.files.plot.take() {
-        all.files.parcel.put(sink, plot::draw(&rows).as_bytes())?;
+        all.files.results.put(sink, plot::draw(&rows).as_bytes())?;
     }
     all.files.write(&rows)
 }

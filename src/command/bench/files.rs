@@ -41,7 +41,7 @@ impl RowFiles {
             csv: csv?,
             plot: plot?,
             printing: named.iter().any(|(_, path)| path.is_some_and(is_stdout)),
-            parcel: Results::default(),
+            results: Results::default(),
         })
     }
 }
@@ -55,7 +55,7 @@ pub struct Files {
     /// Whether standard output is one of them.
     printing: bool,
     /// Results that are written already.
-    pub parcel: Results,
+    pub results: Results,
 }
 
 impl Files {
@@ -77,13 +77,13 @@ impl Files {
     /// A file or standard output cannot be written.
     pub fn write<R: Serialize>(mut self, rows: &[R]) -> Result<()> {
         if let Some(sink) = self.json {
-            self.parcel.put_json(sink, rows)?;
+            self.results.put_json(sink, rows)?;
         }
         if let Some(sink) = self.csv {
             let rows: Vec<_> = rows.iter().map(flat).collect();
-            self.parcel.put(sink, &csv(&rows)?)?;
+            self.results.put(sink, &csv(&rows)?)?;
         }
-        self.parcel.hand_over()
+        self.results.hand_over()
     }
 }
 

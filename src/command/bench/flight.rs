@@ -287,9 +287,9 @@ pub fn run(args: &FlightBench) -> Result<()> {
         .as_bytes(),
     )?;
     if let Some(json) = json {
-        let mut parcel = Results::default();
-        parcel.put_json(json, &rows)?;
-        parcel.hand_over()?;
+        let mut results = Results::default();
+        results.put_json(json, &rows)?;
+        results.hand_over()?;
     }
     Ok(())
 }

@@ -73,7 +73,7 @@ pub fn run(args: &StepsBench) -> Result<()> {
                 let shades = Shades::new(Layer::Steps, &frame, plan);
                 let text = preset::write_beside(plan, &file);
                 place.write(|to| write_png(to, &shades, BitDepth::Eight, &plan.title, &text))?;
-                all.files.parcel.add(place);
+                all.files.results.add(place);
             }
         }
     }

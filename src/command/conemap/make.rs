@@ -91,13 +91,13 @@ pub fn run(args: &Make) -> Result<()> {
     // The size of a field is known before its heights are made.
     let field = args.heights.to_str().and_then(PatternSpec::read);
     if let Some(Ok(field)) = field {
-        check_memory(generator, field.size)?;
+        check_memory(args, generator, field.size)?;
     }
     let mut progress = Reporter::start("making cones");
     let step = (&mut progress, "step 1 of 3: heights");
     let loaded = args.reading.load(&args.heights, step)?;
     let heights = &loaded.heights;
-    check_memory(generator, heights.size())?;
+    check_memory(args, generator, heights.size())?;
     // The default name is never that of the heights, and its format keeps everything.
     let mut default = loaded.name.clone();
     default.push("-cones.exr");
@@ -138,8 +138,9 @@ pub fn run(args: &Make) -> Result<()> {
 }
 
 /// Checks that there is memory for a map of heights of a size.
-fn check_memory(generator: Generator, [w, h]: [u32; 2]) -> Result<()> {
-    memory::check_map(u64::from(w) * u64::from(h) * generator.channels() as u64)
+fn check_memory(args: &Make, generator: Generator, [w, h]: [u32; 2]) -> Result<()> {
+    let ratios = u64::from(w) * u64::from(h) * generator.channels() as u64;
+    memory::check_map(ratios, &args.device)
 }
 
 /// Whether an option applies to a generator.

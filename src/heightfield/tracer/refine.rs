@@ -4,8 +4,8 @@
 //! The two points are a bracket, and every way of refinement keeps it a bracket. (Policarpo
 //! and Oliveira's listing 18-3 starts at the ray's origin instead, and may end anywhere.) If
 //! there are several crossings, any of them may be found. Bisection and the secant method end
-//! near the surface after some rounds, as in the papers. `Refine::Patches` bisects
-//! until few cells are left, and solves these exactly. Over boxes every bracket ends so: a
+//! near the surface after some rounds, as in the papers. `Refine::Patches` bisects until
+//! few cells are left, and solves these exactly. Over boxes every bracket ends so: a
 //! point near a box does not tell whether the ray meets its top or its side.
 
 use crate::base::outcome::{Counts, Step};

@@ -297,12 +297,12 @@ impl TracerSettings {
         if !self.tracer.needs_map() {
             return Ok(None);
         }
-        let mut supply = match self.generator() {
+        let mut cones = match self.generator() {
             Some(generator) => TracerCones::from(self.made(generator, surface, make)?),
             None => self.read(folder, surface)?,
         };
-        supply.nodes = self.tracer.facts().method.nodes(surface, &supply);
-        Ok(Some(supply))
+        cones.nodes = self.tracer.facts().method.nodes(surface, &cones);
+        Ok(Some(cones))
     }
 
     /// The cones of a file.

@@ -95,10 +95,10 @@ impl Method for WalkMip {
         }
     }
 
-    fn nodes(&self, surface: &HeightSurface, supply: &TracerCones) -> Option<NodeCones> {
-        let made = || node_cones(surface, &supply.map);
+    fn nodes(&self, surface: &HeightSurface, cones: &TracerCones) -> Option<NodeCones> {
+        let made = || node_cones(surface, &cones.map);
         self.of_nodes
-            .then(|| supply.nodes.clone().unwrap_or_else(made))
+            .then(|| cones.nodes.clone().unwrap_or_else(made))
     }
 
     fn advance(&self, tracer: &Tracer, grid: &mut GridRay<'_>, _work: &mut Counts) -> Step {

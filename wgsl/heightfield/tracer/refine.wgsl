@@ -1,6 +1,6 @@
 // Refinement: from a point above the surface and a later point under it, a bracket, to a hit
-// between them. Bisection and the secant method end near the surface after some rounds. The way
-// for patches bisects until few cells are left, and solves these exactly. If there are several
+// between them. Bisection and the secant method end near the surface after some rounds. The
+// refinement `Patches` bisects until few cells are left, and solves these exactly. If there are several
 // crossings, any of them may be found. Over boxes every bracket ends so: a point near a box does not
 // tell whether the ray meets its top or its side.
 
