@@ -1,7 +1,7 @@
 //! Films: tracks in presets, one moment of a film, and its frames.
 
 use std::fs;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -278,10 +278,9 @@ fn a_video_appears_whole_or_not_at_all() {
     assert_eq!(broken.status.code(), Some(1));
     assert!(said(&broken).ends_with("ffmpeg did not write `v.mp4`: no room\n"));
     assert_eq!(folder.files(), frames);
-    let mut waits = joins("echo half >$to; exec sleep 30");
+    let mut waits = joins("echo half >$to; echo $$ >bin/pid; exec sleep 30");
     let child = waits.stderr(Stdio::piped()).spawn().unwrap();
-    let waits = || folder.files().iter().any(|name| name.ends_with(".tmp"));
-    while !waits() {
+    while !folder.0.join("bin/pid").exists() {
         sleep(Duration::from_millis(20));
     }
     signal(child.id(), "TERM");
@@ -290,6 +289,11 @@ fn a_video_appears_whole_or_not_at_all() {
     let says = "error: cancelled; the frames are written; the same command joins them\n";
     assert!(said(&ended).ends_with(says), "{}", said(&ended));
     assert_eq!(folder.files(), frames);
+    let mut runs_on = Command::new("sh");
+    runs_on
+        .args(["-c", "kill -0 $(cat bin/pid)"])
+        .current_dir(&folder.0);
+    assert!(!output(&mut runs_on).status.success());
     let joined = output(&mut joins("echo whole >$to"));
     assert_eq!(joined.status.code(), Some(0), "{}", said(&joined));
     assert_eq!(folder.bytes("v.mp4"), b"whole\n");
