@@ -39,6 +39,8 @@ const MARKS: [&str; 2] = [
 ];
 /// Processes of each build per row; each has warm runs of its own.
 const RUNS: usize = 3;
+/// The same of the overhead at a small size, which is tenths of a millisecond.
+const SMALL_RUNS: usize = 15;
 /// Today's settings of the march.
 const TODAY: [&str; 2] = ["march.coarsest=auto", "march.shell=0.2"];
 /// The factor on the steps to the set.
@@ -83,23 +85,22 @@ fn old_presets(program: &str) -> Result<TempDir> {
     Ok(folder)
 }
 
-/// March and trace of a preset by both builds in turns: milliseconds on the clock, and those of
-/// the device.
-fn measured(args: &[String], preset: &Path, size: &str) -> Result<[[f64; 2]; 2]> {
+/// The overhead of march and trace by both builds in turns, in milliseconds.
+fn overheads(args: &[String], preset: &Path) -> Result<[f64; 2]> {
     let mut all = [vec![], vec![]];
-    for _ in 0..RUNS {
+    for _ in 0..SMALL_RUNS {
         for (runs, program) in all.iter_mut().zip(args) {
-            let Times {
-                marched, device, ..
-            } = run(program, preset, size, &[])?;
-            runs.push([marched, device]);
+            let times = run(program, preset, "64x36", &[])?;
+            runs.push(times.marched - times.device);
         }
     }
-    // The middle run by the overhead, which both figures belong to.
-    Ok(all.map(|mut runs| {
-        runs.sort_by(|a, b| (a[0] - a[1]).total_cmp(&(b[0] - b[1])));
-        runs[RUNS / 2]
-    }))
+    Ok(all.map(median))
+}
+
+/// The middle one of times.
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
 }
 
 /// The times of one render in milliseconds.
@@ -153,7 +154,7 @@ fn small(args: &[String], presets: &Path) -> Result<String> {
     let mut rows = Vec::new();
     for preset in LIVE {
         let file = presets.join(preset).with_extension("toml");
-        let [old, new] = measured(args, &file, "64x36")?.map(|[wall, device]| wall - device);
+        let [old, new] = overheads(args, &file)?;
         rows.push(format!("{preset} | {old:.2} | {new:.2} | {:.2}", new / old));
     }
     Ok(markdown::table(
@@ -193,14 +194,11 @@ fn large(args: &[String], presets: &Path) -> Result<String> {
                 times.push(run(program, &file, "1280x720", settings)?);
             }
         }
-        let median = |of: usize, figure: fn(&Times) -> f64| {
-            let mut times: Vec<f64> = all[of].iter().map(figure).collect();
-            times.sort_by(f64::total_cmp);
-            times[RUNS / 2]
-        };
-        let [old, same, new] = [0, 1, 2].map(|of| median(of, |t| t.marched));
+        let middle =
+            |of: usize, figure: fn(&Times) -> f64| median(all[of].iter().map(figure).collect());
+        let [old, same, new] = [0, 1, 2].map(|of| middle(of, |t| t.marched));
         let [whole_old, whole_same, whole, whole_sharp] =
-            [0, 1, 2, 3].map(|of| median(of, |t| t.marched + t.colored));
+            [0, 1, 2, 3].map(|of| middle(of, |t| t.marched + t.colored));
         let own = [
             same / old,
             new / old,
@@ -287,10 +285,7 @@ fn processes(args: &[String], presets: &Path) -> Result<String> {
                 runs.push(start.elapsed().as_secs_f64() * 1e3);
             }
         }
-        let [old, new] = all.map(|mut runs| {
-            runs.sort_by(f64::total_cmp);
-            runs[RUNS]
-        });
+        let [old, new] = all.map(median);
         rows.push(format!("{preset} | {old:.0} | {new:.0} | {:.2}", new / old));
     }
     Ok(markdown::table(

@@ -22,25 +22,32 @@ pub struct Module {
     pub source: Cow<'static, str>,
     /// Name and value of every override constant of the file; booleans as 0 or 1.
     pub constants: Vec<(&'static str, f64)>,
-    /// Whether it computes what its stand-in does while its parameters are zero. Then a program may
-    /// keep it when a slider passes through zero.
-    pub neutral: bool,
+    /// Path of a module that it can replace while its own parameters are zero. So a program can stay
+    /// when a slider passes through zero.
+    pub replaces: Option<String>,
 }
 
 impl Module {
-    /// The module, marked as neutral.
-    pub fn neutral(self) -> Self {
+    /// The module, which can replace another while its parameters are zero.
+    pub fn replacing(self, path: &str) -> Self {
         Self {
-            neutral: true,
+            replaces: Some(format!("wgsl/{path}")),
             ..self
         }
     }
 
-    /// Whether the module can replace another: it is the same, or neutral and the other one is its
-    /// stand-in.
+    /// The module, which can replace its stand-in, `NAME_off.wgsl`, while its parameters are zero.
+    pub fn neutral(self) -> Self {
+        let stand_in = self.path.replace(".wgsl", "_off.wgsl");
+        Self {
+            replaces: Some(stand_in),
+            ..self
+        }
+    }
+
+    /// Whether the module serves where another one is asked for.
     fn serves(&self, other: &Self) -> bool {
-        let stand_in = || self.path.replace(".wgsl", "_off.wgsl");
-        self == other || (self.neutral && other.path == stand_in())
+        self == other || self.replaces.as_deref() == Some(other.path)
     }
 }
 
@@ -52,7 +59,7 @@ macro_rules! wgsl {
             path: concat!("wgsl/", $path),
             source: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/", $path)).into(),
             constants: vec![$(($name, $value)),*],
-            neutral: false,
+            replaces: None,
         }
     };
 }

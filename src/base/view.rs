@@ -230,7 +230,7 @@ impl View {
     pub fn modules(&self) -> Vec<Module> {
         let mut all = vec![wgsl!("base/view.wgsl")];
         all.push(match self.lens {
-            Some(_) => wgsl!("base/lens.wgsl"),
+            Some(_) => wgsl!("base/lens.wgsl").neutral(),
             None => wgsl!("base/lens_off.wgsl"),
         });
         all.extend(self.projection.modules());

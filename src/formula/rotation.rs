@@ -49,7 +49,7 @@ impl Rotation {
     /// The WGSL module of a rotation, or of none.
     pub fn module(rotation: Option<&Self>) -> Module {
         match rotation {
-            Some(_) => wgsl!("formula/rotation.wgsl"),
+            Some(_) => wgsl!("formula/rotation.wgsl").neutral(),
             None => wgsl!("formula/rotation_off.wgsl"),
         }
     }
@@ -57,7 +57,7 @@ impl Rotation {
     /// The WGSL module of the Jacobian of an orbit with a rotation, or without.
     pub fn jacobian(rotation: Option<&Self>) -> Module {
         match rotation {
-            Some(_) => wgsl!("formula/jacobian.wgsl"),
+            Some(_) => wgsl!("formula/jacobian.wgsl").replacing("formula/jacobian_diagonal.wgsl"),
             None => wgsl!("formula/jacobian_diagonal.wgsl"),
         }
     }

@@ -1,5 +1,7 @@
 //! Copies what the device made of a block into the frame of the whole picture.
 
+use std::iter::repeat;
+
 use crate::base::outcome::{Counts, State};
 use crate::gpu::device::{Device, DeviceError};
 use crate::gpu::staging::Staging;
@@ -100,72 +102,67 @@ impl Parts {
         if self.bytes() == 0 {
             return Ok(());
         }
-        let mut at = 0;
-        let mut next = |r: Range| {
-            let start = at;
-            at += 4 * r.words as usize;
-            start
-        };
-        let starts = self.all().map(&mut next);
-        let words = |i: usize| -> Result<Vec<u32>, DeviceError> {
-            from.read(device, starts[i], self.all()[i].words as usize)
-        };
+        let view = from.view(device)?;
+        let mut rest = &view[..];
+        let parts = self.all().map(|r| {
+            let (part, after) = rest.split_at(4 * r.words as usize);
+            rest = after;
+            part
+        });
+        let [depth, state_words, tally, level_states, fronts, pixels] = parts;
         let whole = BlockPlace::new(layout, 1, frame);
-        let states_of = |words: Vec<u32>| -> Vec<Option<State>> {
-            words.iter().map(|w| state(*w, generation)).collect()
-        };
-        let states = states_of(words(1)?);
-        let mut depth: Vec<f32> = from.read(device, starts[0], self.depth.words as usize)?;
-        for (t, s) in depth.iter_mut().zip(&states) {
-            if code(*s) == State::Sky as u8 {
-                *t = f32::INFINITY;
-            }
-        }
-        let codes: Vec<u8> = states.iter().map(|s| code(*s)).collect();
-        whole.copy(&depth, &mut frame.depth);
-        whole.copy(&codes, &mut frame.state);
-        let tally: Vec<[u32; 2]> = from.read(device, starts[2], self.tally.words as usize / 2)?;
-        let level_states = states_of(words(3)?);
-        let fronts: Vec<f32> = from.read(device, starts[4], self.level_fronts.words as usize)?;
+        let states = || words::<1>(state_words).map(|[w]| state(w, generation));
+        let depths = words::<1>(depth)
+            .zip(states())
+            .map(|([t], state)| match code(state) {
+                SKY => f32::INFINITY,
+                _ => f32::from_bits(t),
+            });
+        whole.fill(&mut frame.depth, depths);
+        whole.fill(&mut frame.state, states().map(code));
+        let area = layout.count(1) as usize;
         for (i, pass) in passes.iter().enumerate().filter(|(_, p)| p.marches()) {
             let divisor = match pass {
                 Pass::March(level) => level.divisor,
                 _ => 1,
             };
             let place = BlockPlace::new(layout, divisor, frame);
+            let count = layout.count(divisor) as usize;
             let first = layout.state(divisor) as usize;
-            let cells = first..first + layout.count(divisor) as usize;
-            let area = layout.count(1) as usize;
-            let states = match divisor {
-                1 => &states[..],
-                _ => level_states
-                    .get(cells.start - area..cells.end - area)
-                    .unwrap_or_default(),
+            let states = || {
+                let words = match divisor {
+                    1 => state_words,
+                    _ => part(level_states, first - area, count),
+                };
+                self::words::<1>(words).map(|[w]| state(w, generation))
             };
-            let work = tally.get(cells.clone()).unwrap_or_default();
-            let work = work.iter().zip(states).map(|(w, s)| work_of(*w, *s));
-            let work: Vec<Counts> = work.collect();
-            if !work.is_empty() {
+            if !tally.is_empty() {
+                let tally = part(tally, 2 * first, 2 * count);
+                let work = || words::<2>(tally).zip(states()).map(|(w, s)| work_of(w, s));
                 let figures = &mut frame.passes[i];
-                let sum = |f: fn(&Counts) -> u32| work.iter().map(|w| u64::from(f(w))).sum::<u64>();
-                *figures.evaluations.get_or_insert(0) += sum(|w| w.evaluations);
-                *figures.iterations.get_or_insert(0) += sum(|w| w.iterations);
+                let [evaluations, iterations] = work().fold([0; 2], |[e, i], w| {
+                    [e + u64::from(w.evaluations), i + u64::from(w.iterations)]
+                });
+                *figures.evaluations.get_or_insert(0) += evaluations;
+                *figures.iterations.get_or_insert(0) += iterations;
+                let kept = match divisor {
+                    1 => &mut frame.work,
+                    _ => &mut frame.levels[i].work,
+                };
+                place.fill(kept, work());
             }
-            if divisor == 1 {
-                place.copy(&work, &mut frame.work);
-                continue;
+            if divisor > 1 && !fronts.is_empty() {
+                let layer = &mut frame.levels[i];
+                let fronts = words::<1>(part(fronts, first - area, count)).zip(states());
+                let fronts = fronts.map(|([front], state)| match state {
+                    Some(_) => f32::from_bits(front),
+                    None => f32::MAX,
+                });
+                place.fill(&mut layer.front, fronts);
+                place.fill(&mut layer.state, states().map(code));
             }
-            let layer = &mut frame.levels[i];
-            place.copy(&work, &mut layer.work);
-            let fronts = fronts.get(cells.start - area..cells.end - area);
-            let fronts = fronts.unwrap_or_default().iter().zip(states);
-            let fronts = fronts.map(|(front, state)| state.map_or(f32::MAX, |_| *front));
-            place.copy(&fronts.collect::<Vec<_>>(), &mut layer.front);
-            let codes: Vec<u8> = states.iter().map(|s| code(*s)).collect();
-            place.copy(&codes, &mut layer.state);
         }
-        let pixels: Vec<[f32; 4]> = from.read(device, starts[5], self.pixels.words as usize / 4)?;
-        let mut planes = pixels.chunks(codes.len().max(1));
+        let mut planes = pixels.chunks(16 * area);
         let mut plane = |kept: bool| match kept {
             true => planes.next().unwrap_or_default(),
             false => &[],
@@ -173,35 +170,39 @@ impl Parts {
         let light = plane(!frame.radiance.is_empty());
         let normals = plane(!frame.normal.is_empty() || !frame.variance.is_empty());
         let halves = plane(!frame.samples.is_empty());
-        let count = |p: &[f32; 4]| if p[3] > 0.0 { p[3] as u32 } else { samples };
-        let counts: Vec<u32> = halves.iter().map(count).collect();
-        let rgb = |p: &[[f32; 4]]| {
-            p.iter()
-                .map(|[r, g, b, _]| [*r, *g, *b])
-                .collect::<Vec<_>>()
-        };
+        let pixels_of = |plane| words::<4>(plane).map(|words| words.map(f32::from_bits));
+        let rgb = |[r, g, b, _]: [f32; 4]| [r, g, b];
+        let own_count = |p: [f32; 4]| if p[3] > 0.0 { p[3] as u32 } else { samples };
+        let counts = || pixels_of(halves).map(own_count).chain(repeat(samples));
         // One more than the hits, below zero if a shadow is a guess: see `background.wgsl`.
-        let count = |i: usize| counts.get(i).copied().unwrap_or(samples);
-        let share = |(i, p): (usize, &[f32; 4])| (p[3].abs() - 1.0) * (1.0 / count(i) as f32);
-        let alpha: Vec<f32> = match frame.alpha.is_empty() {
-            true => Vec::new(),
-            false => light.iter().enumerate().map(share).collect(),
-        };
-        frame.undecided += light.iter().filter(|p| p[3] <= 0.0).count();
-        let spread = |(i, p): (usize, &[f32; 4])| variance_of(p[3], count(i));
-        let variance: Vec<f32> = match frame.variance.is_empty() {
-            true => Vec::new(),
-            false => normals.iter().enumerate().map(spread).collect(),
-        };
-        whole.copy(&alpha, &mut frame.alpha);
-        whole.copy(&variance, &mut frame.variance);
-        whole.copy(&rgb(light), &mut frame.radiance);
-        if !frame.normal.is_empty() {
-            whole.copy(&rgb(normals), &mut frame.normal);
-        }
-        whole.copy(&counts, &mut frame.samples);
+        let share = |(p, count): ([f32; 4], u32)| (p[3].abs() - 1.0) * (1.0 / count as f32);
+        whole.fill(&mut frame.alpha, pixels_of(light).zip(counts()).map(share));
+        frame.undecided += pixels_of(light).filter(|p| p[3] <= 0.0).count();
+        let spread = |(p, count): ([f32; 4], u32)| variance_of(p[3], count);
+        whole.fill(
+            &mut frame.variance,
+            pixels_of(normals).zip(counts()).map(spread),
+        );
+        whole.fill(&mut frame.radiance, pixels_of(light).map(rgb));
+        whole.fill(&mut frame.normal, pixels_of(normals).map(rgb));
+        whole.fill(&mut frame.samples, counts());
         Ok(())
     }
+}
+
+const SKY: u8 = State::Sky as u8;
+
+/// Some words of a part.
+fn part(bytes: &[u8], first: usize, words: usize) -> &[u8] {
+    &bytes[4 * first..4 * (first + words)]
+}
+
+/// The words of a part, so many at a time.
+fn words<const N: usize>(bytes: &[u8]) -> impl Iterator<Item = [u32; N]> {
+    bytes.chunks_exact(4 * N).map(|chunk| {
+        let (words, _) = chunk.as_chunks::<4>();
+        std::array::from_fn(|i| u32::from_ne_bytes(words[i]))
+    })
 }
 
 /// The state in a word of a block; `None` if the block did not visit the cell.
@@ -242,14 +243,18 @@ impl BlockPlace {
         }
     }
 
-    fn copy<T: Copy>(&self, from: &[T], to: &mut [T]) {
-        if from.is_empty() || to.is_empty() {
+    /// Puts the values of the block into a layer, row by row, if the frame has that layer.
+    fn fill<T>(&self, to: &mut [T], mut from: impl Iterator<Item = T>) {
+        if to.is_empty() {
             return;
         }
-        let width = self.cells[0] as usize;
-        for (y, row) in (self.origin[1] as usize..).zip(from.chunks(width)) {
-            let start = y * self.width as usize + self.origin[0] as usize;
-            to[start..start + width].copy_from_slice(row);
+        let [x, y] = self.origin.map(|n| n as usize);
+        let rows = to.chunks_mut(self.width as usize).skip(y);
+        for row in rows.take(self.cells[1] as usize) {
+            let cells = row[x..].iter_mut().take(self.cells[0] as usize);
+            for (cell, value) in cells.zip(from.by_ref()) {
+                *cell = value;
+            }
         }
     }
 }

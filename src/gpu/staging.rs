@@ -50,6 +50,15 @@ impl Staging {
         self.mapped.load(Ordering::Acquire)
     }
 
+    /// The bytes that have arrived.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn view(&self, device: &Device) -> Result<wgpu::BufferView, DeviceError> {
+        let view = self.buffer.get_mapped_range(..);
+        view.map_err(|e| device.lost(e.to_string()))
+    }
+
     /// Values from an offset in bytes on.
     ///
     /// # Errors
@@ -60,8 +69,7 @@ impl Staging {
         at: usize,
         count: usize,
     ) -> Result<Vec<T>, DeviceError> {
-        let view = self.buffer.get_mapped_range(..);
-        let view = view.map_err(|e| device.lost(e.to_string()))?;
+        let view = self.view(device)?;
         Ok(bytemuck::pod_collect_to_vec(
             &view[at..at + count * size_of::<T>()],
         ))

@@ -37,11 +37,10 @@ impl Needs {
             && self.picture == other.picture
     }
 
-    /// The program of a stage that can run in place of another: that of the last frame, if a slider
-    /// passed through zero since.
-    pub fn held(&self, stage: usize, layout: &Layout, program: &Program) -> Option<Program> {
-        let held = self.programs.get(stage);
-        let held = held.filter(|held| self.layout == *layout && held.serves(program));
+    /// The program of the last frame that can run in place of another, if a slider passed through
+    /// zero since.
+    pub fn held(&self, program: &Program) -> Option<Program> {
+        let held = self.programs.iter().find(|held| held.serves(program));
         held.cloned()
     }
 }

@@ -72,7 +72,7 @@ features![
     Fog: wgsl!("pass/fog.wgsl").neutral(), wgsl!("pass/fog_off.wgsl"),
         by ["fog"], |look| look.fog > 0.0;
     /// Fog that thins out with the height.
-    FogHeight: wgsl!("pass/fog_height.wgsl"), wgsl!("pass/fog_height_off.wgsl"),
+    FogHeight: wgsl!("pass/fog_height.wgsl").neutral(), wgsl!("pass/fog_height_off.wgsl"),
         by ["fog_height"] with Fog, |look| look.fog_height > 0.0;
     /// Light of the air near the surface.
     Glow: wgsl!("pass/glow.wgsl").neutral(), wgsl!("pass/glow_off.wgsl"),

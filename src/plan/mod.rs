@@ -375,7 +375,7 @@ pub struct Extras {
     /// Start from what the last frame left on the device: if only the look differs, from its
     /// rays, and if only tone and exposure differ, from its colours.
     pub reuse: bool,
-    /// Keep the programs of the last frame when the number of a feature becomes zero. The last bits of
-    /// light may differ then: compilers round each program as they like.
+    /// Keep the programs of the last frame when a number becomes zero: that of a feature of the look,
+    /// the aperture or the rotation. The picture may differ in the last bits, and at edges.
     pub held: bool,
 }

@@ -25,7 +25,7 @@ macro_rules! probe {
             ))
             .into(),
             constants: Vec::new(),
-            neutral: false,
+            replaces: None,
         }
     };
 }

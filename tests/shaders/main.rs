@@ -137,7 +137,7 @@ fn a_fault_points_to_its_file_and_line_wherever_the_module_is_joined() {
                 path: PATH,
                 source: (*source).into(),
                 constants: Vec::new(),
-                neutral: false,
+                replaces: None,
             };
             program.modules.insert(at, module);
             let error = program.validate(Capabilities::default()).unwrap_err();

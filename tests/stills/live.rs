@@ -343,7 +343,8 @@ fn a_number_that_passes_through_zero_compiles_nothing() {
         held: true,
         ..EVERYTHING
     };
-    let neutral = LookFeature::ALL.iter().filter(|f| f.module(true).neutral);
+    let is_neutral = |f: &&LookFeature| f.module(true).replaces.is_some();
+    let neutral = LookFeature::ALL.iter().filter(is_neutral);
     for feature in neutral.clone() {
         let mut plan = preset("mandelbox", &["image.size=[64, 36]"]);
         allow(&mut plan, *feature);
@@ -377,5 +378,41 @@ fn a_number_that_passes_through_zero_compiles_nothing() {
             .zip(own.radiance.iter().flatten());
         let off = pairs.map(|(a, b)| (a - b).abs() / b.max(1e-3));
         assert!(off.fold(0.0, f32::max) < 1e-5, "{feature:?}");
+    }
+}
+
+/// The picture of a held program differs from that of the own one only as another safe program's
+/// does: without a rotation, other steps are proven.
+#[test]
+fn a_rotation_or_a_lens_that_passes_through_zero_compiles_nothing() {
+    let held = Extras {
+        held: true,
+        ..EVERYTHING
+    };
+    for (on, off) in [
+        (
+            "scene.rotation=[10.0, -20.0, 30.0]",
+            "scene.rotation=[0.0, 0.0, 0.0]",
+        ),
+        ("camera.aperture=0.02", "camera.aperture=0.0"),
+    ] {
+        for julia in [false, true] {
+            let mut renderer = adapter::open();
+            let julia = format!("scene.julia={julia}");
+            let plan = |setting| {
+                let settings = ["image.size=[64, 36]", "image.samples=2", &julia, setting];
+                preset("mandelbox", &settings)
+            };
+            whole(&mut renderer, &plan(on)).unwrap();
+            let frame = renderer.render(&plan(off), &Assets::default(), held, &mut |_| true);
+            let frame = frame.unwrap();
+            assert_eq!(frame.traffic.unwrap().compilations, 0, "{off}");
+            let own = renderer.render(&plan(off), &Assets::default(), EVERYTHING, &mut |_| true);
+            let own = own.unwrap();
+            let pairs = frame.depth.iter().zip(&own.depth);
+            let off_by = |(a, b): (&f32, &f32)| (a - b).abs() > 0.01 * b;
+            let far = pairs.filter(|pair| off_by(*pair)).count();
+            assert!(far < 64 * 36 / 100, "{far} depths, {off}");
+        }
     }
 }

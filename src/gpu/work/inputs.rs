@@ -185,13 +185,13 @@ impl FrameRequest {
         let kinds = StageKind::all(&plan.passes(*extras), shown, plan.is_adaptive());
         let text = |program| with_texts(self.sources.as_ref(), program);
         let held = self.held.as_ref().filter(|_| extras.held);
-        let program = |(stage, kind): (usize, &StageKind)| {
+        let program = |kind: &StageKind| {
             let lean = text(kind.program(plan, &scene, *extras));
-            let held = held.and_then(|needs| needs.held(stage, &blocks[0], &lean));
+            let held = held.and_then(|needs| needs.held(&lean));
             held.unwrap_or(lean)
         };
         let needs = Needs {
-            programs: kinds.iter().enumerate().map(program).collect(),
+            programs: kinds.iter().map(program).collect(),
             picture: shown.then_some(plan.size),
             // The first block is as large as any.
             layout: blocks[0].clone(),

@@ -83,12 +83,13 @@ impl Run {
             cursor += 1;
             ends_block = index + 1 == stages.len();
             let is_trace = self.job.kinds[index] == StageKind::Pass(Pass::Trace);
+            // Without timestamps, the time of march and trace is that of their own submissions.
+            let is_timed_alone = is_trace && self.job.extras.time && stamps.is_none();
             if !ends_block {
                 let next = &stages[index + 1];
                 self.dispatches = self.reusable.costs[index + 1].dispatches(next);
             }
-            // The time of march and trace is that of their own submissions.
-            if ends_block || is_trace {
+            if ends_block || is_timed_alone {
                 break;
             }
         }
