@@ -24,6 +24,7 @@ fn main() -> anyhow::Result<()> {
     let mut renderer = Renderer::new(Device::open(adapter)?);
     let extras = Extras {
         shown: true,
+        sketched: true,
         ..Extras::default()
     };
     let mut work = renderer.begin(&plan, &Assets::default(), extras)?;

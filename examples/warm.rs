@@ -16,7 +16,7 @@ fn main() {
     let mut plan = preset::load(std::path::Path::new(&args[1]), &sets)
         .unwrap()
         .plan;
-    plan.size = [1280, 720];
+    plan.size = [960, 540];
     plan.samples = 1;
     plan.until = 0.0;
     let adapters = Adapters::find();
@@ -34,7 +34,9 @@ fn main() {
                 &plan,
                 &assets,
                 Extras {
-                    time: true,
+                    time: std::env::var("TIME").is_ok(),
+                    shown: std::env::var("SHOWN").is_ok(),
+                    unread: true,
                     ..Extras::default()
                 },
                 &mut |_| true,

@@ -35,6 +35,7 @@ const DEPTHS: Extras = Extras {
     depth_only: true,
     time: false,
     shown: false,
+    sketched: false,
     unread: false,
     reuse: false,
     held: false,

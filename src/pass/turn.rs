@@ -171,17 +171,17 @@ pub enum StageKind {
 }
 
 impl StageKind {
-    /// The stages of a block, in order; some only if the picture is shown while it is
-    /// made, or if tiles are judged.
-    pub fn all(passes: &[Pass], shown: bool, judged: bool) -> Vec<Self> {
+    /// The stages of a block, in order; some only if the picture is shown, if it is sketched
+    /// before, or if tiles are judged.
+    pub fn all(passes: &[Pass], [shown, sketched, judged]: [bool; 3]) -> Vec<Self> {
         let of_pass = |pass: &Pass| {
             let after = match pass {
-                Pass::March(level) => Some(Self::Sketch(*level)),
-                Pass::Color => Some(Self::Develop),
+                Pass::March(level) if sketched => Some(Self::Sketch(*level)),
+                Pass::Color if shown => Some(Self::Develop),
                 _ => None,
             };
             let judge = (judged && *pass == Pass::Color).then_some(Self::Judge);
-            [Some(Self::Pass(*pass)), judge, after.filter(|_| shown)]
+            [Some(Self::Pass(*pass)), judge, after]
         };
         let passes = passes.iter().flat_map(of_pass).flatten();
         passes.chain([Self::Census]).collect()

@@ -370,6 +370,8 @@ pub struct Extras {
     pub time: bool,
     /// Keep a picture on the device that can be shown while it is made.
     pub shown: bool,
+    /// Show the fronts of the coarse levels in that picture before there are colours.
+    pub sketched: bool,
     /// Read no layer back. The frame has figures only; the picture on the device is complete.
     pub unread: bool,
     /// Start from what the last frame left on the device: if only the look differs, from its

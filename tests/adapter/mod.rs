@@ -37,6 +37,7 @@ pub const EVERYTHING: Extras = Extras {
     depth_only: false,
     time: false,
     shown: false,
+    sketched: false,
     unread: false,
     reuse: false,
     held: false,

@@ -175,7 +175,7 @@ fn between_passes() -> Vec<Program> {
     let mut clear = plan.clone();
     clear.background = Background::Transparent;
     let solid = solid(&plan);
-    let kinds = StageKind::all(&plan.passes(Extras::default()), true, true).into_iter();
+    let kinds = StageKind::all(&plan.passes(Extras::default()), [true; 3]).into_iter();
     let between = kinds.filter(|kind| !matches!(kind, StageKind::Pass(_)));
     let programs = between.flat_map(|kind| {
         let plans = [&plan, &clear].into_iter();

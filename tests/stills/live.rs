@@ -92,12 +92,14 @@ fn a_new_value_makes_no_more_again_than_its_key_says() {
         time: true,
         reuse: true,
         shown: true,
+        sketched: true,
         ..Extras::default()
     };
     let mut render = |plan: &Plan| renderer.render(plan, &assets, extras, &mut |_| true);
     let mut anew = adapter::open();
     let shown = Extras {
         shown: true,
+        sketched: true,
         ..Extras::default()
     };
     let mut anew = |plan: &Plan| {

@@ -102,6 +102,7 @@ fn slices_and_what_was_begun_before_change_no_bit() {
         };
         let extras = Extras {
             shown: random.index(2) == 0,
+            sketched: random.index(2) == 0,
             reuse: random.index(2) == 0,
             ..EVERYTHING
         };
@@ -234,6 +235,7 @@ fn the_picture_on_the_device_grows_into_that_of_the_file() {
         Assets::default(),
         Extras {
             shown: true,
+            sketched: true,
             ..Extras::default()
         },
     );
@@ -276,6 +278,7 @@ fn the_picture_on_the_device_grows_into_that_of_the_file() {
 fn a_first_picture_comes_also_where_rays_have_no_cones() {
     let shown = Extras {
         shown: true,
+        sketched: true,
         ..Extras::default()
     };
     for block in [1024, 64] {
@@ -306,6 +309,7 @@ fn a_first_picture_comes_also_where_rays_have_no_cones() {
 fn a_flight_makes_no_buffer_and_compiles_nothing() {
     let live = Extras {
         shown: true,
+        sketched: true,
         reuse: true,
         ..Extras::default()
     };
@@ -403,6 +407,7 @@ fn every_preset_renders_within_the_limits_that_webgpu_promises() {
     // With cones, in larger pictures that are shown on their way.
     let live = Extras {
         shown: true,
+        sketched: true,
         reuse: true,
         ..Extras::default()
     };

@@ -18,5 +18,6 @@ fn develop(
     if ended > 0.0 && scale < 1.0 {
         scale = 1.0 / ended;
     }
-    tone_store(turn.stage.origin + cell, cell_pixel(index).rgb * scale);
+    let levels = tone_levels(cell_pixel(index).rgb * scale);
+    tone_store(turn.stage.origin + cell, levels);
 }

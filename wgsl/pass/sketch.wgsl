@@ -46,11 +46,12 @@ fn sketch(
         let lit = SKETCH_FILL * look.fill + SKETCH_KEY * look.key * clamp(facing, 0.0, 1.0);
         c = palette_at(0.5) * lit;
     }
+    let levels = tone_levels(c);
     let first = turn.stage.divisor * (turn.stage.origin + cell);
     let end = min(first + turn.stage.divisor, view.size);
     for (var y = first.y; y < end.y; y++) {
         for (var x = first.x; x < end.x; x++) {
-            tone_store(vec2<u32>(x, y), c);
+            tone_store(vec2<u32>(x, y), levels);
         }
     }
 }

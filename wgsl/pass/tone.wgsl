@@ -17,18 +17,13 @@ fn tone_level(x: f32) -> u32 {
     let filmic = e * (e * 2.51 + 0.03) / (e * (e * 2.43 + 0.59) + 0.14);
     let shown = min(select(e, filmic, tone_parameters.map == TONE_FILMIC), 1.0);
     let curve = select(1.055 * pow(shown, 1.0 / 2.4) - 0.055, 12.92 * shown, shown <= 0.0031308);
-    var level = min(u32(f32(TONE_MOST_LEVEL) * curve + 0.5), TONE_MOST_LEVEL);
-    // In f32 the level is off by one at most. The table decides.
-    if level < TONE_MOST_LEVEL && x >= tone_steps[level + 1u] {
-        level += 1u;
-    } else if level > 0u && x < tone_steps[level] {
-        level -= 1u;
-    }
-    return level;
+    // In f32 this is off by less than half a level. So the nearest step in the table decides.
+    let step = clamp(u32(f32(TONE_MOST_LEVEL) * curve + 1.0), 1u, TONE_MOST_LEVEL);
+    return select(step - 1u, step, x >= tone_steps[step]);
 }
 
-fn tone_store(pixel: vec2<u32>, c: vec3<f32>) {
-    let levels = tone_levels(c);
+/// Shows the levels of a colour in a pixel.
+fn tone_store(pixel: vec2<u32>, levels: vec3<u32>) {
     // The order of the pixels is that of the R2 sequence, in units of 2^-32.
     let part = (pixel.x * 0xc13fa9a9u + pixel.y * 0x91e10da6u) >> 28u;
     let bytes = (levels + part) >> vec3<u32>(4u);

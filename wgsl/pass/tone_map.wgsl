@@ -78,10 +78,11 @@ fn tone_agx_curve(v: vec3<f32>) -> vec3<f32> {
     return ((high * y + 2.42405) * y + 1.7404) * y + 0.2914925;
 }
 
-fn tone_punchy(v: vec3<f32>) -> vec3<u32> {
-    let x = pow(max(tone_agx_curve(v), vec3<f32>(0.0)), vec3<f32>(1.35));
+/// AgX with more contrast.
+fn tone_punchy(curve: vec3<f32>) -> vec3<f32> {
+    let x = pow(max(curve, vec3<f32>(0.0)), vec3<f32>(1.35));
     let grey = dot(x, TONE_LUMA);
-    return tone_encoded(TONE_AGX_OUT * (grey + 1.4 * (x - grey)));
+    return grey + 1.4 * (x - grey);
 }
 
 fn tone_neutral(c: vec3<f32>) -> vec3<f32> {
@@ -102,11 +103,9 @@ fn tone_aces(c: vec3<f32>) -> vec3<f32> {
     return TONE_ACES_OUT * one;
 }
 
-/// The level of each channel of a pixel's light.
+/// The level of each channel of a pixel's light. Some drivers evaluate all cases, so they share what
+/// they can.
 fn tone_levels(c: vec3<f32>) -> vec3<u32> {
-    if tone_parameters.mixes == 0u {
-        return tone_channels(c);
-    }
     let most = vec3<f32>(TONE_MOST_LIGHT);
     let light = clamp(c * tone_parameters.exposure, vec3<f32>(0.0), most);
     let balanced = vec3<f32>(
@@ -114,22 +113,16 @@ fn tone_levels(c: vec3<f32>) -> vec3<u32> {
         dot(tone_parameters.green, light),
         dot(tone_parameters.blue, light),
     );
-    let v = clamp(balanced, vec3<f32>(0.0), most);
-    switch tone_parameters.map {
-        case TONE_AGX: {
-            return tone_encoded(TONE_AGX_OUT * tone_agx_curve(v));
-        }
-        case TONE_PUNCHY: {
-            return tone_punchy(v);
-        }
-        case TONE_NEUTRAL: {
-            return tone_channels(tone_neutral(v));
-        }
-        case TONE_ACES: {
-            return tone_channels(tone_aces(v));
-        }
-        default: {
-            return tone_channels(v);
-        }
+    var v = select(c, clamp(balanced, vec3<f32>(0.0), most), tone_parameters.mixes > 0u);
+    let map = tone_parameters.map;
+    if map == TONE_AGX || map == TONE_PUNCHY {
+        let curve = tone_agx_curve(v);
+        return tone_encoded(TONE_AGX_OUT * select(curve, tone_punchy(curve), map == TONE_PUNCHY));
     }
+    if map == TONE_NEUTRAL {
+        v = tone_neutral(v);
+    } else if map == TONE_ACES {
+        v = tone_aces(v);
+    }
+    return tone_channels(v);
 }

@@ -20,6 +20,7 @@ pub const COUNTED: Extras = Extras {
     variance: false,
     time: false,
     shown: false,
+    sketched: false,
     unread: false,
     reuse: false,
     held: false,

@@ -182,7 +182,8 @@ impl FrameRequest {
         let largest = limits.max_texture_dimension_2d;
         let fits = plan.window.is_none() && plan.size.iter().all(|n| *n <= largest);
         let shown = extras.shown && fits;
-        let kinds = StageKind::all(&plan.passes(*extras), shown, plan.is_adaptive());
+        let some = [shown, shown && extras.sketched, plan.is_adaptive()];
+        let kinds = StageKind::all(&plan.passes(*extras), some);
         let text = |program| with_texts(self.sources.as_ref(), program);
         let held = self.held.as_ref().filter(|_| extras.held);
         let program = |kind: &StageKind| {

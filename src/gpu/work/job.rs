@@ -64,7 +64,7 @@ pub(in crate::gpu) struct Reusable {
 
 /// What a render knows from the start.
 ///
-/// If an image of several blocks is shown while it is made, the coarse levels run over all blocks
+/// If an image of several blocks is sketched, the coarse levels run over all blocks
 /// before any ray, and once more with each block. Each sample of the pixels is a further visit of
 /// a block, whose cones stay. The last one is that of the pixels' centres, whose depths stay.
 pub(in crate::gpu) struct Job {
@@ -125,7 +125,7 @@ impl Job {
     /// Whether a stage of a visit is left out.
     pub(super) fn leaves_out(&self, visit: usize, index: usize) -> bool {
         let kind = &self.kinds[index];
-        let shows = |level: &Level| self.extras.shown && level.divisor >= FIRST_PICTURE;
+        let shows = |level: &Level| self.extras.sketched && level.divisor >= FIRST_PICTURE;
         if let StageKind::Pass(Pass::March(level)) | StageKind::Sketch(level) = kind
             && self.made.rays_alone
             && (!shows(level) || (self.firsts > 0 && self.sampled(visit).is_some()))
