@@ -31,7 +31,7 @@ impl Module {
     /// The module, which can replace another while its parameters are zero.
     pub fn replacing(self, path: &str) -> Self {
         Self {
-            replaces: Some(format!("wgsl/{path}")),
+            replaces: Some(path.into()),
             ..self
         }
     }
@@ -39,10 +39,7 @@ impl Module {
     /// The module, which can replace its stand-in, `NAME_off.wgsl`, while its parameters are zero.
     pub fn neutral(self) -> Self {
         let stand_in = self.path.replace(".wgsl", "_off.wgsl");
-        Self {
-            replaces: Some(stand_in),
-            ..self
-        }
+        self.replacing(&stand_in)
     }
 
     /// Whether the module serves where another one is asked for.

@@ -190,7 +190,7 @@ impl DistanceEstimate for Mandelbox {
     fn four_module(&self) -> Module {
         match (self.estimate, self.rotated()) {
             (Estimate::Tight, None) => wgsl!("formula/four_folds.wgsl"),
-            _ => wgsl!("formula/four_plain.wgsl").replacing("formula/four_folds.wgsl"),
+            _ => wgsl!("formula/four_plain.wgsl").replacing("wgsl/formula/four_folds.wgsl"),
         }
     }
 

@@ -57,7 +57,9 @@ impl Rotation {
     /// The WGSL module of the Jacobian of an orbit with a rotation, or without.
     pub fn jacobian(rotation: Option<&Self>) -> Module {
         match rotation {
-            Some(_) => wgsl!("formula/jacobian.wgsl").replacing("formula/jacobian_diagonal.wgsl"),
+            Some(_) => {
+                wgsl!("formula/jacobian.wgsl").replacing("wgsl/formula/jacobian_diagonal.wgsl")
+            }
             None => wgsl!("formula/jacobian_diagonal.wgsl"),
         }
     }

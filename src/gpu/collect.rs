@@ -11,6 +11,8 @@ use crate::pass::variance::variance_of;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Pass};
 
+const SKY: u8 = State::Sky as u8;
+
 /// Which values of a block are read, in words: where each part starts, and how long it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Parts {
@@ -130,11 +132,11 @@ impl Parts {
             let count = layout.count(divisor) as usize;
             let first = layout.state(divisor) as usize;
             let states = || {
-                let words = match divisor {
+                let own = match divisor {
                     1 => state_words,
                     _ => part(level_states, first - area, count),
                 };
-                self::words::<1>(words).map(|[w]| state(w, generation))
+                words::<1>(own).map(|[w]| state(w, generation))
             };
             if !tally.is_empty() {
                 let tally = part(tally, 2 * first, 2 * count);
@@ -189,8 +191,6 @@ impl Parts {
         Ok(())
     }
 }
-
-const SKY: u8 = State::Sky as u8;
 
 /// Some words of a part.
 fn part(bytes: &[u8], first: usize, words: usize) -> &[u8] {

@@ -143,7 +143,7 @@ impl Renderer {
         let mut resolved = plan.resolved(extras).into_owned();
         // Frames that follow each other keep the stages of cones, or a move of the eye would make
         // buffers and programs. The first picture is of cones too.
-        let rays_alone = (extras.shown || extras.reuse)
+        let rays_alone = (extras.sketched || extras.reuse)
             && !extras.levels
             && plan.march.may_drop_cones()
             && !resolved.march.may_drop_cones();

@@ -31,12 +31,12 @@ use crate::scene::Assets;
 const BUSY: Duration = Duration::from_millis(1);
 /// Time after which the panel follows what the device does.
 pub const PANEL: Duration = Duration::from_millis(400);
-/// The least time between two paintings of the panel, and while the camera moves.
+/// The least time between two paintings of the panel, and while the camera moves, where a painting
+/// takes the time of several pictures.
 const PAUSE: Duration = Duration::from_millis(40);
 const MOVING_PANEL: Duration = Duration::from_millis(1000);
-/// Time after which the last picture is turned if no other came. A software device needs its time
-/// for the next picture.
-const TURN: Duration = Duration::from_millis(50);
+/// Time after which the last picture is turned if no other came.
+const TURN: Duration = Duration::from_millis(5);
 /// How long a notice stays.
 const NOTICE: Duration = Duration::from_secs(6);
 /// The longest step of a flight in seconds: after a stall nobody wants to be elsewhere.
@@ -100,6 +100,8 @@ pub struct Live {
     /// When the window was drawn last, and the panel painted.
     drawn: Instant,
     painted: Instant,
+    /// When the camera began to move, or when it rested last.
+    rested: Instant,
     pub ticked: Instant,
     looked: Instant,
     pub preset_file: Watched,
@@ -173,6 +175,7 @@ impl Live {
             taken: None,
             drawn: now,
             painted: now - MOVING_PANEL,
+            rested: now,
             ticked: now,
             looked: now,
             preset_file: Watched::new(options.path.iter().cloned().collect()),
@@ -263,10 +266,15 @@ impl Live {
             self.notice = None;
             self.paint_soon(Duration::ZERO);
         }
-        // A panel costs a software device as much as a small picture.
         let flies = moving && !self.panel_drag;
-        let pause = if flies { MOVING_PANEL } else { PAUSE };
-        let due = self.panel_due.map(|due| due.max(self.painted + pause));
+        if !flies {
+            self.rested = now;
+        }
+        let free = match flies {
+            true => self.painted.max(self.rested) + MOVING_PANEL,
+            false => self.painted + PAUSE,
+        };
+        let due = self.panel_due.map(|due| due.max(free));
         self.panel_due = due;
         if due.is_some_and(|due| due <= now) {
             self.painted = now;

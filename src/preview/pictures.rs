@@ -18,8 +18,8 @@ use crate::preview::picture::Picture;
 use crate::scene::Assets;
 
 /// Milliseconds of work that are submitted at once. What was submitted must end before another plan
-/// begins, and a software device lets the host wait for it.
-const SLICE_MS: f64 = 6.0;
+/// begins, and a drawing of the window waits for it.
+const SLICE_MS: f64 = 5.0;
 /// The same of full pictures. Small slices cost them time.
 const FULL_SLICE_MS: f64 = 14.0;
 /// The time that a small picture should take, in milliseconds. Below the first it becomes larger,

@@ -125,7 +125,9 @@ impl Job {
     /// Whether a stage of a visit is left out.
     pub(super) fn leaves_out(&self, visit: usize, index: usize) -> bool {
         let kind = &self.kinds[index];
-        let shows = |level: &Level| self.extras.sketched && level.divisor >= FIRST_PICTURE;
+        let shows = |level: &Level| {
+            level.divisor >= FIRST_PICTURE && self.kinds.contains(&StageKind::Sketch(*level))
+        };
         if let StageKind::Pass(Pass::March(level)) | StageKind::Sketch(level) = kind
             && self.made.rays_alone
             && (!shows(level) || (self.firsts > 0 && self.sampled(visit).is_some()))
