@@ -1,9 +1,12 @@
 //! Light by paths at equal error, of `safe` and of rays alone:
-//! `cargo bench --bench equal_error`. It takes ten minutes or more on two cores.
+//! `cargo bench --bench equal_error`. With `-- --write` it writes its table into
+//! docs/benchmarks.md. It takes ten minutes or more on two cores.
 //!
 //! The *rival* is mode `ray-relaxed` with `clip` on, as in `rival.rs`. Errors are those of a small
-//! picture against one of many samples. Times are medians of warm runs in turns. The error falls
+//! picture against one of `safe` with many samples, which begin with those of the tested pictures. Times are medians of warm runs in turns. The error falls
 //! with the number of samples, so a time is multiplied by the error that remains.
+
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use conemarch::gpu::adapters::{Adapters, Choice};
@@ -16,13 +19,13 @@ use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 
 #[path = "common/markdown.rs"]
-#[allow(dead_code, reason = "other programs use the rest")]
 mod markdown;
 
+const MARKS: [&str; 2] = ["<!-- equal-error -->", "<!-- /equal-error -->"];
 const PRESETS: [&str; 5] = [
     "mandelbox",
+    "mandelbox-canyon",
     "mandelbox-gate",
-    "mandelbox-hall",
     "mandelbox-lattice",
     "mandelbox-reef",
 ];
@@ -138,5 +141,11 @@ fn main() -> Result<()> {
         rows,
     );
     println!("{table}");
+    if std::env::args().any(|a| a == "--write") {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/benchmarks.md");
+        let mut page = std::fs::read_to_string(&path)?;
+        markdown::replace(&mut page, MARKS, &table)?;
+        std::fs::write(path, page)?;
+    }
     Ok(())
 }

@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, ensure};
@@ -17,6 +17,7 @@ use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::render::Renderer;
 use conemarch::measure::sharpness::{self, sharpness};
+use conemarch::pass::progress::Progress;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};
@@ -343,13 +344,13 @@ fn frames() -> Result<String> {
     ))
 }
 
-/// Renders of a preset that are cancelled, and the time within which they are.
-const CANCELS: u32 = 4;
+/// A render is cancelled so long after its pass has begun, or in another pass if that takes longer
+/// to come.
+const CANCEL_AFTER: Duration = Duration::from_millis(5);
 const CANCELLED_WITHIN: Duration = Duration::from_millis(2000);
 
 /// How soon a render that another thread cancels returns. Every preset is rendered with its own
-/// samples and light, by a renderer that has rendered nothing yet, and cancelled at moments that are
-/// spread over its first seconds.
+/// samples and light, by a renderer that has rendered nothing yet, and cancelled in each pass.
 fn cancels() -> Result<String> {
     let adapters = Adapters::find();
     let chosen = adapters.choose(&Choice::Auto)?;
@@ -360,37 +361,45 @@ fn cancels() -> Result<String> {
         plan.size = [1280, 720];
         let mut times = Vec::new();
         let mut passes = BTreeSet::new();
-        for nth in 0..CANCELS {
+        let resolved = plan.resolved(Extras::default());
+        for wanted in resolved.passes(Extras::default()) {
             let mut renderer = Renderer::new(Device::open(adapter)?);
             let asked: OnceLock<Instant> = OnceLock::new();
-            let mut pass = String::new();
+            let pass = Mutex::new(String::new());
+            let now_in = |name: &str| pass.lock().is_ok_and(|pass| *pass == name);
             let cancelled = std::thread::scope(|scope| {
                 scope.spawn(|| {
-                    std::thread::sleep(CANCELLED_WITHIN * (2 * nth + 1) / (2 * CANCELS));
+                    let begun = Instant::now();
+                    while begun.elapsed() < CANCELLED_WITHIN && !now_in(&wanted.name()) {
+                        std::thread::sleep(Duration::from_micros(200));
+                    }
+                    std::thread::sleep(CANCEL_AFTER);
                     asked.get_or_init(Instant::now);
                 });
-                let rendered =
-                    renderer.render(&plan, &Assets::default(), Extras::default(), &mut |now| {
+                let watch = &mut |now: &Progress| {
+                    if let Ok(mut pass) = pass.lock() {
                         pass.clone_from(&now.pass);
-                        asked.get().is_none()
-                    });
+                    }
+                    asked.get().is_none()
+                };
+                let assets = Assets::default();
+                let rendered = renderer.render(&plan, &assets, Extras::default(), watch);
                 let returned = asked.get().map(Instant::elapsed);
                 rendered.is_err().then_some(returned).flatten()
             });
             // A render that was over by then cannot be cancelled.
             if let Some(returned) = cancelled {
                 times.push(returned.as_secs_f64() * 1e3);
-                passes.insert(pass);
+                passes.extend(pass.into_inner());
             }
         }
         times.sort_by(f64::total_cmp);
-        let (Some(median), Some(most)) = (times.get(times.len() / 2), times.last()) else {
-            continue;
-        };
+        let most = times.last().context("no render was cancelled")?;
         let passes: Vec<String> = passes.into_iter().collect();
         rows.push(format!(
-            "{name} | {} | {median:.0} | {most:.0}",
-            passes.join(", ")
+            "{name} | {} | {:.0} | {most:.0}",
+            passes.join(", "),
+            times[times.len() / 2]
         ));
     }
     Ok(markdown::table(

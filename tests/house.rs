@@ -229,7 +229,7 @@ fn core(text: &str) -> (String, Vec<String>) {
 }
 
 /// What a browser lacks, or forbids.
-const NOT_IN_CORE: [&str; 15] = [
+const NOT_IN_CORE: [&str; 16] = [
     "fs::",
     "File::open",
     "File::create",
@@ -245,6 +245,7 @@ const NOT_IN_CORE: [&str; 15] = [
     ".recv_timeout(",
     "PollType::Wait",
     "rayon",
+    ".metadata()",
 ];
 
 #[test]

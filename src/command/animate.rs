@@ -310,7 +310,7 @@ fn join(film: &Plan, pattern: &Pattern, [first, last]: [u32; 2], video: &Path) -
         .args(["-loglevel", "error", "-y", "-framerate"])
         .arg(film.time.fps.to_string())
         .args(["-start_number", &first.to_string()])
-        .args(["-i", &format!("{before}%0{digits}d{after}")])
+        .args(["-i", &format!("file:{before}%0{digits}d{after}")])
         .args(["-frames:v", &(last - first + 1).to_string()])
         // Players want even sides and this format of pixels.
         .args([

@@ -14,7 +14,7 @@ use crate::command::render::loaded;
 use crate::command::sink::{Results, Sink};
 use crate::gpu::adapters::Choice;
 use crate::measure::truth::cache_folder;
-use crate::preset;
+use crate::preset::{self, Override};
 use crate::preview::window::{self, Options};
 
 /// What `preview` takes.
@@ -54,6 +54,7 @@ pub struct Preview {
 pub fn run(args: &Preview) -> Result<()> {
     let started = Instant::now();
     let (preset, _) = loaded(&args.preset, &args.set)?;
+    let sets: Result<_, _> = args.set.iter().map(|s| Override::read(s)).collect();
     if let Some(folder) = args.wgsl.as_ref().filter(|folder| !folder.is_dir()) {
         let folder = folder.display();
         return Err(usage(format!(
@@ -64,6 +65,7 @@ pub fn run(args: &Preview) -> Result<()> {
     let figures = window::run(Options {
         preset,
         path: preset::file(&args.preset),
+        sets: sets?,
         device: args.device.clone(),
         size: args.size,
         wgsl: args.wgsl.clone(),

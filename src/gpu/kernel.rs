@@ -46,6 +46,24 @@ pub enum KernelError {
         /// The variable.
         name: String,
     },
+    /// A variable of the program is larger than its buffer.
+    #[error(
+        "{path}:{line}: the program `{entry}` needs {needed} bytes for `{name}`, and there are {bytes}; the fields of a struct are those of its Rust twin"
+    )]
+    Small {
+        /// The file that declares the variable.
+        path: &'static str,
+        /// Its line, from 1.
+        line: usize,
+        /// The program.
+        entry: &'static str,
+        /// The variable.
+        name: String,
+        /// Its size in bytes, with one element of an array of any length.
+        needed: u64,
+        /// The size of the buffer.
+        bytes: u64,
+    },
 }
 
 /// One resource variable of a program.
@@ -54,6 +72,8 @@ struct Binding {
     index: u32,
     name: String,
     kind: Kind,
+    /// The least size of its buffer in bytes.
+    bytes: u64,
     /// The file and the line that declare it.
     at: (&'static str, usize),
 }
@@ -222,14 +242,29 @@ impl Kernel {
         resource: impl Fn(&str) -> Option<wgpu::BindingResource<'a>>,
     ) -> Result<Vec<wgpu::BindGroup>, KernelError> {
         let entry = |b: &Binding| {
-            let (path, line) = b.at;
-            let found = resource(&b.name).ok_or_else(|| KernelError::Unbound {
+            let ((path, line), entry, name) = (b.at, self.entry, &b.name);
+            let resource = resource(name).ok_or_else(|| KernelError::Unbound {
                 path,
                 line,
-                entry: self.entry,
-                name: b.name.clone(),
-            });
-            found.map(|resource| wgpu::BindGroupEntry {
+                entry,
+                name: name.clone(),
+            })?;
+            // Else the device would tell when the program runs, without a place.
+            if let wgpu::BindingResource::Buffer(bound) = &resource {
+                let rest = bound.buffer.size() - bound.offset;
+                let bytes = bound.size.map_or(rest, |size| size.get());
+                if bytes < b.bytes {
+                    return Err(KernelError::Small {
+                        path,
+                        line,
+                        entry,
+                        name: name.clone(),
+                        needed: b.bytes,
+                        bytes,
+                    });
+                }
+            }
+            Ok(wgpu::BindGroupEntry {
                 binding: b.index,
                 resource,
             })
@@ -331,6 +366,7 @@ fn bindings_of(
             index: at.binding,
             name: v.name.clone().unwrap_or_default(),
             kind,
+            bytes: u64::from(module.types[v.ty].inner.size(module.to_ctx())),
             at: program.place(&source, module.global_variables.get_span(handle)),
         })
     };

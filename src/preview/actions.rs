@@ -20,7 +20,7 @@ use crate::preview::gui::is_in;
 use crate::preview::input::{Action, Drag, action};
 use crate::preview::keep;
 use crate::preview::live::{Live, quoted};
-use crate::preview::play::{set_view, with_still};
+use crate::preview::play::{last_key, set_view, with_still};
 use crate::preview::probe;
 use crate::preview::still::Still;
 use crate::preview::views::ShownView;
@@ -50,7 +50,7 @@ impl Live {
             // What egui knows may be older than the pointer's way onto the panel.
             taken = response.consumed || is_in(&self.panels, self.cursor);
             if response.repaint && self.concerns_panel(event) {
-                self.paint_soon(Duration::ZERO);
+                self.paint_now();
             }
         }
         match event {
@@ -59,7 +59,7 @@ impl Live {
                 self.hidden = size.width == 0 || size.height == 0;
                 if !self.hidden {
                     self.stage.screen.resize([size.width, size.height]);
-                    self.paint_soon(Duration::ZERO);
+                    self.paint_now();
                 }
             }
             WindowEvent::Occluded(hidden) => self.hidden = *hidden,
@@ -131,7 +131,7 @@ impl Live {
     }
 
     fn act(&mut self, action: Action) {
-        self.paint_soon(Duration::ZERO);
+        self.paint_now();
         let flip = |on: &mut bool| *on = !*on;
         match action {
             Action::Panel => flip(&mut self.visible.panel),
@@ -252,6 +252,10 @@ impl Live {
 
     /// Copies the command that makes the picture in the window.
     fn copy(&mut self) {
+        if !matches!(self.shot, ShownView::Layer(_)) {
+            self.tell("no command makes this view; 1 to 6 show layers", true);
+            return;
+        }
         let command = self.command();
         self.ctx.copy_text(command.clone());
         self.tell(format!("copied: {command}"), false);
@@ -372,10 +376,19 @@ impl Live {
             if let Some(key) = keys.iter_mut().find(|key| key.name == name) {
                 said = key.slot.set(value).err();
             }
+            drop(keys);
+            let last = last_key(plan);
+            if plan.time.length < last {
+                plan.time.length = last;
+                said = Some(format!(
+                    "at least {last}, where the last key is; move that first"
+                ));
+            }
         });
         if let Some(expects) = said {
             self.tell(format!("{section}.{name} must be {expects}"), true);
         }
-        self.paint_soon(Duration::ZERO);
+        self.play.fit(self.document.plan.time.length);
+        self.paint_now();
     }
 }

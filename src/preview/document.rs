@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::picture::{OutputError, Place, commit};
 use crate::plan::Plan;
 use crate::preset;
+use crate::preview::play::pose_at;
 
 /// The most steps that can be undone. Each is a plan, a few kilobytes.
 const MOST_STEPS: usize = 1000;
@@ -68,7 +69,10 @@ impl Document {
         let Some(before) = self.before.take() else {
             return;
         };
-        if before.0 != self.plan {
+        // Only time may have gone on.
+        let mut then = before.0.clone();
+        let same_film = pose_at(&mut then, self.beat).is_none();
+        if before.0 != self.plan && !(same_film && then == self.plan) {
             if self.past.len() < self.saved_at {
                 // The saved plan was undone, and is out of reach now.
                 self.saved_at = usize::MAX;
@@ -158,7 +162,9 @@ pub fn unused(folder: &Path, name: &str, ending: &str) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::preview::play::set_view;
     use crate::scene::Scene;
+    use glam::DVec3;
 
     fn document() -> Document {
         let scene = Scene::all().into_iter().next().expect("a scene");
@@ -194,6 +200,26 @@ mod tests {
         doc.undo();
         doc.change(|plan| plan.camera.fov = 50.0);
         assert_eq!(doc.redo(), None);
+    }
+
+    #[test]
+    fn a_film_that_goes_on_is_no_step() {
+        let mut doc = document();
+        doc.plan.camera.eye = DVec3::new(0.0, -9.0, 1.0);
+        for (beat, x) in [(0.0, 0.0), (4.0, 3.0)] {
+            doc.plan.camera.eye.x = x;
+            set_view(&mut doc.plan, beat);
+        }
+        let mut end_at = |beat, x: f64| {
+            doc.begin();
+            doc.beat = beat;
+            assert_eq!(pose_at(&mut doc.plan, beat), None);
+            doc.plan.camera.eye.x += x;
+            doc.end();
+            doc.is_changed()
+        };
+        assert!(!end_at(2.0, 0.0));
+        assert!(end_at(3.0, 0.5));
     }
 
     #[test]

@@ -7,6 +7,8 @@ use crate::preview::play::{overwrite, pose_at, remove, shows_film};
 impl Live {
     /// Shows the moment of the film under the playhead.
     pub fn show_moment(&mut self) {
+        // Another program may have made the film shorter.
+        self.play.fit(self.document.plan.time.length);
         let beat = self.play.beat;
         self.document.beat = beat;
         if let Some(wrong) = pose_at(&mut self.document.plan, beat) {

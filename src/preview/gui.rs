@@ -18,6 +18,13 @@ use crate::preview::{overlay, panel, timeline};
 const WIDTH: f32 = 350.0;
 const BAR: f32 = 10.0;
 
+/// The state of the panels, without a cursor that blinks: each blink would paint all again.
+pub fn context() -> Context {
+    let ctx = Context::default();
+    ctx.all_styles_mut(|style| style.visuals.text_cursor.blink = false);
+    ctx
+}
+
 /// What the user asked for in one painting.
 #[derive(Default)]
 struct Requests {
@@ -32,7 +39,7 @@ struct Requests {
 impl Live {
     /// Runs the panel and paints it.
     pub fn paint(&mut self) {
-        self.panel_due = None;
+        (self.panel_due, self.urgent) = (None, false);
         if !self.stage.screen.works() {
             return;
         }

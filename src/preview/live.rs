@@ -14,8 +14,10 @@ use crate::plan::{Extras, Plan};
 use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
 use crate::preview::flight::Flight;
+use crate::preview::gui;
 use crate::preview::input::{Drag, thrust};
 use crate::preview::meter::{Figures, Meter};
+use crate::preview::notice::{Ends, Notice};
 use crate::preview::pictures::Pictures;
 use crate::preview::play::Play;
 use crate::preview::probe;
@@ -31,23 +33,16 @@ use crate::scene::Assets;
 const BUSY: Duration = Duration::from_millis(1);
 /// Time after which the panel follows what the device does.
 pub const PANEL: Duration = Duration::from_millis(400);
+/// The same while the film is played.
+const PLAYING: Duration = Duration::from_millis(150);
 /// The least time between two paintings of the panel, and while the camera moves, where a painting
 /// takes the time of several pictures.
 const PAUSE: Duration = Duration::from_millis(40);
 const MOVING_PANEL: Duration = Duration::from_millis(1000);
 /// Time after which the last picture is turned if no other came.
 const TURN: Duration = Duration::from_millis(5);
-/// How long a notice stays.
-const NOTICE: Duration = Duration::from_secs(6);
 /// The longest step of a flight in seconds: after a stall nobody wants to be elsewhere.
 const LONGEST_STEP: f64 = 0.1;
-
-/// A notice to the user.
-pub struct Notice {
-    pub text: String,
-    pub is_error: bool,
-    since: Instant,
-}
 
 /// What lies over the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -81,8 +76,9 @@ pub struct Live {
     pub panels: Vec<[u32; 4]>,
     /// Whether a value is dragged in the panel or the timeline.
     pub panel_drag: bool,
-    /// When the panel is painted again.
+    /// When the panel is painted again, and whether a user waits for that.
     pub panel_due: Option<Instant>,
+    pub urgent: bool,
     pub redraw: bool,
     pub hidden: bool,
     pub closed: bool,
@@ -118,7 +114,7 @@ pub struct Live {
 impl Live {
     /// A window that has just opened.
     pub fn new(stage: Stage, options: Options) -> Self {
-        let ctx = egui::Context::default();
+        let ctx = gui::context();
         let device = stage.screen.device().clone();
         let most = device.device.limits().max_texture_dimension_2d as usize;
         let gui = egui_winit::State::new(
@@ -163,6 +159,7 @@ impl Live {
             panels: Vec::new(),
             panel_drag: false,
             panel_due: Some(now),
+            urgent: true,
             redraw: true,
             hidden: false,
             closed: false,
@@ -200,22 +197,10 @@ impl Live {
         self.meter.figures(self.pictures.traffic())
     }
 
-    /// Tells the user something.
-    pub fn tell(&mut self, text: impl Into<String>, is_error: bool) {
-        self.notice = Some(Notice {
-            text: text.into(),
-            is_error,
-            since: Instant::now(),
-        });
+    /// Paints the panel as soon as it may be painted: the user waits for it.
+    pub fn paint_now(&mut self) {
         self.paint_soon(Duration::ZERO);
-    }
-
-    /// Tells what is wrong, unless that is told already.
-    pub fn warn(&mut self, text: String) {
-        let told = |n: &Notice| n.text.ends_with(&text);
-        if !self.notice.as_ref().is_some_and(told) {
-            self.tell(text, true);
-        }
+        self.urgent = true;
     }
 
     /// Paints the panel after a time, or earlier if that was asked for already.
@@ -261,21 +246,16 @@ impl Live {
         }
         let moving = flies || self.play.playing || self.drag.is_some() || self.panel_drag;
         self.render(moving)?;
-        let old = |n: &Notice| now - n.since > NOTICE && !n.is_error;
-        if self.notice.as_ref().is_some_and(old) {
-            self.notice = None;
-            self.paint_soon(Duration::ZERO);
-        }
-        let flies = moving && !self.panel_drag;
+        self.end_notice(Ends::Later);
+        let flies = flies || self.drag.is_some();
         if !flies {
             self.rested = now;
         }
-        let free = match flies {
+        let free = match flies && !self.urgent {
             true => self.painted.max(self.rested) + MOVING_PANEL,
             false => self.painted + PAUSE,
         };
         let due = self.panel_due.map(|due| due.max(free));
-        self.panel_due = due;
         if due.is_some_and(|due| due <= now) {
             self.painted = now;
             self.paint();
@@ -286,7 +266,7 @@ impl Live {
         self.meter.turn(now);
         let asks = self.still.is_some() || self.question.is_some();
         let busy = moving || self.pictures.is_busy() || asks;
-        Ok(match self.panel_due {
+        Ok(match due {
             _ if busy => BUSY,
             Some(due) => due.saturating_duration_since(Instant::now()).min(REST),
             None => REST,
@@ -355,7 +335,7 @@ impl Live {
         if moving || before || self.pictures.is_busy() || self.still.is_some() {
             // The last picture turns with the camera, unless the next one comes soon.
             self.redraw |= moving && self.drawn.elapsed() > TURN;
-            self.paint_soon(PANEL);
+            self.paint_soon(if self.play.playing { PLAYING } else { PANEL });
         }
         Ok(())
     }
@@ -379,7 +359,7 @@ impl Live {
         self.taken = Some((wish, is_full));
         if is_full {
             self.losses = 0;
-            self.notice.take_if(|n| n.is_error);
+            self.end_notice(Ends::WithPicture);
         }
         self.redraw = true;
     }

@@ -28,6 +28,7 @@ mod input;
 mod keep;
 mod live;
 pub mod meter;
+mod notice;
 mod overlay;
 mod panel;
 mod picture;

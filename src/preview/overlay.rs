@@ -36,7 +36,9 @@ fn over(ctx: &Context, name: &'static str, anchor: Align2, above: f32, add: impl
         Align::Max => -1.0,
     };
     let offset = Vec2::new(8.0 * sign(anchor.x()), 8.0 * sign(anchor.y()) - above);
-    Area::new(Id::unique(name))
+    let id = Id::unique(name);
+    let before = ctx.memory(|memory| memory.area_rect(id));
+    let shown = Area::new(id)
         .anchor(anchor, offset)
         .interactable(is_middle)
         .show(ctx, |ui| {
@@ -49,6 +51,10 @@ fn over(ctx: &Context, name: &'static str, anchor: Align2, above: f32, add: impl
                     add(ui);
                 });
         });
+    // It stands where its last size would fit.
+    if before.map(|rect| rect.size()) != Some(shown.response.rect.size()) {
+        ctx.request_repaint();
+    }
 }
 
 /// Shows the line at the lower left of the free part of the window.

@@ -55,10 +55,29 @@ impl Play {
     /// Goes to another frame, so many later.
     pub fn step(&mut self, plan: &Plan, frames: i32) {
         let each = plan.time.beat_of(1);
-        let frame = (self.beat / each).round() + f64::from(frames);
-        self.beat = (frame * each).clamp(0.0, plan.time.length);
+        let at = self.beat / each;
+        let frame = match (at - at.round()).abs() < SAME {
+            true => at.round(),
+            // Between two frames, the next one is less than a frame away.
+            false if frames > 0 => at.floor(),
+            false => at.ceil(),
+        };
+        self.beat = ((frame + f64::from(frames)) * each).clamp(0.0, plan.time.length);
         self.playing = false;
     }
+
+    /// Stays within a film of so many beats.
+    pub fn fit(&mut self, length: f64) {
+        self.beat = self.beat.min(length);
+        let ends = self.range.map(|[from, to]| [from, to.min(length)]);
+        self.range = ends.filter(|[from, to]| from < to);
+    }
+}
+
+/// The beat of the last key; 0 without keys.
+pub fn last_key(plan: &Plan) -> f64 {
+    let keys = plan.tracks.iter().flat_map(|track| &track.keys);
+    keys.map(|key| key.time).fold(0.0, f64::max)
 }
 
 /// Sets what tracks say of a beat as the values of a plan. Returns what does not fit.
@@ -252,6 +271,25 @@ mod tests {
         assert_eq!(play.beat, 1.0);
         play.step(&plan, -1);
         assert!((play.beat - 14.0 / 15.0).abs() < 1e-12, "{play:?}");
+        // From between two frames, to the next on either side.
+        for (frames, beat) in [(-1, 13.0 / 15.0), (1, 14.0 / 15.0)] {
+            play.beat = 13.4 / 15.0;
+            play.step(&plan, frames);
+            assert!((play.beat - beat).abs() < 1e-12, "{play:?}");
+        }
+    }
+
+    #[test]
+    fn a_moment_stays_within_a_shorter_film() {
+        let mut play = Play {
+            beat: 5.5,
+            range: Some([2.0, 6.0]),
+            ..Play::default()
+        };
+        play.fit(4.0);
+        assert_eq!((play.beat, play.range), (4.0, Some([2.0, 4.0])));
+        play.fit(1.0);
+        assert_eq!((play.beat, play.range), (1.0, None));
     }
 
     #[test]

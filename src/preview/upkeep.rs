@@ -8,8 +8,10 @@ use crate::gpu::device::DeviceError;
 use crate::preset;
 use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
+use crate::preview::gui;
 use crate::preview::keep;
 use crate::preview::live::Live;
+use crate::preview::notice::Ends;
 use crate::preview::pictures::Pictures;
 use crate::preview::reload::{Watched, sources};
 
@@ -39,7 +41,7 @@ impl Live {
         let device = &self.stage.screen.device().device;
         let most = device.limits().max_texture_dimension_2d as usize;
         let memory = self.ctx.memory(Clone::clone);
-        self.ctx = egui::Context::default();
+        self.ctx = gui::context();
         self.ctx.memory_mut(|new| *new = memory);
         self.gui = egui_winit::State::new(
             self.ctx.clone(),
@@ -78,7 +80,7 @@ impl Live {
         }
         if let Some(gone) = self.preset_file.vanished() {
             let text = format!("{} is gone; Ctrl+S writes it again", gone.display());
-            self.tell(text, true);
+            self.tell_until(text, true, Ends::WithFile);
         }
         if !self.preset_file.changed() {
             return;
@@ -86,9 +88,9 @@ impl Live {
         let Some(path) = self.document.path.clone() else {
             return;
         };
-        let loaded = preset::load(&path, &[]);
-        if loaded.is_ok() && self.notice.take_if(|n| n.is_error).is_some() {
-            self.paint_soon(Duration::ZERO);
+        let loaded = preset::load(&path, &self.options.sets);
+        if loaded.is_ok() {
+            self.end_notice(Ends::WithFile);
         }
         match loaded {
             Ok(preset) if preset.plan == *self.document.saved() => {}
@@ -98,15 +100,16 @@ impl Live {
                 self.show_moment();
                 self.tell(format!("read {} again", path.display()), false);
             }
-            Err(e) => self.tell(e.to_string(), true),
+            Err(e) => self.tell_until(e.to_string(), true, Ends::WithFile),
         }
     }
 
     /// After the document was saved: its file is the one to watch.
     pub fn watch_file(&mut self) {
         self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
-        keep::drop(self.options.kept.as_deref(), &self.document, self.slot);
-        (self.unkept, self.kept) = (None, None);
+        // What was set from outside is in the file now.
+        self.options.sets.clear();
+        self.drop_kept();
     }
 
     /// Opens another preset in the place of this one.
@@ -122,6 +125,7 @@ impl Live {
                 self.play = Default::default();
                 self.keep_now();
                 self.document = Document::new(preset.name, path, preset.plan);
+                self.options.sets.clear();
                 self.offer();
                 self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
                 (self.unkept, self.kept) = (None, None);
@@ -134,7 +138,13 @@ impl Live {
     /// Keeps unsaved work now and then, so that it survives a crash.
     pub fn keep_work(&mut self) {
         let is_kept = self.kept.as_ref() == Some(&self.document.plan);
-        if is_kept || !self.document.is_changed() {
+        if !self.document.is_changed() {
+            self.unkept = None;
+            // All of it was undone.
+            if self.kept.is_some() {
+                self.drop_kept();
+            }
+        } else if is_kept {
             self.unkept = None;
         } else if self.unkept.get_or_insert_with(Instant::now).elapsed() > KEEP {
             self.keep_now();
@@ -169,9 +179,14 @@ impl Live {
         self.paint_soon(Duration::ZERO);
     }
 
-    /// Keeps unsaved work.
+    fn drop_kept(&mut self) {
+        keep::drop(self.options.kept.as_deref(), &self.document, self.slot);
+        (self.unkept, self.kept) = (None, None);
+    }
+
+    /// Keeps unsaved work. What cannot be read again takes the place of nothing.
     pub fn keep_now(&mut self) {
-        if self.document.is_changed() {
+        if self.document.is_changed() && self.document.plan.check().is_ok() {
             // A cache that cannot be written is no reason to disturb.
             let _ = keep::keep(self.options.kept.as_deref(), &self.document, self.slot);
             (self.unkept, self.kept) = (None, Some(self.document.plan.clone()));

@@ -13,7 +13,7 @@ use winit::window::{Window, WindowId};
 
 use crate::gpu::adapters::{Adapters, Choice};
 use crate::gpu::device::Device;
-use crate::preset::Preset;
+use crate::preset::{Override, Preset};
 use crate::preview::error::PreviewError;
 use crate::preview::live::Live;
 use crate::preview::meter::Figures;
@@ -28,6 +28,8 @@ pub struct Options {
     pub preset: Preset,
     /// The file that it is in, if it is in one.
     pub path: Option<PathBuf>,
+    /// Values that were set over those of the file.
+    pub sets: Vec<Override>,
     /// Who renders.
     pub device: Choice,
     /// Width and height of the window.

@@ -104,6 +104,42 @@ fn a_shader_text_that_no_device_can_run_is_told_with_its_file_and_line() {
     }
 }
 
+/// A struct of another size than its buffer is found before a frame begins.
+#[test]
+fn a_struct_that_is_larger_than_its_twin_is_told_and_the_old_plan_goes_on() {
+    const TURN: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/pass/turn.wgsl"));
+    let text = TURN.replace(
+        "struct Turn {",
+        "struct Turn {\n    extra: array<vec4<u32>, 99>,",
+    );
+    let mut renderer = adapter::open();
+    let plan = sized("mandelbox", [64, 36]);
+    let old = whole(&mut renderer, &plan).unwrap();
+    let edited = Arc::new(Mutex::new(false));
+    let now = edited.clone();
+    renderer.sources = Some(Arc::new(move |path| {
+        let is_edited = path == "wgsl/pass/turn.wgsl" && *now.lock().unwrap();
+        is_edited.then(|| text.clone())
+    }));
+    let assets = Assets::default();
+    let mut work = renderer.begin(&plan, &assets, EVERYTHING).unwrap();
+    *edited.lock().unwrap() = true;
+    renderer.set(&mut work, &plan, &assets).unwrap();
+    let said = loop {
+        if let Err(error) = work.advance(1.0) {
+            break error.to_string();
+        }
+    };
+    assert!(
+        said.starts_with("wgsl/pass/arrange.wgsl:7: ") && said.contains("bytes for `turn`"),
+        "{said}"
+    );
+    // The old plan goes on.
+    assert!(bits(&work.finish(&mut |_| true).unwrap()) == old);
+    *edited.lock().unwrap() = false;
+    assert!(whole(&mut renderer, &plan).unwrap() == old);
+}
+
 /// A driver that drops work leaves no picture.
 #[test]
 fn cells_that_a_device_leaves_out_are_an_error() {

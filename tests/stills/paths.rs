@@ -84,10 +84,11 @@ fn the_sun_shines_once() {
 /// spread evenly.
 #[test]
 fn noise_falls_with_the_samples() {
-    let mut plan = sized("mandelbox-hall", [32, 18]);
+    let mut plan = sized("mandelbox-canyon", [32, 18]);
     // Many samples of the fine details are needed too: shade no finer ones than the pixel's.
     plan.reference = None;
     let fine = render(&followed(plan.clone(), 1024), Extras::default());
+    assert!(mean(&fine) > 0.1, "{}", mean(&fine));
     let squares = |frame: &Frame| {
         let pairs = frame
             .radiance

@@ -84,6 +84,35 @@ fn what_is_wrong_with_a_file_is_told_over_the_last_good_picture() {
     view.close();
 }
 
+/// What `--set` has set stays over a file that another program writes, and what was undone is no
+/// unsaved work.
+#[test]
+fn a_file_that_is_read_again_keeps_what_was_set_over_it() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    folder.write("film.toml", FILM);
+    let view = Preview::open(
+        &desktop,
+        &folder.0,
+        &format!("film.toml {SIZE} --set look.key=3"),
+    );
+    view.at_rest();
+    folder.write("film.toml", format!("{FILM}\n[march]\ndetail = 0.9\n"));
+    sleep(Duration::from_millis(1000));
+    view.hold("w", 300);
+    sleep(Duration::from_millis(2000));
+    let kept = || {
+        let all = std::fs::read_dir(folder.0.join("cache/conemarch")).unwrap();
+        let all = all.map(|file| file.unwrap().path());
+        all.filter(|path| path.extension().is_some_and(|e| e == "toml"))
+            .collect::<Vec<_>>()
+    };
+    let plan = preset::load(&kept()[0], &[]).unwrap().plan;
+    assert_eq!((plan.look.key, plan.march.detail), (3.0, 0.9));
+    view.key("ctrl+z");
+    sleep(Duration::from_millis(2000));
+    assert_eq!(kept().len(), 0);
+}
+
 #[test]
 fn another_preset_keeps_unsaved_work_and_none_is_lost() {
     let (desktop, folder) = (Desktop::new(), Folder::new());

@@ -3,12 +3,12 @@
 //! If earlier frames have left everything that a [`FrameRequest`] needs, it becomes [`FrameInputs`]
 //! at once. Otherwise a thread prepares them.
 
-use std::sync::{Arc, PoisonError};
+use std::sync::{Arc, MutexGuard, PoisonError};
 
 use bytemuck::{bytes_of, cast_slice};
 
-use super::Shared;
 use super::job::{Job, Made};
+use super::{Arrays, Shared};
 use crate::base::shader::{Program, Sources};
 use crate::gpu::array::DeviceArray;
 use crate::gpu::background::all_at_once;
@@ -107,8 +107,10 @@ impl FrameRequest {
     /// A scene's settings do not fit.
     pub fn at_once(&self) -> Result<Option<FrameInputs>, RenderError> {
         // Another thread may be uploading arrays, which takes long.
-        let busy = self.shared.arrays.try_lock().is_err();
-        if busy || !self.assets.serve(&self.plan) {
+        let Ok(arrays) = self.shared.arrays.try_lock() else {
+            return Ok(None);
+        };
+        if !self.assets.serve(&self.plan) {
             return Ok(None);
         }
         let draft = self.draft()?;
@@ -118,7 +120,8 @@ impl FrameRequest {
         }
         let maps = self.plan.scene.preparations(&self.assets);
         let kept = maps.into_iter().map(|map| (map, 0.0)).collect();
-        self.complete(draft, kept, &mut |_| true).map(Some)
+        self.complete(draft, kept, Some(arrays), &mut |_| true)
+            .map(Some)
     }
 
     /// Loads and makes what is missing.
@@ -135,7 +138,7 @@ impl FrameRequest {
         }
         let mut tell = |progress: &Progress| told.tell(progress);
         let maps = self.maps(&mut tell)?;
-        self.complete(self.draft()?, maps, &mut tell)
+        self.complete(self.draft()?, maps, None, &mut tell)
     }
 
     /// Makes the cone maps on the device. This waits for it.
@@ -210,6 +213,7 @@ impl FrameRequest {
         &self,
         draft: Draft,
         map_times: Vec<(Preparation, f64)>,
+        arrays: Option<MutexGuard<'_, Arrays>>,
         tell: Watch<'_>,
     ) -> Result<FrameInputs, RenderError> {
         let Self { plan, extras, .. } = self;
@@ -253,8 +257,8 @@ impl FrameRequest {
         let kernels = needs.programs.iter().map(compile);
         let kernels: Vec<_> = kernels.collect::<Result<_, _>>()?;
         let arrange = compile(&draft.arrange)?;
-        let arrays = self.shared.arrays.lock();
-        let mut arrays = arrays.unwrap_or_else(PoisonError::into_inner);
+        let lock = || self.shared.arrays.lock();
+        let mut arrays = arrays.unwrap_or_else(|| lock().unwrap_or_else(PoisonError::into_inner));
         let uploads = &mut traffic.uploads;
         let mut read = scene.twin().arrays();
         read.extend(light.sky.iter().flat_map(|file| file.sky.arrays()));

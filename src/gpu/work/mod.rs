@@ -102,13 +102,15 @@ impl Work {
         }
     }
 
-    /// Begins a run once it is prepared. Plans between the first and the last are dropped, so that a
-    /// slider does not start a thread for each of its values.
+    /// Begins a run once it is prepared. If it fails, the plan before it goes on. Of those before that,
+    /// only the first is kept, which is ready soonest; the threads of the others stop.
     pub(super) fn start_when_ready(
         &mut self,
         inputs: Background<Result<FrameInputs, RenderError>>,
     ) {
-        self.inputs.truncate(1);
+        if self.inputs.len() > 2 {
+            self.inputs.drain(1..self.inputs.len() - 1);
+        }
         self.inputs.push(inputs);
     }
 

@@ -308,7 +308,9 @@ impl TracerSettings {
     /// The cones of a file.
     fn read(&self, folder: &Path, surface: &HeightSurface) -> Result<TracerCones, Fault> {
         let path = folder.join(&self.map);
-        if !self.map.contains(['.', '/', '\\']) && !path.exists() {
+        let is_path =
+            self.map.contains(['.', '/', '\\']) || (cfg!(feature = "cli") && path.exists());
+        if !is_path {
             let names = Generator::ALL.map(Generator::name).join(", ");
             let why = format!("there is no such file or generator; generators are {names}");
             return Err(fault(why));

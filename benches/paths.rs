@@ -1,0 +1,185 @@
+//! How exact light by paths is: `cargo bench --bench paths`. With `-- --write` it writes its tables
+//! into docs/accuracy.md. It takes ten minutes on two cores.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use conemarch::gpu::adapters::{Adapters, Choice};
+use conemarch::gpu::device::Device;
+use conemarch::gpu::render::Renderer;
+use conemarch::picture::frame::Frame;
+use conemarch::plan::look::LightMode;
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset::{self, BUILTIN, Override};
+use conemarch::scene::Assets;
+
+#[path = "common/markdown.rs"]
+mod markdown;
+
+const MARKS: [&str; 2] = [
+    "<!-- cargo bench --bench paths -- --write: begin -->",
+    "<!-- cargo bench --bench paths -- --write: end -->",
+];
+/// White surfaces in white light from all sides.
+const WHITE: [&str; 9] = [
+    "look.palette=[[1, 1, 1], [1, 1, 1]]",
+    "look.trap=point",
+    "look.sky_low=[1, 1, 1]",
+    "look.sky_high=[1, 1, 1]",
+    "look.light_color=[0, 0, 0]",
+    "look.fill=1",
+    "look.ground=1",
+    "look.fog=0",
+    "image.reference=auto",
+];
+/// The scenes of the furnace, with their settings and limits of bounces.
+const FURNACE: [(&str, &[&str], &[u32]); 7] = [
+    (
+        "terrain",
+        &[
+            "scene.normals=patches",
+            "look.roughness=0.05",
+            "look.metal=1",
+        ],
+        &[16],
+    ),
+    (
+        "terrain",
+        &[
+            "scene.normals=patches",
+            "look.roughness=0.3",
+            "look.gloss=0.5",
+        ],
+        &[16],
+    ),
+    (
+        "terrain",
+        &["scene.normals=patches", "look.roughness=1"],
+        &[16],
+    ),
+    ("terrain", &["scene.normals=smooth"], &[16]),
+    ("mandelbox", &[], &[0, 2, 8, 16]),
+    ("mandelbox", &["image.reference=2160"], &[16]),
+    ("mandelbox-gate", &["image.reference=2160"], &[16]),
+];
+/// Scenes whose noise is measured, at so many samples.
+const NOISE: [&str; 4] = ["mandelbox", "mandelbox-gate", "mandelbox-canyon", "terrain"];
+const SAMPLES: [u32; 4] = [4, 16, 64, 256];
+const MOST_SAMPLES: u32 = 4096;
+const SIZE: [u32; 2] = [64, 36];
+
+struct Bench {
+    renderer: Renderer,
+}
+
+fn plan(name: &str, settings: &[&str]) -> Result<Plan> {
+    let settings: Result<Vec<_>, _> = settings.iter().map(|s| Override::read(s)).collect();
+    let mut plan = preset::load(name, &settings?)?.plan;
+    (plan.size, plan.until, plan.look.bloom) = (SIZE, 0.0, 0.0);
+    Ok(plan)
+}
+
+/// The mean light of the hits in each channel.
+fn light(frame: &Frame) -> [f64; 3] {
+    let pixels = frame.radiance.iter().zip(&frame.depth);
+    let hits = pixels.filter(|(_, depth)| depth.is_finite());
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for (light, _) in hits {
+        sum = [0, 1, 2].map(|i| sum[i] + f64::from(light[i]));
+        count += 1.0;
+    }
+    sum.map(|s| s / count)
+}
+
+impl Bench {
+    fn render(&mut self, plan: &Plan, mode: LightMode, samples: u32) -> Result<Frame> {
+        let mut plan = plan.clone();
+        (plan.look.mode, plan.samples) = (mode, samples);
+        let assets = Assets::default();
+        let watch = &mut |_: &_| true;
+        Ok(self
+            .renderer
+            .render(&plan, &assets, Extras::default(), watch)?)
+    }
+
+    fn furnace(&mut self) -> Result<String> {
+        let mut rows = Vec::new();
+        for (name, own, bounces) in FURNACE {
+            for bounces in bounces {
+                let limit = format!("look.bounces={bounces}");
+                let settings = [&WHITE[..], own, &[&limit]].concat();
+                let frame = self.render(&plan(name, &settings)?, LightMode::Path, 64)?;
+                let own: Vec<_> = own.iter().map(|s| format!("`{s}`")).collect();
+                let [light, ..] = light(&frame);
+                rows.push(format!(
+                    "{name} | {} | {bounces} | {light:.4}",
+                    own.join(", ")
+                ));
+            }
+        }
+        let head = "white scene in white light | settings | bounces | mean light of the hits";
+        Ok(markdown::table(head, "llr", rows))
+    }
+
+    fn noise(&mut self) -> Result<String> {
+        let mut rows = Vec::new();
+        for name in NOISE {
+            eprintln!("noise, {name}");
+            let plan = plan(name, &["image.reference=auto", "look.bounces=2"])?;
+            let mut render = |samples| self.render(&plan, LightMode::Path, samples);
+            let fine = render(MOST_SAMPLES)?;
+            let mut errors = Vec::new();
+            for samples in SAMPLES {
+                let frame = render(samples)?;
+                let all = frame
+                    .radiance
+                    .iter()
+                    .flatten()
+                    .zip(fine.radiance.iter().flatten());
+                let squares = all.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+                errors.push(squares / frame.radiance.len() as f64);
+            }
+            let span = f64::from(SAMPLES[3] / SAMPLES[0]);
+            let slope = (errors[3] / errors[0]).log(span);
+            let cells: Vec<_> = errors.iter().map(|e| format!("{e:.2e}")).collect();
+            let [light, ..] = light(&fine);
+            rows.push(format!(
+                "{name} | {light:.3} | {} | {slope:.2}",
+                cells.join(" | ")
+            ));
+        }
+        let head = "mean squared error | mean light, red | 4 samples | 16 | 64 | 256 | slope";
+        Ok(markdown::table(head, "lr", rows))
+    }
+
+    fn beside_quick(&mut self) -> Result<String> {
+        let mut rows = Vec::new();
+        for (name, _) in BUILTIN {
+            eprintln!("beside quick, {name}");
+            let plan = plan(name, &[])?;
+            let path = light(&self.render(&plan, LightMode::Path, 64)?);
+            let quick = light(&self.render(&plan, LightMode::Quick, 64)?);
+            let ratios = [0, 1, 2].map(|i| format!("{:.2}", path[i] / quick[i]));
+            rows.push(format!("{name} | {}", ratios.join(" | ")));
+        }
+        let head = "light by paths / quick light | red | green | blue";
+        Ok(markdown::table(head, "lr", rows))
+    }
+}
+
+fn main() -> Result<()> {
+    let adapters = Adapters::find();
+    let chosen = adapters.choose(&Choice::Auto)?;
+    let (adapter, _) = chosen.context("there is no adapter")?;
+    let renderer = Renderer::new(Device::open(adapter)?);
+    let mut bench = Bench { renderer };
+    let tables = [bench.furnace()?, bench.noise()?, bench.beside_quick()?].join("\n");
+    println!("{tables}");
+    if std::env::args().any(|a| a == "--write") {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/accuracy.md");
+        let mut page = std::fs::read_to_string(&path)?;
+        markdown::replace(&mut page, MARKS, &tables)?;
+        std::fs::write(path, page)?;
+    }
+    Ok(())
+}
