@@ -338,7 +338,7 @@ fn frames() -> Result<String> {
         }
     }
     Ok(markdown::table(
-        "preset | frame | drains | submissions | bytes uploaded | programs compiled | buffers created | overhead, ms",
+        "preset | frame | drains | submissions | bytes uploaded | programs compiled | sets of buffers created | overhead, ms",
         "llr",
         rows,
     ))
