@@ -14,7 +14,7 @@
 //!   `views`: what of them is shown; `screen`: the window's surface, [`draw`]: its
 //!   pipelines
 //! - `panel`: the keys of the plan; [`play`], `film` and `timeline`: the film; `overlay`: times, notices
-//!   and help
+//!   and help; `notice`: what is told, and how long
 //! - [`meter`]: how quickly the window answers; [`error`]: why a preview cannot go on
 
 mod actions;
