@@ -1,13 +1,13 @@
 //! The CPU executor: the passes of a Plan in f64, with rows spread over all cores.
 //!
 //! It renders where a machine has no adapter, makes the truths, and is what the GPU is compared with.
-//! `sample` has single pixels, and `until` ends tiles.
+//! `bands` spreads cells over the cores, `sample` has single pixels, and `until` ends tiles.
 
+mod bands;
 mod sample;
 mod until;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::base::clock::clock;
 use crate::base::filter::{lens_share, offset};
@@ -19,20 +19,15 @@ use crate::pass::follow::{Start, follow_all};
 use crate::pass::look::Light;
 use crate::pass::march::{Ended, march, march_all};
 use crate::pass::prepare::{FrameError, prepare};
-use crate::pass::progress::{Progress, Watch};
+use crate::pass::progress::Watch;
 use crate::pass::{color, trace, variance::spread_of};
 use crate::picture::frame::{Frame, in_image};
 use crate::plan::pyramid::Level;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::{Assets, Hit, Solid, Task};
+use bands::Bands;
 pub use sample::sample;
 use until::{Judge, average};
-
-/// Cells between two calls of the watch: some tens of milliseconds on two cores.
-const BAND_CELLS: usize = 1 << 15;
-
-/// Cells that a thread takes at once. The last rays of a part leave lanes idle.
-const PART_CELLS: usize = 512;
 
 /// The proven front of one cell.
 #[derive(Clone, Copy)]
@@ -376,57 +371,12 @@ fn parent_of(parents: Option<&Proofs>, [x, y]: [u32; 2]) -> Proof {
     parents.map_or(start, at)
 }
 
-/// Runs a pass in bands of rows and calls the watch after each.
-struct Bands<'a> {
-    pass: String,
-    before: f64,
-    share: f64,
-    watch: Watch<'a>,
-}
-
-impl Bands<'_> {
-    /// Calls `some` for all cells of a grid in parts, which are spread over threads, and `keep` for
-    /// the results in order.
-    fn over<T: Send>(
-        &mut self,
-        cells: [u32; 2],
-        some: impl Fn(Vec<[u32; 2]>) -> Vec<T> + Sync,
-        mut keep: impl FnMut(usize, T),
-    ) -> Result<(), FrameError> {
-        let [width, height] = cells.map(|n| n as usize);
-        // At least a few rows for every thread.
-        let least = 4 * rayon::current_num_threads();
-        let rows = (BAND_CELLS / width.max(1)).max(least);
-        for first in (0..height).step_by(rows) {
-            let last = (first + rows).min(height);
-            let parts = (first * width..last * width)
-                .into_par_iter()
-                .step_by(PART_CELLS);
-            let made: Vec<T> = parts
-                .flat_map_iter(|start| {
-                    let end = (start + PART_CELLS).min(last * width);
-                    let cell = |i| [(i % width) as u32, (i / width) as u32];
-                    some((start..end).map(cell).collect())
-                })
-                .collect();
-            for (i, value) in made.into_iter().enumerate() {
-                keep(first * width + i, value);
-            }
-            let mut progress = Progress::default();
-            progress.pass.clone_from(&self.pass);
-            progress.done = self.before + self.share * last as f64 / height as f64;
-            if !(self.watch)(&progress) {
-                return Err(FrameError::Cancelled);
-            }
-        }
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::bands::BAND_CELLS;
     use super::*;
     use crate::formula::{Formula, balls::Balls};
+    use crate::pass::progress::Progress;
 
     #[test]
     fn a_render_is_cancelled_within_a_pass() {
