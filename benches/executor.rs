@@ -23,7 +23,7 @@ const MARKS: [&str; 2] = [
     "<!-- scripts/executor COMMIT --write: end -->",
 ];
 /// Runs of each build per row.
-const RUNS: usize = 5;
+const RUNS: usize = 3;
 const SIZE: &str = "640x360";
 /// The old estimate, where a preset has a formula, and the old settings of the march.
 const SAME: [&str; 3] = [

@@ -42,9 +42,7 @@ impl Bands<'_> {
         let part = (width * height / (8 * threads)).clamp(fewest, most);
         for first in (0..height).step_by(rows) {
             let last = (first + rows).min(height);
-            let parts = (first * width..last * width)
-                .into_par_iter()
-                .step_by(part);
+            let parts = (first * width..last * width).into_par_iter().step_by(part);
             let made: Vec<T> = parts
                 .flat_map_iter(|start| {
                     let end = (start + part).min(last * width);

@@ -1,5 +1,5 @@
 //! Steps of cones and rays of a [`Distance`]: what is asked of the estimate, and what follows from the
-//! answer. Twin of the loops' bodies in `wgsl/scene/distance.wgsl`.
+//! answer.
 
 use glam::DVec3;
 
