@@ -115,16 +115,17 @@ fn finish<S: Solid>(
     }: &Sight,
     lit: Option<(&Spot, (DVec3, bool))>,
 ) -> Shaded {
-    let (t, normal, (c, decided)) = match lit {
-        None => (solid.bounds_far(), DVec3::ZERO, (light.sky(ray.axis), true)),
-        Some((Spot { t, surface, .. }, (c, decided))) => {
-            (*t, surface.normal, (fog::fog(light, c, ray, *t), decided))
+    let (t, normal, c, mut decided) = match lit {
+        None => (solid.bounds_far(), DVec3::ZERO, light.sky(ray.axis), true),
+        Some((spot, (mut c, decided))) => {
+            let (t, normal) = (spot.t, spot.surface.normal);
+            c = fog::fog(light, c, ray, t);
+            (t, normal, c, decided)
         }
     };
     let (lit, clear) = shafts::shafts((solid, light), (*pixel, before), c, ray, t);
     let mut radiance = lit + glow::glow(solid, light, ray, t);
-    let is_sky = *state == State::Sky;
-    let decided = is_sky || decided && clear;
+    decided &= clear || *state == State::Sky;
     // One of many paths says little of its pixel.
     let dark = light.substance.is_none() && !decided;
     if light.look.flag_unconverged && (*state == State::Unconverged || dark) {
