@@ -1,4 +1,4 @@
-//! The CPU executor: the passes of a Plan in f64, with rows spread over all cores.
+//! The CPU executor: the passes of a Plan in f64, with parts of a grid spread over all cores.
 //!
 //! It renders where a machine has no adapter, makes the truths, and is what the GPU is compared with.
 //! `bands` spreads cells over the cores, `sample` has single pixels, and `until` ends tiles.
