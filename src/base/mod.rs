@@ -12,6 +12,7 @@
 //! - [`one_value_cache`]: the last value that took long to make
 //! - [`named`]: enums whose variants are chosen by a word
 //! - [`mod@clock`]: time; [`parallel`]: work over all cores
+//! - [`lanes`]: numbers of several points side by side
 //! - [`units`]: amounts of memory for people to read
 
 mod angle;
@@ -22,6 +23,7 @@ mod equirectangular;
 pub mod filter;
 mod fisheye;
 pub mod key;
+pub mod lanes;
 pub mod named;
 pub mod oklab;
 pub mod one_value_cache;

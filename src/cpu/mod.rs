@@ -1,33 +1,33 @@
-//! The CPU executor: the passes of a Plan in f64, with rows spread over all cores.
+//! The CPU executor: the passes of a Plan in f64, with parts of a grid spread over all cores.
 //!
 //! It renders where a machine has no adapter, makes the truths, and is what the GPU is compared with.
-//! `sample` has single pixels, and `until` ends tiles.
+//! `bands` spreads cells over the cores, `sample` has single pixels, and `until` ends tiles.
 
+mod bands;
 mod sample;
 mod until;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::base::clock::clock;
 use crate::base::filter::{lens_share, offset};
 use crate::base::outcome::{Counts, State};
 use crate::base::view::{Beam, View};
 use crate::heightfield::conemap::generate::cpu::generate;
+use crate::pass::color::Sight;
+use crate::pass::follow::{Start, follow_all};
 use crate::pass::look::Light;
-use crate::pass::march::{Ended, march};
+use crate::pass::march::{Ended, march, march_all};
 use crate::pass::prepare::{FrameError, prepare};
-use crate::pass::progress::{Progress, Watch};
+use crate::pass::progress::Watch;
 use crate::pass::{color, trace, variance::spread_of};
 use crate::picture::frame::{Frame, in_image};
 use crate::plan::pyramid::Level;
 use crate::plan::{Extras, Pass, Plan};
 use crate::scene::{Assets, Hit, Solid, Task};
+use bands::Bands;
 pub use sample::sample;
 use until::{Judge, average};
-
-/// Cells between two calls of the watch: some tens of milliseconds on two cores.
-const BAND_CELLS: usize = 1 << 15;
 
 /// The proven front of one cell.
 #[derive(Clone, Copy)]
@@ -45,11 +45,17 @@ impl Proof {
         front: f64,
         work: &mut Counts,
     ) -> Self {
-        let mut cone = view.view_cone(cell, level.divisor);
-        cone.k *= level.fudge;
+        let cone = cone_of(view, cell, level);
         let (front, ended) = march(solid, &cone, front, level.steps, work);
         Self { front, ended }
     }
+}
+
+/// The cone of a cell.
+fn cone_of(view: &View, cell: [u32; 2], level: Level) -> Beam {
+    let mut cone = view.view_cone(cell, level.divisor);
+    cone.k *= level.fudge;
+    cone
 }
 
 /// A finished level, row by row.
@@ -200,25 +206,28 @@ impl<S: Solid> Run<'_, S> {
         let cells = level.cells(self.frame.size);
         let first = self.frame.origin.map(|o| o / level.divisor);
         let (solid, view, parents) = (self.solid, &self.view, self.parents.as_ref());
-        let one = |cell| {
-            let parent = parent_of(parents, cell);
-            let mut work = Counts::default();
-            if parent.ended == Ended::Sky {
-                return (parent, work);
+        let some = |part: Vec<[u32; 2]>| {
+            let parent = |cell: &[u32; 2]| parent_of(parents, *cell);
+            let mut all: Vec<(Proof, Counts)> = part
+                .iter()
+                .map(|cell| (parent(cell), Counts::default()))
+                .collect();
+            let going = || (0..part.len()).filter(|i| parent(&part[*i]).ended != Ended::Sky);
+            let start = |i: usize| {
+                let cone = cone_of(view, in_image(first, part[i]), level);
+                (cone, parent(&part[i]).front)
+            };
+            let starts: Vec<_> = going().map(start).collect();
+            let ends = march_all(solid, &starts, level.steps);
+            for (i, (front, ended, work)) in going().zip(ends) {
+                all[i] = (Proof { front, ended }, work);
             }
-            let proof = Proof::of(
-                (solid, view),
-                in_image(first, cell),
-                level,
-                parent.front,
-                &mut work,
-            );
-            (proof, work)
+            all
         };
         let mut proofs = Vec::with_capacity(cells[0] as usize * cells[1] as usize);
         let mut sum = (0, 0);
         let layer = &mut self.frame.levels[at];
-        bands.over(cells, one, |i, (proof, work)| {
+        bands.over(cells, some, |i, (proof, work)| {
             proofs.push(proof);
             add(&mut sum, work);
             set(&mut layer.front, i, proof.front as f32);
@@ -237,24 +246,36 @@ impl<S: Solid> Run<'_, S> {
         let (ray, width) = (self.rays(), self.frame.size[0] as usize);
         let (frame, hits) = (&mut self.frame, &mut self.hits);
         let (ended, is_centre) = (&self.ended, self.sample == 0);
-        let one = |pixel: [u32; 2]| {
-            // The centre has a ray anyway: its depth stays.
-            let at = pixel[1] as usize * width + pixel[0] as usize;
-            if is_on(ended, at) && !is_centre {
-                return None;
+        let far = solid.bounds_far();
+        let some = |part: Vec<[u32; 2]>| {
+            let (mut going, mut starts) = (Vec::new(), Vec::new());
+            let mut all = vec![None; part.len()];
+            for (i, &pixel) in part.iter().enumerate() {
+                // The centre has a ray anyway: its depth stays.
+                let at = pixel[1] as usize * width + pixel[0] as usize;
+                if is_on(ended, at) && !is_centre {
+                    continue;
+                }
+                let Proof { front, ended } = parent_of(parents, pixel);
+                all[i] = Some((Hit::default(), State::Sky, Counts::default()));
+                if ended != Ended::Sky {
+                    let ray = ray(pixel);
+                    going.push(i);
+                    starts.push(Start { ray, front, far });
+                }
             }
-            let parent = parent_of(parents, pixel);
-            let mut work = Counts::default();
-            if parent.ended == Ended::Sky {
-                return Some((Hit::default(), State::Sky, work));
+            for (i, end) in going
+                .into_iter()
+                .zip(follow_all(solid, &starts, limit, |_, _| {}))
+            {
+                all[i] = Some((end.hit, trace::state(&end), end.work));
             }
-            let (hit, state) = trace::trace(solid, &ray(pixel), parent.front, limit, &mut work);
-            Some((hit, state, work))
+            all
         };
         let mut sum = (0, 0);
         // As the colours, they are kept only if somebody asks for colours.
         hits.resize(frame.radiance.len(), Hit::default());
-        bands.over(frame.size, one, |i, traced| {
+        bands.over(frame.size, some, |i, traced| {
             let Some((hit, state, work)) = traced else {
                 return;
             };
@@ -282,22 +303,23 @@ impl<S: Solid> Run<'_, S> {
         undecided.resize(states.len(), false);
         let (counts, before, origin) = (self.counts, self.before, self.frame.origin);
         let (ended, is_centre) = (&self.ended, self.sample == 0);
-        let one = |pixel: [u32; 2]| {
-            let at = pixel[1] as usize * size[0] as usize + pixel[0] as usize;
+        let some = |part: Vec<[u32; 2]>| {
+            let place = |pixel: &[u32; 2]| pixel[1] as usize * size[0] as usize + pixel[0] as usize;
             // The normal is that of the centre.
-            if is_on(ended, at) && !is_centre {
-                return None;
-            }
-            let state = State::from_code(u32::from(states[at])).unwrap_or(State::Unconverged);
-            Some(color::color(
-                (solid, light),
-                (in_image(origin, pixel), before),
-                &ray(pixel),
-                &hits[at],
-                state,
-            ))
+            let seen = |pixel: &[u32; 2]| is_centre || !is_on(ended, place(pixel));
+            let sight = |pixel: &[u32; 2]| Sight {
+                pixel: in_image(origin, *pixel),
+                ray: ray(*pixel),
+                hit: hits[place(pixel)],
+                state: State::from_code(u32::from(states[place(pixel)]))
+                    .unwrap_or(State::Unconverged),
+            };
+            let sights: Vec<Sight> = part.iter().filter(|p| seen(p)).map(sight).collect();
+            let mut colors = color::colors((solid, light), before, &sights).into_iter();
+            let one = |pixel: &[u32; 2]| if seen(pixel) { colors.next() } else { None };
+            part.iter().map(one).collect::<Vec<_>>()
         };
-        bands.over(size, one, |i, pixel| {
+        bands.over(size, some, |i, pixel| {
             let Some(pixel) = pixel else {
                 return;
             };
@@ -349,54 +371,12 @@ fn parent_of(parents: Option<&Proofs>, [x, y]: [u32; 2]) -> Proof {
     parents.map_or(start, at)
 }
 
-/// Runs a pass in bands of rows and calls the watch after each.
-struct Bands<'a> {
-    pass: String,
-    before: f64,
-    share: f64,
-    watch: Watch<'a>,
-}
-
-impl Bands<'_> {
-    /// Calls `one` for all cells of a grid, with rows spread over threads, and `keep` for the
-    /// results in order.
-    fn over<T: Send>(
-        &mut self,
-        cells: [u32; 2],
-        one: impl Fn([u32; 2]) -> T + Sync,
-        mut keep: impl FnMut(usize, T),
-    ) -> Result<(), FrameError> {
-        let [width, height] = cells.map(|n| n as usize);
-        // At least a few rows for every thread.
-        let least = 4 * rayon::current_num_threads();
-        let rows = (BAND_CELLS / width.max(1)).max(least);
-        for first in (0..height).step_by(rows) {
-            let last = (first + rows).min(height);
-            let made: Vec<T> = (first..last)
-                .into_par_iter()
-                .flat_map_iter(|y| {
-                    let one = &one;
-                    (0..width).map(move |x| one([x as u32, y as u32]))
-                })
-                .collect();
-            for (i, value) in made.into_iter().enumerate() {
-                keep(first * width + i, value);
-            }
-            let mut progress = Progress::default();
-            progress.pass.clone_from(&self.pass);
-            progress.done = self.before + self.share * last as f64 / height as f64;
-            if !(self.watch)(&progress) {
-                return Err(FrameError::Cancelled);
-            }
-        }
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::bands::BAND_CELLS;
     use super::*;
     use crate::formula::{Formula, balls::Balls};
+    use crate::pass::progress::Progress;
 
     #[test]
     fn a_render_is_cancelled_within_a_pass() {

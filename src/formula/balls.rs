@@ -87,10 +87,6 @@ impl DistanceEstimate for Balls {
         Evaluator::new(self.clone())
     }
 
-    fn trap(&self, p: DVec3, _most: u32) -> DVec3 {
-        (p - p.round()).abs() * 2.0
-    }
-
     fn bounds(&self) -> Bounds {
         Bounds::cuboid(DVec3::splat(EXTENT))
     }
@@ -113,5 +109,9 @@ impl Evaluate for Balls {
         }
         let nearest = DVec3::new(rod.x, rod.y, p.z.clamp(-rod.z, rod.z));
         (d.min((p - nearest).length() - rod.w), 1)
+    }
+
+    fn trap(&self, p: DVec3, _most: u32) -> DVec3 {
+        (p - p.round()).abs() * 2.0
     }
 }

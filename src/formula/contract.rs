@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::base::key::{Fault, Key};
+use crate::base::lanes::{LANES, Places};
 use crate::base::shader::Module;
 use crate::formula::traps::Traps;
 use crate::wgsl;
@@ -48,7 +49,7 @@ impl Bounds {
 }
 
 /// What an evaluation tells about a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reading {
     /// The estimate of the distance. It decides hits and normals, and depends on the point alone.
     pub value: f64,
@@ -89,6 +90,48 @@ pub trait Evaluate: Send + Sync {
     /// tried; then the radius is at most `trial`.
     fn ball(&self, p: DVec3, most: u32, _trial: f64) -> Reading {
         self.step(p, most, 0.0)
+    }
+
+    /// Three orbit traps from 0 to 1, which pick the colour: how near the orbit of a point
+    /// comes to three sets.
+    fn trap(&self, p: DVec3, most: u32) -> DVec3;
+
+    /// The numbers of all traps ([`Traps::numbers`]): of a formula without orbits those of the
+    /// place itself.
+    fn traps(&self, p: DVec3, _most: u32) -> [f64; 7] {
+        let mut all = Traps::FAR;
+        all.add(p, 1.0);
+        all.numbers(1.0)
+    }
+
+    /// Whether points side by side cost less than one by one.
+    fn has_lanes(&self) -> bool {
+        false
+    }
+
+    /// The estimates of [`Self::value`] at several points.
+    fn values(&self, at: &Places, most: u32) -> [f64; LANES] {
+        at.each(|_, p| self.value(p, most).0)
+    }
+
+    /// [`Self::step`] at several points.
+    fn steps(&self, at: &Places, most: u32, clear: &[f64; LANES]) -> [Reading; LANES] {
+        at.each(|i, p| self.step(p, most, clear[i]))
+    }
+
+    /// [`Self::cone`] at several points.
+    fn cones(&self, at: &Places, most: u32, trial: &[f64; LANES]) -> [Reading; LANES] {
+        at.each(|i, p| self.cone(p, most, trial[i]))
+    }
+
+    /// [`Self::ball`] at several points.
+    fn balls(&self, at: &Places, most: u32, trial: &[f64; LANES]) -> [Reading; LANES] {
+        at.each(|i, p| self.ball(p, most, trial[i]))
+    }
+
+    /// [`Self::trap`] at several points.
+    fn trap_lanes(&self, at: &Places, most: u32) -> [DVec3; LANES] {
+        at.each(|_, p| self.trap(p, most))
     }
 }
 
@@ -149,19 +192,12 @@ pub trait DistanceEstimate {
         self.evaluator().value(p, most)
     }
 
-    /// Three orbit traps from 0 to 1, which pick the colour: how near the orbit of a point
-    /// comes to three sets.
-    fn trap(&self, p: DVec3, most: u32) -> DVec3;
-
-    /// The numbers of all traps ([`Traps::numbers`]): of a formula without orbits those of the
-    /// place itself.
-    fn traps(&self, p: DVec3, _most: u32) -> [f64; 7] {
-        let mut all = Traps::FAR;
-        all.add(p, 1.0);
-        all.numbers(1.0)
+    /// See [`Evaluate::trap`].
+    fn trap(&self, p: DVec3, most: u32) -> DVec3 {
+        self.evaluator().trap(p, most)
     }
 
-    /// The WGSL module with the twin of [`Self::traps`].
+    /// The WGSL module with the twin of [`Evaluate::traps`].
     fn traps_module(&self) -> Module {
         wgsl!("formula/traps_plain.wgsl")
     }

@@ -1,10 +1,14 @@
 //! The Mandelbox in Julia mode: every iteration adds the same constant (docs/method.md, 3).
 //! Twin: `wgsl/formula/julia.wgsl`.
 
+use fearless_simd::dispatch;
+use fearless_simd::prelude::*;
 use glam::DVec3;
 
+use crate::base::lanes::{LANES, Places, Reals, Triples, level, mask};
 use crate::formula::contract::{Evaluate, Reading};
 use crate::formula::folds::Folds;
+use crate::formula::orbit_lanes::readings;
 
 /// The estimates of a Mandelbox in Julia mode.
 #[derive(Clone, Debug)]
@@ -63,6 +67,69 @@ impl Julia {
     }
 }
 
+impl Julia {
+    /// See [`Self::outside`].
+    #[inline(always)]
+    fn outside_lanes<S: Simd>(&self, z: Triples<S>) -> Reals<S> {
+        let Self(folds) = self;
+        match folds.rotation {
+            None => {
+                let half = DVec3::splat(folds.lead) + folds.tail * folds.julia.abs();
+                let beside = z.abs() - Triples::all(z.x.simd, half);
+                let beyond = z.abs().max_element() - folds.edges(folds.julia)[1];
+                beside.max(0.0).length().max(beyond)
+            }
+            Some(_) => (z.length() - folds.k(folds.julia)).max(0.0),
+        }
+    }
+
+    /// See [`Self::follow`]. Without trials the radii are meaningless.
+    #[inline(always)]
+    fn follow_lanes<S: Simd>(
+        &self,
+        simd: S,
+        at: &Places,
+        most: u32,
+        trial: Option<&[f64; LANES]>,
+    ) -> [Reading; LANES] {
+        let Self(folds) = self;
+        let all = |x| Reals::splat(simd, x);
+        let c = Triples::all(simd, folds.julia);
+        let exit = all(folds.exit(folds.julia));
+        let (one, none) = (all(1.0), all(0.0));
+        let (mut z, mut w, mut n) = (Triples::of(simd, &at.points), one, none);
+        let trial = trial.map(|trial| Reals::simd_from(simd, *trial));
+        let mut bend = none;
+        let [low, high] = folds.radii;
+        let mut on = mask(simd, &at.on);
+        for _ in 0..most {
+            on &= !folds.ended_lanes(z, exit);
+            if on.all_false() {
+                break;
+            }
+            let fold = folds.fold_lanes(z);
+            if let Some(trial) = trial {
+                let length = fold.length();
+                let inverse = ((one / trial - bend) / w).max(0.0);
+                let inside = one - (length - high).max(0.0) * inverse;
+                let bent = bend + w * inside.max(0.0) / length;
+                bend = (on & length.simd_ge(low)).select(bent, bend);
+            }
+            w = on.select((folds.growth_lanes(&fold) * w).min(1e300), w);
+            z = Triples::select(on, folds.next_lanes(&fold, c), z);
+            n += on.select(one, none);
+        }
+        let near = z.length() - folds.k(folds.julia);
+        let ended = folds.ended_lanes(z, exit);
+        let top = ended.select(folds.top_lanes(z, c), near);
+        let radius = trial.map_or(w, |trial| {
+            let outside = self.outside_lanes(z);
+            trial.min(outside / (bend * outside + w))
+        });
+        readings(top / w, radius, n)
+    }
+}
+
 impl Evaluate for Julia {
     fn value(&self, p: DVec3, most: u32) -> (f64, u32) {
         let all = self.follow(p, most, 1.0);
@@ -75,5 +142,42 @@ impl Evaluate for Julia {
 
     fn ball(&self, p: DVec3, most: u32, trial: f64) -> Reading {
         self.follow(p, most, trial)
+    }
+
+    fn trap(&self, p: DVec3, most: u32) -> DVec3 {
+        self.0.trap(p, self.0.julia, most)
+    }
+
+    fn traps(&self, p: DVec3, most: u32) -> [f64; 7] {
+        self.0.traps(p, self.0.julia, most)
+    }
+
+    fn trap_lanes(&self, at: &Places, most: u32) -> [DVec3; LANES] {
+        dispatch!(level(), simd => self.0.trap_lanes(simd, at, Some(self.0.julia), most))
+    }
+
+    fn has_lanes(&self) -> bool {
+        true
+    }
+
+    fn values(&self, at: &Places, most: u32) -> [f64; LANES] {
+        let all = dispatch!(level(), simd => self.follow_lanes(simd, at, most, None));
+        all.map(|all| all.value)
+    }
+
+    fn steps(&self, at: &Places, most: u32, clear: &[f64; LANES]) -> [Reading; LANES] {
+        let mut all = dispatch!(level(), simd => self.follow_lanes(simd, at, most, None));
+        for (all, clear) in all.iter_mut().zip(clear) {
+            all.radius = (all.value - clear) / self.lipschitz();
+        }
+        all
+    }
+
+    fn cones(&self, at: &Places, most: u32, trial: &[f64; LANES]) -> [Reading; LANES] {
+        self.balls(at, most, trial)
+    }
+
+    fn balls(&self, at: &Places, most: u32, trial: &[f64; LANES]) -> [Reading; LANES] {
+        dispatch!(level(), simd => self.follow_lanes(simd, at, most, Some(trial)))
     }
 }

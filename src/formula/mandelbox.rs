@@ -173,16 +173,6 @@ impl DistanceEstimate for Mandelbox {
         }
     }
 
-    fn trap(&self, p: DVec3, most: u32) -> DVec3 {
-        let c = if self.julia { self.julia_constant } else { p };
-        self.folds().trap(p, c, most)
-    }
-
-    fn traps(&self, p: DVec3, most: u32) -> [f64; 7] {
-        let c = if self.julia { self.julia_constant } else { p };
-        self.folds().traps(p, c, most)
-    }
-
     fn traps_module(&self) -> Module {
         wgsl!("formula/traps_folds.wgsl")
     }

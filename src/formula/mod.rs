@@ -1,7 +1,8 @@
 //! Formulas: shapes given by an estimate of the distance to them.
 //!
 //! - [`mandelbox`]: the Mandelbox, and its Julia sets; `folds`: one iteration; `orbit`, `julia`
-//!   and `scalar`: its estimates; `traps`: how near orbits come to shapes
+//!   and `scalar`: its estimates; `folds_lanes` and `orbit_lanes`: several orbits side by side;
+//!   `traps`: how near orbits come to shapes
 //! - [`balls`]: balls, boxes and a rod, for tests
 //! - [`rotation`]: a rotation between folds
 //! - `contract`: [`DistanceEstimate`], what a scene asks a formula
@@ -12,9 +13,11 @@
 pub mod balls;
 mod contract;
 mod folds;
+mod folds_lanes;
 mod julia;
 pub mod mandelbox;
 mod orbit;
+mod orbit_lanes;
 pub mod rotation;
 mod scalar;
 mod traps;

@@ -2,21 +2,23 @@
 //! estimate for hits, and the radii of two empty balls for steps.
 //! Twin: `wgsl/formula/orbit.wgsl`.
 
+use fearless_simd::dispatch;
 use glam::{DMat3, DVec3};
 
+use crate::base::lanes::{LANES, Places, Triples, level};
 use crate::formula::contract::{Evaluate, Reading};
 use crate::formula::folds::{Fold, Folds};
 use crate::formula::rotation::Rotation;
 
 /// Iterations in which the Jacobian is followed. Most of what the scalar factor overstates is in
 /// the first terms of its sum.
-const PREFIX: u32 = 3;
+pub(super) const PREFIX: u32 = 3;
 
 /// Divisor of the chain where cones go by it.
 pub const ROTATED_SLOPE: f64 = 1.25;
 
 /// Radii of balls stay below this, as their squares could overflow in f32.
-const MOST_RADIUS: f64 = 1e15;
+pub(super) const MOST_RADIUS: f64 = 1e15;
 
 /// The derivative of a point of the orbit by the starting point, while all folds are linear.
 pub trait Jacobian: Copy {
@@ -226,6 +228,14 @@ impl Orbits {
     }
 }
 
+/// The ball of a cone from that of a ray.
+fn shortened(step: Reading) -> Reading {
+    Reading {
+        radius: step.radius / ROTATED_SLOPE,
+        ..step
+    }
+}
+
 impl Evaluate for Orbits {
     fn value(&self, p: DVec3, most: u32) -> (f64, u32) {
         let all = self.step(p, most, 0.0);
@@ -247,13 +257,7 @@ impl Evaluate for Orbits {
     fn cone(&self, p: DVec3, most: u32, trial: f64) -> Reading {
         match self.0.rotation {
             None => self.ball(p, most, trial),
-            Some(_) => {
-                let step = self.step(p, most, 0.0);
-                Reading {
-                    radius: step.radius / ROTATED_SLOPE,
-                    ..step
-                }
-            }
+            Some(_) => shortened(self.step(p, most, 0.0)),
         }
     }
 
@@ -261,6 +265,55 @@ impl Evaluate for Orbits {
         match self.0.rotation {
             None => self.trial_ball::<DVec3>(p, most, trial),
             Some(_) => self.trial_ball::<DMat3>(p, most, trial),
+        }
+    }
+
+    fn trap(&self, p: DVec3, most: u32) -> DVec3 {
+        self.0.trap(p, p, most)
+    }
+
+    fn traps(&self, p: DVec3, most: u32) -> [f64; 7] {
+        self.0.traps(p, p, most)
+    }
+
+    fn trap_lanes(&self, at: &Places, most: u32) -> [DVec3; LANES] {
+        dispatch!(level(), simd => self.0.trap_lanes(simd, at, None, most))
+    }
+
+    fn has_lanes(&self) -> bool {
+        true
+    }
+
+    fn values(&self, at: &Places, most: u32) -> [f64; LANES] {
+        self.steps(at, most, &[0.0; LANES]).map(|all| all.value)
+    }
+
+    fn steps(&self, at: &Places, most: u32, clear: &[f64; LANES]) -> [Reading; LANES] {
+        match self.0.rotation {
+            None => {
+                dispatch!(level(), simd => self.chain_lanes::<_, Triples<_>>(simd, at, most, clear))
+            }
+            Some(_) => {
+                dispatch!(level(), simd => self.chain_lanes::<_, [Triples<_>; 3]>(simd, at, most, clear))
+            }
+        }
+    }
+
+    fn cones(&self, at: &Places, most: u32, trial: &[f64; LANES]) -> [Reading; LANES] {
+        match self.0.rotation {
+            None => self.balls(at, most, trial),
+            Some(_) => self.steps(at, most, &[0.0; LANES]).map(shortened),
+        }
+    }
+
+    fn balls(&self, at: &Places, most: u32, trial: &[f64; LANES]) -> [Reading; LANES] {
+        match self.0.rotation {
+            None => {
+                dispatch!(level(), simd => self.trial_ball_lanes::<_, Triples<_>>(simd, at, most, trial))
+            }
+            Some(_) => {
+                dispatch!(level(), simd => self.trial_ball_lanes::<_, [Triples<_>; 3]>(simd, at, most, trial))
+            }
         }
     }
 }

@@ -76,6 +76,11 @@ impl Rotation {
         }
     }
 
+    /// The columns of the matrix.
+    pub(super) fn columns(&self) -> [DVec3; 3] {
+        [self.0.x_axis, self.0.y_axis, self.0.z_axis]
+    }
+
     /// The rotated vector.
     pub fn rotate(&self, v: DVec3) -> DVec3 {
         self.0 * v

@@ -3,11 +3,13 @@
 
 use glam::DVec3;
 
+use crate::base::lanes::LANES;
 use crate::base::outcome::State;
 use crate::base::shader::Module;
 use crate::base::view::Beam;
 use crate::pass::features;
 use crate::pass::look::Light;
+use crate::pass::quick::Spot;
 use crate::pass::turn::{background, until};
 use crate::pass::{fog, glow, layers, path, quick, shafts};
 use crate::plan::{Extras, Plan};
@@ -54,41 +56,84 @@ pub fn albedo_of<S: Solid>(solid: &S, light: &Light, surface: &Surface, q: DVec3
     }
 }
 
-/// Colours one sample of a pixel. `before` is the number of its samples before this one.
-pub fn color<S: Solid>(
+/// A ray of a pixel that is coloured.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight {
+    /// The pixel.
+    pub pixel: [u32; 2],
+    /// The ray.
+    pub ray: Beam,
+    /// What it met.
+    pub hit: Hit,
+    /// What the pixel is.
+    pub state: State,
+}
+
+/// Colours one sample of pixels. `before` is the number of their samples before this one.
+pub fn colors<S: Solid>(
     (solid, light): (&S, &Light),
-    (pixel, before): ([u32; 2], u32),
-    ray: &Beam,
-    hit: &Hit,
-    state: State,
-) -> Shaded {
-    if state == State::Sky {
-        let end = solid.bounds_far();
-        let sky = light.sky(ray.axis);
-        let (lit, _) = shafts::shafts((solid, light), (pixel, before), sky, ray, end);
-        return Shaded {
-            radiance: lit + glow::glow(solid, light, ray, end),
-            normal: DVec3::ZERO,
-            decided: true,
-        };
-    }
-    let surface = solid.surface(ray, hit);
-    let (mut c, decided) = match &light.substance {
-        None => quick::shade(solid, light, ray, hit.t, &surface),
-        Some(of) => path::shade((solid, light, of), (pixel, before), ray, hit.t, &surface),
+    before: u32,
+    sights: &[Sight],
+) -> Vec<Shaded> {
+    let met: Vec<&Sight> = sights.iter().filter(|s| s.state != State::Sky).collect();
+    let hits: Vec<(Beam, Hit)> = met.iter().map(|s| (s.ray, s.hit)).collect();
+    let surfaces = hits.chunks(LANES).flat_map(|part| solid.surfaces(part));
+    let spot = |(surface, sight): (Surface, &&Sight)| Spot {
+        ray: sight.ray,
+        t: sight.hit.t,
+        surface,
     };
-    c = fog::fog(light, c, ray, hit.t);
-    let (lit, clear) = shafts::shafts((solid, light), (pixel, before), c, ray, hit.t);
-    c = lit + glow::glow(solid, light, ray, hit.t);
-    let decided = decided && clear;
+    let spots: Vec<Spot> = surfaces.zip(&met).map(spot).collect();
+    let lit = match &light.substance {
+        None => quick::shade(solid, light, &spots),
+        Some(of) => {
+            let one = |(spot, sight): (&Spot, &&Sight)| {
+                let sample = (sight.pixel, before);
+                path::shade((solid, light, of), sample, &spot.ray, spot.t, &spot.surface)
+            };
+            spots.iter().zip(&met).map(one).collect()
+        }
+    };
+    let mut lit = spots.iter().zip(lit);
+    let one = |sight: &Sight| {
+        let lit = if sight.state == State::Sky {
+            None
+        } else {
+            lit.next()
+        };
+        finish((solid, light), before, sight, lit)
+    };
+    sights.iter().map(one).collect()
+}
+
+/// Adds what is between the eye and the surface, or the sky.
+fn finish<S: Solid>(
+    (solid, light): (&S, &Light),
+    before: u32,
+    Sight {
+        pixel, ray, state, ..
+    }: &Sight,
+    lit: Option<(&Spot, (DVec3, bool))>,
+) -> Shaded {
+    let (t, normal, c, mut decided) = match lit {
+        None => (solid.bounds_far(), DVec3::ZERO, light.sky(ray.axis), true),
+        Some((spot, (mut c, decided))) => {
+            let (t, normal) = (spot.t, spot.surface.normal);
+            c = fog::fog(light, c, ray, t);
+            (t, normal, c, decided)
+        }
+    };
+    let (lit, clear) = shafts::shafts((solid, light), (*pixel, before), c, ray, t);
+    let mut radiance = lit + glow::glow(solid, light, ray, t);
+    decided &= clear || *state == State::Sky;
     // One of many paths says little of its pixel.
     let dark = light.substance.is_none() && !decided;
-    if light.look.flag_unconverged && (state == State::Unconverged || dark) {
-        c = DVec3::new(1.0, 0.0, 1.0);
+    if light.look.flag_unconverged && (*state == State::Unconverged || dark) {
+        radiance = DVec3::new(1.0, 0.0, 1.0);
     }
     Shaded {
-        radiance: c,
-        normal: surface.normal,
+        radiance,
+        normal,
         decided,
     }
 }

@@ -341,3 +341,14 @@ pub fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
+
+/// A point of a surface that is lit.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// The point.
+    pub q: DVec3,
+    /// Its normal.
+    pub normal: DVec3,
+    /// Half a pixel's width there.
+    pub grain: f64,
+}

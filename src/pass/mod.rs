@@ -1,7 +1,7 @@
 //! Passes: the steps of a render. They contain all loops and know nothing of the scene.
 //!
 //! - [`prepare`]: makes cone maps before a heightfield's first frame
-//! - [`march`]: the cones of one level; [`trace`]: one ray per pixel
+//! - [`march`]: the cones of one level; [`trace`]: one ray per pixel; [`follow`]: rays to their ends
 //! - [`turn`]: the stages of a frame on a GPU, and which cells a dispatch visits; [`layout`]: where
 //!   their results are
 //! - [`color`]: light and colour, with [`look`], [`layers`] and [`fog`], which may thin out with the height
@@ -22,6 +22,7 @@ mod explain;
 pub mod features;
 pub mod fog;
 pub mod fog_height;
+pub mod follow;
 pub mod glow;
 pub mod lamp;
 pub mod layers;

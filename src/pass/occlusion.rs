@@ -1,23 +1,42 @@
 //! Ambient occlusion: how much of the sky a point sees.
 //! Twins: `wgsl/pass/occlusion.wgsl`, `occlusion_off.wgsl`.
 
-use glam::DVec3;
+use std::array;
 
+use crate::base::lanes::{LANES, Places};
 use crate::pass::LookFeature;
-use crate::pass::look::Light;
-use crate::scene::Solid;
+use crate::pass::look::{Light, Place};
+use crate::scene::{ROOMS, Solid};
 
-/// Share of the sky that a point sees. `grain` is half a pixel's width there.
-pub fn occlusion<S: Solid>(solid: &S, light: &Light, q: DVec3, normal: DVec3, grain: f64) -> f64 {
-    let mut open = 1.0;
+/// Share of the sky that a point sees.
+pub fn occlusion<S: Solid>(solid: &S, light: &Light, place: Place) -> f64 {
+    occlusions(solid, light, &[place])[0]
+}
+
+/// [`occlusion`] for many points.
+pub fn occlusions<S: Solid>(solid: &S, light: &Light, places: &[Place]) -> Vec<f64> {
     if !light.has(LookFeature::Occlusion) {
-        return open;
+        return vec![1.0; places.len()];
     }
-    let mut h = (light.look.occlusion_reach / 16.0).max(2.0 * grain);
-    for room in solid.rooms(q, normal, h) {
-        let free = (room / h).clamp(0.0, 1.0);
-        open *= 1.0 - 0.4 * light.look.occlusion * (1.0 - free).powi(2);
-        h *= 2.0;
-    }
-    open
+    let nearest = |place: &Place| (light.look.occlusion_reach / 16.0).max(2.0 * place.grain);
+    let open = |(place, rooms): (&Place, [f64; ROOMS])| {
+        let (mut open, mut h) = (1.0, nearest(place));
+        for room in rooms {
+            let free = (room / h).clamp(0.0, 1.0);
+            open *= 1.0 - 0.4 * light.look.occlusion * (1.0 - free).powi(2);
+            h *= 2.0;
+        }
+        open
+    };
+    let parts = places.chunks(LANES).flat_map(|part| {
+        let of = |i: usize| part.get(i).unwrap_or(&part[0]);
+        let at = Places {
+            points: array::from_fn(|i| of(i).q),
+            on: array::from_fn(|i| i < part.len()),
+        };
+        let axes = array::from_fn(|i| of(i).normal);
+        let rooms = solid.rooms_lanes(&at, &axes, &array::from_fn(|i| nearest(of(i))));
+        part.iter().zip(rooms)
+    });
+    parts.map(open).collect()
 }

@@ -2,13 +2,11 @@
 //! shadow, and the narrowest empty ball on the way gives the penumbra.
 //! Twins: `wgsl/pass/shadow.wgsl`, `shadow_off.wgsl`.
 
-use glam::DVec3;
-
-use crate::base::outcome::Counts;
 use crate::base::view::Beam;
 use crate::pass::LookFeature;
+use crate::pass::follow::{End, Start, follow_all};
 use crate::pass::lamp::Lamp;
-use crate::pass::look::{Light, smoothstep};
+use crate::pass::look::{Light, Place, smoothstep};
 use crate::scene::{Solid, Step};
 
 /// What a shadow ray found.
@@ -28,45 +26,40 @@ impl Shadow {
     };
 }
 
-/// Follows a ray from a point to the light. `grain` is half a pixel's width at the point.
-pub fn shadow<S: Solid>(
-    (solid, light): (&S, &Light),
-    q: DVec3,
-    normal: DVec3,
-    grain: f64,
-    lamp: &Lamp,
-) -> Shadow {
+/// Follows a ray from a point to the light.
+pub fn shadow<S: Solid>(of: (&S, &Light), place: Place, lamp: &Lamp) -> Shadow {
+    shadows(of, &[(place, *lamp)])[0]
+}
+
+/// [`shadow`] for many points with their lamps.
+pub fn shadows<S: Solid>((solid, light): (&S, &Light), all: &[(Place, Lamp)]) -> Vec<Shadow> {
     if !light.has(LookFeature::Shadow) {
-        return Shadow::NONE;
+        return vec![Shadow::NONE; all.len()];
     }
-    let ray = Beam {
-        origin: q + solid.shadow_lift(grain) * normal,
-        axis: lamp.axis,
-        r0: 0.0,
-        k: 0.0,
-        grain0: grain,
-        grain: 0.0,
+    let start = |(place, lamp): &(Place, Lamp)| Start {
+        ray: Beam {
+            origin: place.q + solid.shadow_lift(place.grain) * place.normal,
+            axis: lamp.axis,
+            r0: 0.0,
+            k: 0.0,
+            grain0: place.grain,
+            grain: 0.0,
+        },
+        front: 0.0,
+        far: lamp.far,
     };
-    let work = &mut Counts::default();
-    let mut walk = solid.begin(&ray, 0.0, lamp.far, work);
-    let mut open = 1.0_f64;
-    let mut decided = false;
-    for _ in 0..light.shadow_steps {
-        let step = solid.walk_step(&ray, &mut walk, work);
-        decided = matches!(step, Step::Hit | Step::Out);
-        if step == Step::Hit {
-            open = 0.0;
+    let starts: Vec<Start> = all.iter().map(start).collect();
+    let mut open = vec![1.0_f64; all.len()];
+    let ends = follow_all(solid, &starts, light.shadow_steps, |i, walk| {
+        let (t, (place, lamp)) = (solid.walk_hit(walk).t, &all[i]);
+        if t > 4.0 * place.grain {
+            let room = solid.walk_radius(&starts[i].ray, walk);
+            open[i] = open[i].min(room / (lamp.softness * t));
         }
-        if step != Step::Moving {
-            break;
-        }
-        let t = solid.walk_hit(&walk).t;
-        if t > 4.0 * grain {
-            open = open.min(solid.walk_radius(&ray, &walk) / (lamp.softness * t));
-        }
-    }
-    Shadow {
-        open: smoothstep(0.0, 1.0, open),
-        decided,
-    }
+    });
+    let shadow = |(end, open): (&End, f64)| Shadow {
+        open: smoothstep(0.0, 1.0, if end.step == Step::Hit { 0.0 } else { open }),
+        decided: matches!(end.step, Step::Hit | Step::Out),
+    };
+    ends.iter().zip(open).map(shadow).collect()
 }

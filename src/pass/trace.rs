@@ -4,6 +4,7 @@
 use crate::base::outcome::{Counts, State};
 use crate::base::shader::Module;
 use crate::base::view::Beam;
+use crate::pass::follow::{End, Start, follow};
 use crate::pass::turn::until;
 use crate::plan::Plan;
 use crate::scene::{Hit, Solid, Step};
@@ -27,15 +28,22 @@ pub fn trace<S: Solid>(
     limit: u32,
     work: &mut Counts,
 ) -> (Hit, State) {
-    let mut walk = solid.begin(ray, front, solid.bounds_far(), work);
-    for _ in 0..limit {
-        let state = match solid.walk_step(ray, &mut walk, work) {
-            Step::Moving => continue,
-            Step::Hit => State::Hit,
-            Step::Out => State::Sky,
-            Step::Spent => State::Unconverged,
-        };
-        return (solid.walk_hit(&walk), state);
+    let start = Start {
+        ray: *ray,
+        front,
+        far: solid.bounds_far(),
+    };
+    let end = follow(solid, &start, limit, |_| {});
+    work.evaluations += end.work.evaluations;
+    work.iterations += end.work.iterations;
+    (end.hit, state(&end))
+}
+
+/// What a pixel is whose ray ended so.
+pub fn state(end: &End) -> State {
+    match end.step {
+        Step::Hit => State::Hit,
+        Step::Out => State::Sky,
+        Step::Moving | Step::Spent => State::Unconverged,
     }
-    (solid.walk_hit(&walk), State::Unconverged)
 }

@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use crate::base::array::SceneArray;
+use crate::base::lanes::{LANES, Places};
 use crate::base::outcome::Counts;
 pub use crate::base::outcome::{Advance, Hit, Step};
 use crate::base::shader::Module;
@@ -37,6 +38,38 @@ pub trait Solid: Sync {
     /// One step of a ray.
     fn walk_step(&self, ray: &Beam, walk: &mut Self::Walk, work: &mut Counts) -> Step;
 
+    /// Whether rays side by side cost less than one by one.
+    fn has_lanes(&self) -> bool {
+        false
+    }
+
+    /// [`Self::advance`] for the cones of some lanes.
+    fn advance_lanes(
+        &self,
+        cones: &[Beam; LANES],
+        at: &mut [Advance; LANES],
+        on: [bool; LANES],
+        work: &mut [Counts; LANES],
+    ) {
+        for i in (0..LANES).filter(|i| on[*i]) {
+            at[i] = self.advance(&cones[i], at[i], &mut work[i]);
+        }
+    }
+
+    /// [`Self::walk_step`] for the rays of some lanes.
+    fn step_lanes(
+        &self,
+        rays: &[Beam; LANES],
+        walks: &mut [Self::Walk; LANES],
+        on: [bool; LANES],
+        work: &mut [Counts; LANES],
+    ) -> [Step; LANES] {
+        std::array::from_fn(|i| match on[i] {
+            true => self.walk_step(&rays[i], &mut walks[i], &mut work[i]),
+            false => Step::Moving,
+        })
+    }
+
     /// Where the ray is; its hit, once it has one.
     fn walk_hit(&self, walk: &Self::Walk) -> Hit;
 
@@ -67,8 +100,25 @@ pub trait Solid: Sync {
         })
     }
 
+    /// [`Self::rooms`] about the points of some lanes.
+    fn rooms_lanes(
+        &self,
+        at: &Places,
+        axes: &[DVec3; LANES],
+        nearest: &[f64; LANES],
+    ) -> [[f64; ROOMS]; LANES] {
+        at.each(|i, q| self.rooms(q, axes[i], nearest[i]))
+    }
+
     /// Normal and pigment of a hit.
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface;
+
+    /// [`Self::surface`] of at most [`LANES`] hits.
+    fn surfaces(&self, hits: &[(Beam, Hit)]) -> Vec<Surface> {
+        hits.iter()
+            .map(|(ray, hit)| self.surface(ray, hit))
+            .collect()
+    }
 
     /// The numbers of all traps at a point (`formula::Traps`), if the scene has orbits.
     fn traps(&self, _q: DVec3) -> Option<[f64; 7]> {

@@ -9,33 +9,32 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::{DVec3, Vec3};
 
+use crate::base::lanes::{LANES, Places};
 use crate::base::outcome::Counts;
 use crate::base::shader::Module;
 use crate::base::view::{Beam, footprint};
 use crate::formula::{Bounds, Evaluator, Formula, Reading};
-use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
-use crate::scene::stepping::{Relaxation, Stepping};
+use crate::scene::contract::{Advance, Hit, ROOMS, Solid, Step, Surface, Twin};
+use crate::scene::distance_steps::{
+    DISTANCE_ENOUGH, DISTANCE_LEAST, DISTANCE_MOST_RELAXED, DISTANCE_SMOOTHING, DISTANCE_TRIAL,
+    Walk,
+};
+use crate::scene::stepping::Stepping;
 use crate::wgsl;
 
-/// A cone that gains less than this share of its ball stops and leaves the rest to its four
-/// children. With a small share, cones creep along surfaces that they graze and pass places
-/// that rays would hit. At 0.3 some pixels start behind the surface, at 0.8 none does on the
-/// five bench presets.
-const DISTANCE_ENOUGH: f64 = 0.8;
-/// The ball that is tried, in radii of the last one. From 1.25 to 1.7 this makes no difference.
-const DISTANCE_TRIAL: f64 = 1.5;
-/// The least step of a ray, in hit thresholds.
-const DISTANCE_LEAST: f64 = 0.1;
-/// Weight of the newest slope in the automatic relaxation.
-const DISTANCE_SMOOTHING: f64 = 0.3;
 /// Where a clipped ray starts, in hit thresholds from the bounds. At 1, rounding decides whether the
 /// first sample is a hit. At less, a grazing ray starts behind the threshold: 2.8 % of the pixels of
 /// `bench-graze` do at 0.9, and 0.2 % at 0.99.
 const DISTANCE_WITHIN: f64 = 0.99;
 /// A gradient, as a sum of four differences, that is shorter than this has no direction.
 const DISTANCE_FLAT: f64 = 1e-20;
-/// The longest automatic step, in radii of the last ball.
-const DISTANCE_MOST_RELAXED: f64 = 3.0;
+/// The corners of a tetrahedron.
+pub(super) const CORNERS: [DVec3; 4] = [
+    DVec3::new(1.0, -1.0, -1.0),
+    DVec3::new(-1.0, -1.0, 1.0),
+    DVec3::new(-1.0, 1.0, -1.0),
+    DVec3::new(1.0, 1.0, 1.0),
+];
 
 /// The scene as WGSL reads it.
 #[repr(C)]
@@ -76,14 +75,14 @@ pub struct DistanceUniform {
 pub struct Distance {
     /// The formula.
     pub formula: Formula,
-    evaluator: Evaluator,
+    pub(super) evaluator: Evaluator,
     /// Its iteration limit.
     pub iterations: u32,
     /// Camera position.
     pub eye: DVec3,
     /// How steps are taken.
     pub stepping: Stepping,
-    bounds: Bounds,
+    pub(super) bounds: Bounds,
     lipschitz: f64,
     far: f64,
 }
@@ -112,13 +111,19 @@ impl Distance {
     }
 
     /// The hit threshold of a beam at a distance.
-    fn threshold(&self, beam: &Beam, t: f64) -> f64 {
+    pub(super) fn threshold(&self, beam: &Beam, t: f64) -> f64 {
         self.stepping.detail * footprint(beam, t)
     }
 
     /// Adds the cost of an evaluation, and widens it by the distance to the bounds. Inside the
     /// bounds the value may be negative: the gradient needs it.
-    fn read(&self, q: DVec3, reading: Reading, clear: f64, work: &mut Counts) -> (f64, f64) {
+    pub(super) fn read(
+        &self,
+        q: DVec3,
+        reading: Reading,
+        clear: f64,
+        work: &mut Counts,
+    ) -> (f64, f64) {
         work.evaluations += 1;
         work.iterations += reading.iterations;
         let outside = self.bounds.distance(self.eye + q);
@@ -140,21 +145,42 @@ impl Distance {
         self.read(q, reading, 0.0, &mut Counts::default()).0
     }
 
+    /// The size of the tetrahedron that a normal is taken from: half a pixel.
+    pub(super) fn tap(&self, ray: &Beam, hit: &Hit) -> f64 {
+        0.5 * footprint(ray, hit.t) + self.far * 1e-7
+    }
+
+    /// The surface with the values at the corners of a tetrahedron about it.
+    pub(super) fn surface_of(ray: &Beam, values: [f64; 4], pigment: DVec3) -> Surface {
+        let g: DVec3 = CORNERS.iter().zip(values).map(|(&c, v)| c * v).sum();
+        Surface {
+            // A point without a gradient faces the viewer.
+            normal: match g.length() > DISTANCE_FLAT {
+                true => g.normalize(),
+                false => -ray.axis,
+            },
+            pigment,
+        }
+    }
+
     /// The value of the field, and the radius of a ball in which it should exceed `clear`. Where
     /// rays go by proven balls, the ball is empty, but at most `trial` is tried.
     fn field(&self, q: DVec3, clear: f64, trial: f64, work: &mut Counts) -> (f64, f64) {
         let (p, most) = (self.eye + q, self.iterations);
         let reading = match self.stepping.proven {
-            true => {
-                let ball = self.evaluator.ball(p, most, trial);
-                Reading {
-                    radius: ball.radius - clear,
-                    ..ball
-                }
-            }
+            true => self.evaluator.ball(p, most, trial),
             false => self.evaluator.step(p, most, clear),
         };
-        self.read(q, reading, clear, work)
+        self.read(q, self.cleared(reading, clear), clear, work)
+    }
+
+    /// What was read for the step of a ray: a proven ball does not keep clear by itself.
+    pub(super) fn cleared(&self, reading: Reading, clear: f64) -> Reading {
+        let kept = if self.stepping.proven { clear } else { 0.0 };
+        Reading {
+            radius: reading.radius - kept,
+            ..reading
+        }
     }
 
     /// The part of a ray, as (near, far), that is nearer to the bounds than
@@ -248,68 +274,29 @@ impl Twin for Distance {
     }
 }
 
-/// The state of a ray between two steps.
-#[derive(Clone, Copy, Debug)]
-pub struct Walk {
-    /// The last accepted point.
-    t: f64,
-    /// Radius of the empty ball there.
-    radius: f64,
-    /// Length of the next step.
-    pace: f64,
-    /// The smoothed slope of the radius.
-    slope: f64,
-    /// The value of the field there: a smooth guess of the free room.
-    room: f64,
-    /// Where the ray ends.
-    end: f64,
-}
-
 impl Solid for Distance {
     type Walk = Walk;
 
     fn advance(&self, cone: &Beam, at: Advance, work: &mut Counts) -> Advance {
-        let t = at.front;
-        let q = cone.at(t);
-        let eps = self.threshold(cone, t);
-        let shell = self.stepping.shell * eps;
-        let mut d = self.bounds.distance(self.eye + q) - cone.r0 - shell;
-        // How wide the cone is.
-        let parallel = cone.grain == 0.0;
-        let wide = if parallel { cone.r0 } else { cone.k * t };
-        // Far from the bounds their distance is enough.
-        if d <= 2.0 * wide {
-            let (p, most) = (self.eye + q, self.iterations);
-            let trial = if at.radius > 0.0 {
-                DISTANCE_TRIAL * at.radius
-            } else if t > 0.0 {
-                4.0 * wide
-            } else {
-                self.evaluator.value(p, most).0.max(0.0)
-            };
-            let trial = trial + 2.0 * eps + cone.r0;
-            let ball = match self.stepping.proven {
+        let near = self.near(cone, at);
+        let ball = near.trial.map(|trial| {
+            let (p, most) = (self.eye + near.q, self.iterations);
+            match self.stepping.proven {
                 true => self.evaluator.ball(p, most, trial),
                 false => self.evaluator.cone(p, most, trial),
-            };
-            work.evaluations += 1;
-            work.iterations += ball.iterations;
-            d = d.max(ball.radius - shell - cone.r0);
-        }
-        let front = self.stepping.rule.cone_front(t, t, d, cone.k);
-        let (front, ball) = match parallel {
-            true => {
-                let (ball, rule) = (d + cone.r0, self.stepping.rule);
-                (rule.cone_parallel(t, ball, cone.r0, cone.k), ball)
             }
-            false => (front, d),
-        };
-        Advance {
-            front,
-            radius: d.max(0.0),
-            // After a short gain, or without a ball, the four thinner children go on.
-            going: front - t > DISTANCE_ENOUGH * ball.max(0.0),
-        }
+        });
+        self.advance_by(cone, at, &near, ball, work)
+    }
+
+    fn advance_lanes(
+        &self,
+        cones: &[Beam; LANES],
+        at: &mut [Advance; LANES],
+        on: [bool; LANES],
+        work: &mut [Counts; LANES],
+    ) {
+        self.advance_all(cones, at, on, work);
     }
 
     fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Counts) -> Walk {
@@ -326,47 +313,25 @@ impl Solid for Distance {
     }
 
     fn walk_step(&self, ray: &Beam, walk: &mut Walk, work: &mut Counts) -> Step {
-        let w = *walk;
-        if w.t + w.radius > w.end {
+        let Some(ahead) = self.ahead(ray, walk) else {
             return Step::Out;
-        }
-        let t = (w.t + w.pace).min(w.end);
-        let gone = t - w.t;
-        let eps = self.threshold(ray, t);
-        let clear = self.stepping.shell * eps;
-        let trial = DISTANCE_TRIAL * w.radius + 2.0 * eps;
-        let (value, ball) = self.field(ray.at(t), clear, trial, work);
-        // Near a fold the ball may be tiny, and rays would creep.
-        let least = match self.stepping.proven {
-            true => (ball + clear).min(DISTANCE_LEAST * eps),
-            false => DISTANCE_LEAST * eps,
         };
-        let radius = ball.max(least) * self.stepping.stride;
-        // Only a stretched step can leave a gap. Any other difference is rounding.
-        if w.pace > w.radius && gone > w.radius + radius.max(0.0) {
-            walk.pace = w.radius;
-            walk.slope = -1.0;
-            return Step::Moving;
-        }
-        walk.t = t;
-        if value <= eps {
-            return Step::Hit;
-        }
-        let factor = match self.stepping.relaxation {
-            Relaxation::Off => 1.0,
-            Relaxation::Factor(f) => f,
-            Relaxation::Auto => {
-                if gone > 0.0 && w.radius > 0.0 {
-                    let slope = (radius - w.radius) / gone;
-                    walk.slope += DISTANCE_SMOOTHING * (slope - walk.slope);
-                }
-                (2.0 / (1.0 - walk.slope).max(1e-3)).clamp(1.0, DISTANCE_MOST_RELAXED)
-            }
-        };
-        walk.radius = radius;
-        walk.room = value;
-        walk.pace = radius * factor;
-        Step::Moving
+        let field = self.field(ahead.q, ahead.clear, ahead.trial, work);
+        self.go_on(walk, &ahead, field)
+    }
+
+    fn has_lanes(&self) -> bool {
+        self.evaluator.has_lanes()
+    }
+
+    fn step_lanes(
+        &self,
+        rays: &[Beam; LANES],
+        walks: &mut [Walk; LANES],
+        on: [bool; LANES],
+        work: &mut [Counts; LANES],
+    ) -> [Step; LANES] {
+        self.step_all(rays, walks, on, work)
     }
 
     fn walk_hit(&self, walk: &Walk) -> Hit {
@@ -389,29 +354,28 @@ impl Solid for Distance {
         self.value(q).max(0.0)
     }
 
+    fn rooms_lanes(
+        &self,
+        at: &Places,
+        axes: &[DVec3; LANES],
+        nearest: &[f64; LANES],
+    ) -> [[f64; ROOMS]; LANES] {
+        self.rooms_all(at, axes, nearest)
+    }
+
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface {
-        let q = ray.at(hit.t);
-        // The corners of a tetrahedron half a pixel wide.
-        let h = 0.5 * footprint(ray, hit.t) + self.far * 1e-7;
-        let corners = [
-            DVec3::new(1.0, -1.0, -1.0),
-            DVec3::new(-1.0, -1.0, 1.0),
-            DVec3::new(-1.0, 1.0, -1.0),
-            DVec3::new(1.0, 1.0, 1.0),
-        ];
-        let g: DVec3 = corners.iter().map(|&c| c * self.value(q + h * c)).sum();
-        Surface {
-            // A point without a gradient faces the viewer.
-            normal: match g.length() > DISTANCE_FLAT {
-                true => g.normalize(),
-                false => -ray.axis,
-            },
-            pigment: self.formula.trap(self.eye + q, self.iterations),
-        }
+        let (q, h) = (ray.at(hit.t), self.tap(ray, hit));
+        let values = CORNERS.map(|c| self.value(q + h * c));
+        let pigment = self.evaluator.trap(self.eye + q, self.iterations);
+        Self::surface_of(ray, values, pigment)
+    }
+
+    fn surfaces(&self, hits: &[(Beam, Hit)]) -> Vec<Surface> {
+        self.surfaces_all(hits)
     }
 
     fn traps(&self, q: DVec3) -> Option<[f64; 7]> {
-        Some(self.formula.traps(self.eye + q, self.iterations))
+        Some(self.evaluator.traps(self.eye + q, self.iterations))
     }
 
     fn bounds_far(&self) -> f64 {

@@ -1,7 +1,7 @@
 //! Scenes: what there is to see.
 //!
 //! - [`distance`]: a formula; [`distance_settings`]: its keys; [`stepping`]: how it takes its
-//!   steps
+//!   steps; `distance_steps`: one step; `distance_lanes`: steps side by side
 //! - [`heightfield`]: a block with heights on top; `heightfield_settings`: what its keys mean here
 //! - [`slab`]: a slab between two planes, the smallest complete scene
 //! - [`sky`]: a sky in a file; `assets`: what is read and made
@@ -15,7 +15,9 @@
 mod assets;
 mod contract;
 pub mod distance;
+mod distance_lanes;
 pub mod distance_settings;
+mod distance_steps;
 pub mod heightfield;
 mod heightfield_settings;
 mod settings;
@@ -27,7 +29,7 @@ use std::ops::{Deref, DerefMut};
 
 use crate::heightfield::settings::HeightfieldSettings;
 pub use assets::Assets;
-pub use contract::{Advance, Hit, Solid, Step, Surface, Twin};
+pub use contract::{Advance, Hit, ROOMS, Solid, Step, Surface, Twin};
 use distance::Distance;
 use distance_settings::DistanceSettings;
 use heightfield::Heightfield;

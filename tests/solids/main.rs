@@ -18,6 +18,7 @@ mod common {
     pub mod random;
 }
 mod cones;
+mod lanes;
 mod oversteps;
 mod sights;
 

@@ -4,6 +4,7 @@ use bytemuck::bytes_of;
 use conemarch::base::random::{random_pair, random_seed};
 use conemarch::base::view::{Beam, footprint};
 use conemarch::pass::lamp::{lamp_from, lamp_light};
+use conemarch::pass::look::Place;
 use conemarch::pass::material::{Substance, material_frame};
 use conemarch::pass::{LookFeature, fog, occlusion, shadow};
 use conemarch::plan::Plan;
@@ -228,11 +229,16 @@ fn surfaces_agree(fog_height: f64) {
             ..Hit::default()
         };
         let at = scene.surface(&ray, &hit);
-        let (point, normal, grain) = (three(q[0]), three(q[2]), footprint(&ray, t));
+        let point = three(q[0]);
+        let place = Place {
+            q: point,
+            normal: three(q[2]),
+            grain: footprint(&ray, t),
+        };
         let sun = light.sun(scene.bounds_far());
-        let shaded = shadow::shadow((&scene, &light), point, normal, grain, &sun).open;
+        let shaded = shadow::shadow((&scene, &light), place, &sun).open;
         let near = lamp_from(&light, 0, point);
-        let hidden = occlusion::occlusion(&scene, &light, point, normal, grain);
+        let hidden = occlusion::occlusion(&scene, &light, place);
         let fogged = fog::fog(&light, DVec3::new(0.2, 0.5, 0.9), &ray, t);
         pairs.add_vector("normal", a[0], at.normal);
         pairs.add_vector("pigment", a[1], at.pigment);
