@@ -32,8 +32,13 @@ const PRESETS: [&str; 8] = [
 const PLANS: [&[&str]; 3] = [&["march.coarsest=1"], &[], &["march.coarsest=16"]];
 
 fn main() -> Result<()> {
-    let (mut executor, who) = Executor::open(&Choice::Auto)?;
-    eprintln!("measuring on {who}");
+    // Each plan has its own, which keeps its buffers.
+    let mut executors = Vec::new();
+    for _ in PLANS {
+        let (executor, who) = Executor::open(&Choice::Auto)?;
+        eprintln!("measuring on {who}");
+        executors.push(executor);
+    }
     let (mut rows, mut logs) = (Vec::new(), 0.0);
     for name in PRESETS {
         eprintln!("{name}");
@@ -52,7 +57,7 @@ fn main() -> Result<()> {
                     count: run == 0,
                     ..Extras::default()
                 };
-                let frame = executor.render(&plan, &assets, extras, &mut |_| true)?;
+                let frame = executors[nth].render(&plan, &assets, extras, &mut |_| true)?;
                 if run > 1 {
                     times[nth].push(frame.march_ms);
                 } else if run == 0 {
