@@ -84,24 +84,23 @@ fn the_sun_shines_once() {
 /// spread evenly.
 #[test]
 fn noise_falls_with_the_samples() {
-    let mut plan = sized("mandelbox-canyon", [32, 18]);
-    // Many samples of the fine details are needed too: shade no finer ones than the pixel's.
-    plan.reference = None;
-    let fine = render(&followed(plan.clone(), 1024), Extras::default());
-    assert!(mean(&fine) > 0.1, "{}", mean(&fine));
-    let squares = |frame: &Frame| {
-        let pairs = frame
-            .radiance
-            .iter()
-            .flatten()
-            .zip(fine.radiance.iter().flatten());
-        pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / (3.0 * 32.0 * 18.0)
-    };
-    let errors =
-        [4, 16, 64].map(|n| squares(&render(&followed(plan.clone(), n), Extras::default())));
-    println!("{errors:?}");
-    let slope = (errors[2] / errors[0]).log(16.0);
-    assert!(slope < -1.0, "{slope}");
+    for name in ["mandelbox", "mandelbox-gate", "terrain"] {
+        let mut plan = sized(name, [32, 18]);
+        // Many samples of the fine details are needed too: shade no finer ones than the pixel's.
+        plan.reference = None;
+        let fine = render(&followed(plan.clone(), 1024), Extras::default());
+        assert!(mean(&fine) > 0.1, "{name}: {}", mean(&fine));
+        let squares = |frame: &Frame| {
+            let fine = fine.radiance.iter().flatten();
+            let pairs = frame.radiance.iter().flatten().zip(fine);
+            pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / (3.0 * 32.0 * 18.0)
+        };
+        let errors =
+            [4, 16, 64].map(|n| squares(&render(&followed(plan.clone(), n), Extras::default())));
+        println!("{name}: {errors:?}");
+        let slope = (errors[2] / errors[0]).log(16.0);
+        assert!(slope < -1.0, "{name}: {slope}");
+    }
 }
 
 #[test]
