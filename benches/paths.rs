@@ -21,9 +21,8 @@ const MARKS: [&str; 2] = [
     "<!-- cargo bench --bench paths -- --write: end -->",
 ];
 /// White surfaces in white light from all sides.
-const WHITE: [&str; 9] = [
+const WHITE: [&str; 8] = [
     "look.palette=[[1, 1, 1], [1, 1, 1]]",
-    "look.trap=point",
     "look.sky_low=[1, 1, 1]",
     "look.sky_high=[1, 1, 1]",
     "look.light_color=[0, 0, 0]",
@@ -33,34 +32,18 @@ const WHITE: [&str; 9] = [
     "image.reference=auto",
 ];
 /// The scenes of the furnace, with their settings and limits of bounces.
-const FURNACE: [(&str, &[&str], &[u32]); 7] = [
+const FURNACE: [(&str, &[&str], &[u32]); 3] = [
+    ("mandelbox", &["look.trap=point"], &[0, 2, 8, 16]),
     (
-        "terrain",
-        &[
-            "scene.normals=patches",
-            "look.roughness=0.05",
-            "look.metal=1",
-        ],
+        "mandelbox",
+        &["look.trap=point", "image.reference=2160"],
         &[16],
     ),
     (
-        "terrain",
-        &[
-            "scene.normals=patches",
-            "look.roughness=0.3",
-            "look.gloss=0.5",
-        ],
+        "mandelbox-gate",
+        &["look.trap=point", "image.reference=2160"],
         &[16],
     ),
-    (
-        "terrain",
-        &["scene.normals=patches", "look.roughness=1"],
-        &[16],
-    ),
-    ("terrain", &["scene.normals=smooth"], &[16]),
-    ("mandelbox", &[], &[0, 2, 8, 16]),
-    ("mandelbox", &["image.reference=2160"], &[16]),
-    ("mandelbox-gate", &["image.reference=2160"], &[16]),
 ];
 /// Scenes whose noise is measured, at so many samples.
 const NOISE: [&str; 4] = ["mandelbox", "mandelbox-gate", "mandelbox-canyon", "terrain"];
