@@ -13,6 +13,7 @@ use crate::base::shader::{Program, ShaderError};
 use crate::gpu::array::Array;
 use crate::gpu::device::{Device, now};
 use crate::gpu::error::RenderError;
+use crate::gpu::target::new_picture;
 
 /// Why a kernel could not be compiled or bound.
 #[derive(Debug, Error)]
@@ -280,6 +281,38 @@ impl Kernel {
             Ok(device.device.create_bind_group(&descriptor))
         };
         (0u32..).zip(&self.layouts).map(group).collect()
+    }
+
+    /// Has the driver compile what it compiles only when it meets a dispatch: Mesa's software Vulkan
+    /// then takes up to 0.3 s for a program that its cache does not hold.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn warm(&self, device: &Device) -> Result<(), RenderError> {
+        let largest = self.bindings.iter().map(|b| b.bytes).max();
+        let buffer = || Array::in_buffer(device, "warm", &vec![0; largest.unwrap_or(0) as usize]);
+        let [read, written] = [buffer()?, buffer()?];
+        let one = [0; 4];
+        let numbers = Array::in_texture(device, "warm", &one, false)?;
+        let whole_numbers = Array::in_texture(device, "warm", &one, true)?;
+        let picture = new_picture(device, [1, 1]).create_view(&Default::default());
+        let resource = |name: &str| {
+            let binding = self.bindings.iter().find(|b| b.name == name)?;
+            Some(match binding.kind {
+                Kind::Storage { read_only: true } => read.binding(),
+                Kind::Storage { read_only: false } => written.binding(),
+                Kind::Texture { whole: false } => numbers.binding(),
+                Kind::Texture { whole: true } => whole_numbers.binding(),
+                Kind::Picture => wgpu::BindingResource::TextureView(&picture),
+            })
+        };
+        let bound = self.bind(device, resource)?;
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        self.dispatch(&mut pass, &bound, [0, 0]);
+        drop(pass);
+        device.submit(encoder);
+        Ok(())
     }
 
     /// Runs so many workgroups over buffers by the names of their variables. The device

@@ -326,7 +326,7 @@ impl Target {
     }
 }
 
-fn new_picture(device: &Device, [width, height]: [u32; 2]) -> wgpu::Texture {
+pub fn new_picture(device: &Device, [width, height]: [u32; 2]) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::STORAGE_BINDING
         | wgpu::TextureUsages::TEXTURE_BINDING
         | wgpu::TextureUsages::COPY_SRC;

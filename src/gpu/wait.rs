@@ -1,5 +1,6 @@
 //! What waits for a device. A browser allows none of it.
 
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use bytemuck::Pod;
@@ -21,6 +22,27 @@ impl Device {
         });
         self.trouble()?;
         polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
+    }
+
+    /// Waits until everything submitted has run, or until `goes_on` denies. Other threads may submit
+    /// meanwhile.
+    ///
+    /// # Errors
+    /// The device was lost or reported an error.
+    pub fn wait_beside(&self, mut goes_on: impl FnMut() -> bool) -> Result<(), DeviceError> {
+        let (ran, has_run) = channel();
+        self.queue.on_submitted_work_done(move || {
+            // The other end may have stopped to wait.
+            let _ = ran.send(());
+        });
+        self.check()?;
+        // A lost device drops the sender.
+        while let Err(RecvTimeoutError::Timeout) = has_run.recv_timeout(Duration::from_millis(1))
+            && goes_on()
+        {
+            self.check()?;
+        }
+        self.check()
     }
 
     /// Waits until a submission has run, but for 20 ms at most.

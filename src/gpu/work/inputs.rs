@@ -251,8 +251,20 @@ impl FrameRequest {
         if !new.is_empty() && !tell(&compile_first) {
             return Err(RenderError::Cancelled);
         }
+        // A window shows its first picture before all programs are compiled.
+        let warms = !extras.sketched;
         for kernel in all_at_once(&new, compile) {
-            kernel?;
+            let kernel = kernel?;
+            if warms {
+                kernel.warm(device)?;
+            }
+        }
+        #[cfg(feature = "cli")]
+        if warms && !new.is_empty() {
+            device.wait_beside(|| tell(&compile_first))?;
+            if !tell(&compile_first) {
+                return Err(RenderError::Cancelled);
+            }
         }
         let kernels = needs.programs.iter().map(compile);
         let kernels: Vec<_> = kernels.collect::<Result<_, _>>()?;
