@@ -141,8 +141,8 @@ impl Format {
         let shades = || Shades::new(args.layer, frame, plan).with_errors(errors);
         match self {
             Self::Exr => write_exr(to, frame, plan, &preset)?,
-            Self::Jpeg => write_jpeg(to, &shades(), args.quality.unwrap_or(QUALITY))?,
-            Self::WebP => write_webp(to, &shades())?,
+            Self::Jpeg => write_jpeg(to, &shades(), args.quality.unwrap_or(QUALITY), &plan.title)?,
+            Self::WebP => write_webp(to, &shades(), &plan.title)?,
             Self::Png => {
                 let depth = args.depth.unwrap_or_default();
                 write_png(to, &shades(), depth, &plan.title, &preset)?;

@@ -131,8 +131,10 @@ fn channels(frame: &Frame, plan: &Plan) -> Named {
 /// Channels with all attributes.
 fn described(size: [u32; 2], list: Named, plan: &Plan, preset: &str) -> Channels {
     let mut image = image(size, list, [PNG_KEYWORD, preset]);
-    image.layer_data.attributes.software_name = Some(SOFTWARE.into());
-    image.layer_data.attributes.horizontal_density = plan.ppi.map(|ppi| ppi as f32);
+    let own = &mut image.layer_data.attributes;
+    own.software_name = Some(SOFTWARE.into());
+    own.comments = Some(plan.title.as_str().into()).filter(|_| !plan.title.is_empty());
+    own.horizontal_density = plan.ppi.map(|ppi| ppi as f32);
     image.attributes.chromaticities = Some(SRGB);
     // The maps of further attributes are written in no certain order: one in each.
     let other = &mut image.attributes.other;

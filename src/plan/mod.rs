@@ -157,7 +157,7 @@ impl Plan {
                 "until" = number(&mut self.until, 0.0, 1.0), "error of the shown picture, from black 0 to white 1, below which a tile of 64 x 64 pixels gets no more samples: 0 for all samples everywhere, 0.004 for one level of 8 bits" => Program;
                 "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower picture shows the same details, averaged by its samples; auto is the picture's own height" => March;
                 "background" = word(&mut self.background, &Background::WORDS), "what files have behind the hits: sky, or transparent for alpha, the share of a pixel's samples that hit, in PNG, WebP and EXR; fog still fades toward the sky's colour, and the window shows the sky" => Program;
-                "ppi" = auto_count(&mut self.ppi, 1, 10_000), "pixels per inch on paper, which PNG, JPEG and EXR tell printers; auto tells none" => Nothing;
+                "ppi" = auto_count(&mut self.ppi, 1, 10_000), "pixels per inch on paper, which PNG, JPEG, WebP and EXR tell printers; auto tells none" => Nothing;
             ],
             "time" => self.time.keys(),
             _ => return None,

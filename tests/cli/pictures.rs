@@ -1,6 +1,7 @@
 //! What is in the files: layers, bits, channels and text.
 
 use std::fs;
+use std::io::Cursor;
 use std::path::Path;
 
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Layer};
@@ -72,7 +73,7 @@ fn a_png_tells_its_title_program_and_preset_in_chunks_that_all_programs_read() {
 }
 
 #[test]
-fn files_tell_their_pixels_per_inch() {
+fn files_tell_their_title_and_density() {
     let folder = Folder::new();
     assert!(picture(&folder, "").0.pixel_dims.is_none());
     let set = "--set image.ppi=300";
@@ -86,10 +87,25 @@ fn files_tell_their_pixels_per_inch() {
     // JFIF: the unit is inches, and then two densities.
     assert_eq!(folder.bytes("a.jpg")[13..18], [1, 1, 44, 1, 44]);
     rendered(&folder, "mandelbox", &format!("{set} -o a.exr"));
-    let density = exr_layer(&folder.0.join("a.exr"))
-        .attributes
-        .horizontal_density;
-    assert_eq!(density, Some(300.0));
+    let own = exr_layer(&folder.0.join("a.exr")).attributes;
+    assert_eq!(own.horizontal_density, Some(300.0));
+    assert!(own.comments.unwrap() == *"Mandelbox, scale 2");
+    rendered(&folder, "mandelbox", &format!("{set} -o a.webp"));
+    for name in ["a.jpg", "a.webp"] {
+        let mut bytes = Cursor::new(folder.bytes(name));
+        let told = exif::Reader::new().read_from_container(&mut bytes).unwrap();
+        let value = |tag| {
+            told.get_field(tag, exif::In::PRIMARY)
+                .unwrap()
+                .display_value()
+        };
+        let title = value(exif::Tag::ImageDescription).to_string();
+        assert_eq!(title, "\"Mandelbox, scale 2\"", "{name}");
+        let program = value(exif::Tag::Software).to_string();
+        assert!(program.starts_with("\"conemarch "), "{name}: {program}");
+        assert_eq!(value(exif::Tag::XResolution).to_string(), "300", "{name}");
+        assert_eq!(value(exif::Tag::ColorSpace).to_string(), "sRGB", "{name}");
+    }
     folder.fails(
         "render mandelbox --set image.ppi=0",
         2,
