@@ -88,7 +88,9 @@ impl Mandelbox {
             scale: self.scale,
             fold_limit: self.fold_limit,
             radii: [self.min_radius, self.fixed_radius],
-            lipschitz: self.lipschitz.unwrap_or_else(|| slope(self.scale)),
+            lipschitz: self
+                .lipschitz
+                .unwrap_or_else(|| slope(self.scale, self.rotated().is_some())),
             bail2: (BAIL_FACTOR * k).powi(2),
             tail: self.tail(),
             k_at_zero: self.k(0.0),
@@ -221,16 +223,18 @@ impl DistanceEstimate for Mandelbox {
     }
 }
 
-/// The Lipschitz constant at a scale: by so much the steps of rays are shortened.
+/// The Lipschitz constant at a scale and with or without a rotation: by so much the steps of rays are shortened.
 ///
 /// The derivative along an orbit is that at one point and not over a step, so a ball that reaches
 /// into the zone of a ball fold can be too large. docs/method.md, 3 tells by how much steps are
 /// still too long; the tests in `tests/solids/oversteps.rs` search for them.
-fn slope(scale: f64) -> f64 {
+fn slope(scale: f64, rotated: bool) -> f64 {
     if scale > 2.25 {
         1.2
-    } else if scale < -1.6 {
+    } else if scale < -1.6 || (scale < 0.0 && rotated) {
         1.25
+    } else if rotated {
+        1.1
     } else {
         1.0
     }

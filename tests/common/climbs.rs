@@ -26,7 +26,8 @@ pub struct Climb {
 }
 
 /// Points that belong to the set but for a few roundings: where rays between random points end.
-pub fn of_the_set(m: &Mandelbox, count: usize, random: &mut Random) -> Vec<DVec3> {
+/// Each is with the direction of its ray.
+pub fn of_the_set(m: &Mandelbox, count: usize, random: &mut Random) -> Vec<(DVec3, DVec3)> {
     let (evaluator, half) = (m.evaluator(), m.bounds().half);
     let mut found = Vec::new();
     for _ in 0..100 * count {
@@ -36,7 +37,7 @@ pub fn of_the_set(m: &Mandelbox, count: usize, random: &mut Random) -> Vec<DVec3
         for _ in 0..400 {
             let (d, _) = evaluator.value(from + t * axis, MANY);
             if d < 1e-12 * half.x {
-                found.push(from + t * axis);
+                found.push((from + t * axis, axis));
                 break;
             }
             t += 0.7 * d;
@@ -52,19 +53,26 @@ pub fn of_the_set(m: &Mandelbox, count: usize, random: &mut Random) -> Vec<DVec3
     found
 }
 
-/// Starts so many climbs, from 1e-4 to 1 limits off the points.
+/// Starts so many climbs, from 1e-4 to 1 limits off the points. Half of them start on the ray that
+/// ended there, before the point.
 pub fn start(m: &Mandelbox, count: usize, random: &mut Random) -> Vec<Climb> {
     let points = of_the_set(m, count.div_ceil(4), random);
-    let off = |set: &DVec3, random: &mut Random| {
+    let off = |i: usize, random: &mut Random| {
+        let (set, axis) = points[i / 4];
         let distance = m.fold_limit * 10.0_f64.powf(random.between(-4.0, 0.0));
+        let away = if i.is_multiple_of(2) {
+            random.direction()
+        } else {
+            -axis
+        };
         Climb {
-            set: *set,
-            centre: *set + distance * random.direction(),
+            set,
+            centre: set + distance * away,
             ratio: 0.0,
             stride: random.between(0.1, 1.0),
         }
     };
-    (0..count).map(|i| off(&points[i / 4], random)).collect()
+    (0..count).map(|i| off(i, random)).collect()
 }
 
 /// Climbs by so many rounds. `radii` tells the radius that is claimed at each centre, given how far

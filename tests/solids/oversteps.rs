@@ -70,21 +70,51 @@ fn steps_are_empty_where_ball_folds_do_not_invert() {
     assert!(closest > 0.9, "{closest}");
 }
 
+/// Rotations by little and by much.
+const ROTATIONS: [DVec3; 3] = [
+    DVec3::new(12.0, -8.0, 25.0),
+    DVec3::new(1.0, 0.0, 0.0),
+    DVec3::new(0.0, 0.0, 45.0),
+];
+
 /// The table of docs/method.md, 3.
 #[test]
 fn steps_are_too_long_by_as_much_as_is_said() {
-    for (m, said) in settings()
-        .iter()
-        .zip([1.1, 1.3, 1.2, 1.25, 1.2, 1.3, 1.4, 1.5, 1.01, 1.12])
-    {
-        let evaluator = m.evaluator();
-        let worst = search(m, 3000, |p, _| evaluator.step(p, MANY, 0.0).radius);
-        println!(
-            "{} {} {}: {:.3}",
-            m.scale, m.fold_limit, m.min_radius, worst.ratio
-        );
-        assert!(worst.ratio < said, "{m:?}: {worst:?}");
+    const PLAIN: [f64; 10] = [1.1, 1.3, 1.2, 1.25, 1.2, 1.3, 1.4, 1.5, 1.01, 1.12];
+    const ROTATED: [f64; 10] = [1.0, 1.15, 1.2, 1.1, 1.2, 1.1, 1.15, 1.2, 1.15, 1.15];
+    const JULIA: [f64; 10] = [1.1, 1.1, 1.1, 1.1, 1.1, 1.0, 1.0, 1.0, 1.1, 1.0];
+    for (i, mut m) in settings().into_iter().enumerate() {
+        let check = |m: &Mandelbox, said: f64| {
+            let evaluator = m.evaluator();
+            let worst = search(m, 3000, |p, _| evaluator.step(p, MANY, 0.0).radius);
+            assert!(worst.ratio < said, "{m:?}: {worst:?}");
+        };
+        check(&m, PLAIN[i]);
+        for rotation in ROTATIONS {
+            m.rotation = rotation;
+            check(&m, ROTATED[i]);
+        }
+        m.rotation = DVec3::ZERO;
+        m.julia_constant = m.fold_limit * DVec3::new(0.7, -0.4, 1.1);
+        m.julia = true;
+        check(&m, JULIA[i]);
     }
+}
+
+/// With a rotation, cones go by steps over a constant that is larger than any overstep.
+#[test]
+fn cones_are_empty_with_a_rotation() {
+    let mut closest = 0.0_f64;
+    for mut m in settings() {
+        for rotation in ROTATIONS {
+            m.rotation = rotation;
+            let evaluator = m.evaluator();
+            let worst = search(&m, 3000, |p, off| evaluator.cone(p, MANY, 1.5 * off).radius);
+            assert!(worst.ratio < 1.0, "{m:?}: {worst:?}");
+            closest = closest.max(worst.ratio);
+        }
+    }
+    assert!(closest > 0.8, "{closest}");
 }
 
 /// A point whose step passes a point of the set, found by a climb.
@@ -191,7 +221,7 @@ fn steps_are_not_shorter_than_those_of_the_scalar_estimate() {
         };
         let points = of_the_set(&m, 300, random);
         let [tight, scalar] = [&m, &scalar].map(|m| m.evaluator());
-        for set in points {
+        for (set, _) in points {
             let off = m.fold_limit * 10.0_f64.powf(random.between(-4.0, 0.0));
             let p = set + off * random.direction();
             let (step, old) = (tight.step(p, MANY, 0.0).radius, scalar.value(p, MANY).0);
