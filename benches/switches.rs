@@ -2,14 +2,17 @@
 //!
 //! Renders the default preset and the same with one setting changed, in turn, and prints the
 //! ratios of the median times for march and trace, and for colour. A feature costs nothing if
-//! its ratio is 1 while it is off.
+//! its ratio is 1 while it is off. Then it prints the times of whole processes by samples.
 
-use anyhow::{Result, bail};
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Result, bail, ensure};
 use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::Choice;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
-use conemarch::preset;
+use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 use conemarch::scene::distance_settings::DistanceSettings;
 
@@ -34,8 +37,61 @@ const SWITCHES: &[Switch] = &[
     ("rotation by 1 degree", |p, _| rotate(p, 1.0)),
 ];
 
+/// Features with the keys that put them on, over four samples.
+const FEATURES: &[(&str, &[&str])] = &[
+    ("nothing changed", &[]),
+    (
+        "details of features that are off",
+        &[
+            "look.glow_width=0.1",
+            "look.lamp_at=[2, -5, 4]",
+            "look.fog_height=0.1",
+            "look.emission_width=0.5",
+            "look.layer2_weight=0.9",
+            "camera.blades=6",
+        ],
+    ),
+    ("lens", &["camera.aperture=0.004"]),
+    (
+        "fog that thins out with height",
+        &["look.fog=0.3", "look.fog_height=0.1"],
+    ),
+    ("glow of the air", &["look.glow=0.5"]),
+    ("glow of the surface", &["look.emission=2"]),
+    ("a lamp", &["look.lamp=1"]),
+    (
+        "three lamps",
+        &["look.lamp=1", "look.lamp2=1", "look.lamp3=1"],
+    ),
+    ("another trap", &["look.trap=\"sphere\""]),
+    ("a second layer", &["look.layer2_trap=\"plane\""]),
+    ("no sky", &["image.background=\"transparent\""]),
+    ("samples until an error of 0.004", &["image.until=0.004"]),
+    (
+        "light by paths, no bounce",
+        &["look.mode=\"path\"", "look.bounces=0"],
+    ),
+    (
+        "light by paths, 2 bounces",
+        &["look.mode=\"path\"", "look.bounces=2"],
+    ),
+    (
+        "the same with fog and shafts",
+        &[
+            "look.mode=\"path\"",
+            "look.bounces=2",
+            "look.fog=0.3",
+            "look.shafts=1",
+        ],
+    ),
+];
+
 /// Warm runs, of which the median is taken.
 const RUNS: usize = 21;
+/// The same of features, which take longer.
+const FEATURE_RUNS: usize = 7;
+/// Processes, of which the median is taken.
+const PROCESSES: usize = 3;
 
 fn rotate(plan: &mut Plan, degrees: f64) {
     use conemarch::{formula::Formula, scene::Scene};
@@ -57,33 +113,73 @@ fn main() -> Result<()> {
     for (name, change) in SWITCHES {
         let (mut changed, mut extras) = (plan.clone(), Extras::default());
         change(&mut changed, &mut extras);
-        let mut ratios = [Vec::new(), Vec::new()];
-        // The first run compiles.
-        for run in 0..=RUNS {
-            let base = times(&executor.render(
-                &plan,
-                &Assets::default(),
-                Extras::default(),
-                &mut |_| true,
-            )?);
-            let other =
-                times(&executor.render(&changed, &Assets::default(), extras, &mut |_| true)?);
-            if run > 0 {
-                for i in 0..2 {
-                    ratios[i].push(other[i] / base[i]);
-                }
-            }
-        }
-        let [march, color] = ratios.map(|mut r| {
-            r.sort_by(f64::total_cmp);
-            r[r.len() / 2]
-        });
-        if !(march.is_finite() && color.is_finite()) {
-            bail!("{name}: the clock measured no time for a pass");
-        }
-        println!("| {name} | {march:.2} | {color:.2} |");
+        row(&mut executor, name, &plan, (&changed, extras), RUNS)?;
+    }
+    println!("\nFeatures of `mandelbox` at 320 x 180 with 4 samples\n");
+    println!("| feature | march and trace | colour |\n|---|---:|---:|");
+    let mut base = None;
+    for (name, keys) in FEATURES {
+        let own = ["image.size=[320, 180]", "image.samples=4"];
+        let keys = own.iter().chain(*keys).map(|key| Override::read(key));
+        let changed = preset::load("mandelbox", &keys.collect::<Result<Vec<_>, _>>()?)?.plan;
+        let base = base.get_or_insert_with(|| changed.clone());
+        let changed = (&changed, Extras::default());
+        row(&mut executor, name, base, changed, FEATURE_RUNS)?;
+    }
+    println!("\nWhole processes of `mandelbox` at 1280 x 720\n");
+    println!("| samples | seconds |\n|---:|---:|");
+    for samples in [1, 4, 16, 64] {
+        println!("| {samples} | {:.1} |", process(samples)?);
     }
     Ok(())
+}
+
+/// Prints the ratios of a changed plan's times to those of another.
+fn row(
+    executor: &mut Executor,
+    name: &str,
+    plan: &Plan,
+    (changed, extras): (&Plan, Extras),
+    runs: usize,
+) -> Result<()> {
+    let assets = Assets::default();
+    let mut ratios = [Vec::new(), Vec::new()];
+    // The first run compiles.
+    for run in 0..=runs {
+        let base = times(&executor.render(plan, &assets, Extras::default(), &mut |_| true)?);
+        let other = times(&executor.render(changed, &assets, extras, &mut |_| true)?);
+        if run > 0 {
+            for i in 0..2 {
+                ratios[i].push(other[i] / base[i]);
+            }
+        }
+    }
+    let [march, color] = ratios.map(|mut r| {
+        r.sort_by(f64::total_cmp);
+        r[r.len() / 2]
+    });
+    if !(march.is_finite() && color.is_finite()) {
+        bail!("{name}: the clock measured no time for a pass");
+    }
+    println!("| {name} | {march:.2} | {color:.2} |");
+    Ok(())
+}
+
+/// Seconds of a process from nothing to a PNG of so many samples.
+fn process(samples: u32) -> Result<f64> {
+    let folder = tempfile::tempdir()?;
+    let mut times = Vec::new();
+    for _ in 0..PROCESSES {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_conemarch"));
+        command.args(["render", "mandelbox", "--size", "1280x720"]);
+        command.args(["--samples", &samples.to_string(), "--output"]);
+        let begun = Instant::now();
+        let ended = command.arg(folder.path().join("out.png")).output()?;
+        ensure!(ended.status.success(), "`conemarch render` failed");
+        times.push(begun.elapsed().as_secs_f64());
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(times[times.len() / 2])
 }
 
 /// Milliseconds of march and trace, and of colour.

@@ -150,7 +150,7 @@ fn steps_are_counted_and_drawn() {
         assert_eq!(sum, row["cells"]);
         let quantiles = ["p50", "p90", "p99", "max"].map(|q| number(row, q));
         assert!(quantiles.is_sorted(), "{row}");
-        assert!(number(row, "waste_8x8") >= number(row, "waste_8x4"));
+        assert!(number(row, "waste_8x4") >= number(row, "waste_8x1"));
     }
     assert_eq!(all[4]["cells"], 40 * 24);
     assert_eq!(csv_of(&folder.bytes("s.csv")).1.len(), all.len());

@@ -29,6 +29,7 @@ mod samples;
 mod shafts;
 mod sky;
 mod tone;
+mod unhurried;
 mod until;
 mod variance;
 mod windows;

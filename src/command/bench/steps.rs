@@ -150,8 +150,8 @@ fn count(work: &[Counts], states: &[u8], width: usize) -> StepsRow {
         max: quantile(&spent, 1.0),
         sky: share(State::Sky),
         unconverged: share(State::Unconverged),
+        waste_8x1: waste(work, width, [8, 1]),
         waste_8x4: waste(work, width, [8, 4]),
-        waste_8x8: waste(work, width, [8, 8]),
         histogram,
         ..StepsRow::default()
     }
@@ -198,6 +198,7 @@ mod tests {
         assert!((row.unconverged - 1.0 / 18.0).abs() < 1e-12);
         // The first tile of 32 lanes waits for ten evaluations, the second for none.
         assert!((row.waste_8x4 - 8.0).abs() < 1e-12);
-        assert!((row.waste_8x8 - 16.0).abs() < 1e-12);
+        // Of two rows of 8 lanes, one waits for ten and one for two.
+        assert!((row.waste_8x1 - 2.4).abs() < 1e-12);
     }
 }

@@ -35,11 +35,11 @@ pub struct StepsRow {
     pub sky: f64,
     /// Share of all cells that reached the step limit.
     pub unconverged: f64,
-    /// Evaluations of tiles of 8 x 4 cells whose lanes all run until the last one is done, over
-    /// those that the lanes need.
+    /// Evaluations of tiles of 8 x 1 cells whose lanes all run until the last one is done, over
+    /// those that the lanes need. A processor with AVX has groups of 8 lanes.
+    pub waste_8x1: f64,
+    /// The same for 8 x 4: many GPUs have groups of 32 lanes.
     pub waste_8x4: f64,
-    /// The same for 8 x 8.
-    pub waste_8x8: f64,
     /// Visited cells by evaluations: 0, 1, 2, 3-4, 5-8, and so on by doubling.
     pub histogram: Vec<u64>,
     /// Time on the device, where it has timestamps; median of warm runs.

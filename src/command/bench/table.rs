@@ -228,8 +228,8 @@ pub fn levels(rows: &[StepsRow]) -> String {
             ("max", &|r| r.max.to_string()),
             ("sky %", &|r| percent(r.sky, 2)),
             ("unconverged %", &|r| percent(r.unconverged, 4)),
+            ("waste 8 x 1", &|r| fixed(r.waste_8x1, 2)),
             ("waste 8 x 4", &|r| fixed(r.waste_8x4, 2)),
-            ("waste 8 x 8", &|r| fixed(r.waste_8x8, 2)),
             (clock, &ms),
         ],
     )

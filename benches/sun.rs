@@ -1,0 +1,196 @@
+//! What a cone about the sun proves: `cargo bench --bench sun -- --write`.
+//!
+//! At each hit that faces the sun, 16 rays go to points of the sun's disc. A cone about the disc
+//! starts at the hit, and another one is so wide that it holds the hits of all samples of the pixel.
+//! `--write` puts the table into docs/benchmarks.md.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use anyhow::Result;
+use conemarch::base::outcome::Counts;
+use conemarch::base::view::{Beam, footprint};
+use conemarch::cpu;
+use conemarch::pass::look::Light;
+use conemarch::plan::{Extras, Plan};
+use conemarch::preset;
+use conemarch::scene::{Advance, Assets, Solid, Step, Task};
+use glam::DVec3;
+
+#[path = "common/markdown.rs"]
+mod markdown;
+
+/// The marks around the table in the page.
+const MARKS: [&str; 2] = ["<!-- sun -->", "<!-- /sun -->"];
+const PRESETS: [&str; 6] = [
+    "mandelbox",
+    "mandelbox-canyon",
+    "mandelbox-gate",
+    "mandelbox-julia",
+    "stones",
+    "terrain",
+];
+/// Rays to points of the disc.
+const RAYS: usize = 16;
+/// The radius of the samples' filter in footprints, which are half a pixel.
+const FILTER: f64 = 3.0;
+/// Steps of a ray, and of a cone.
+const STEPS: u32 = 512;
+/// A cone stops after a step that gains less than this share of its front.
+const LEAST: f64 = 1e-3;
+
+/// What the hits of a picture that face the sun add up to.
+#[derive(Default)]
+struct Census {
+    facing: f64,
+    /// Hits from which all rays, and only some, reach the sun.
+    lit: f64,
+    penumbra: f64,
+    ray_evaluations: f64,
+    /// Hits and pixels whose cone reaches the sun, and evaluations of these cones.
+    cones: [(f64, f64); 2],
+}
+
+/// Counts the hits of a frame.
+struct Count<'a> {
+    plan: &'a Plan,
+    light: Light,
+    depth: &'a [f32],
+    normal: &'a [[f32; 3]],
+}
+
+impl Task for Count<'_> {
+    type Output = Census;
+
+    fn run<S: Solid>(self, solid: &S) -> Census {
+        let mut census = Census::default();
+        let view = self.plan.view();
+        let sun = self.light.sun(solid.bounds_far());
+        let width = self.plan.size[0];
+        for (i, (depth, normal)) in (0..).zip(self.depth.iter().zip(self.normal)) {
+            let (t, normal) = (f64::from(*depth), DVec3::from(normal.map(f64::from)));
+            if !t.is_finite() || normal.dot(sun.axis) <= 0.0 {
+                continue;
+            }
+            let ray = view.view_ray([i % width, i / width]);
+            let grain = footprint(&ray, t);
+            let beam = |axis, r0, k| Beam {
+                origin: ray.at(t) + solid.shadow_lift(grain) * normal,
+                axis,
+                r0,
+                k,
+                grain0: grain,
+                grain: 0.0,
+            };
+            let side = sun.axis.any_orthonormal_vector();
+            let other = sun.axis.cross(side);
+            let reaches = (0..RAYS).filter(|nth| {
+                // A spiral of equal areas.
+                let share = (*nth as f64 + 0.5) / RAYS as f64;
+                let (sin, cos) = (TAU * 0.618_034 * *nth as f64).sin_cos();
+                let off = sun.softness * share.sqrt();
+                let axis = (sun.axis + off * (cos * side + sin * other)).normalize();
+                let (lit, evaluations) = follow(solid, &beam(axis, 0.0, 0.0), sun.far);
+                census.ray_evaluations += evaluations / RAYS as f64;
+                lit
+            });
+            let reaches = reaches.count();
+            census.facing += 1.0;
+            census.lit += f64::from(u8::from(reaches == RAYS));
+            census.penumbra += f64::from(u8::from(reaches > 0 && reaches < RAYS));
+            // The chord of the half angle.
+            let k = 2.0 * (0.5 * sun.softness.atan()).sin();
+            for (r0, cone) in [0.0, FILTER * grain].into_iter().zip(&mut census.cones) {
+                let (free, evaluations) = clear(solid, &beam(sun.axis, r0, k));
+                cone.0 += f64::from(u8::from(free));
+                cone.1 += evaluations;
+            }
+        }
+        census
+    }
+}
+
+/// Whether a ray reaches so far, and its evaluations.
+fn follow<S: Solid>(solid: &S, ray: &Beam, far: f64) -> (bool, f64) {
+    let mut work = Counts::default();
+    let mut walk = solid.begin(ray, 0.0, far, &mut work);
+    let mut step = Step::Moving;
+    for _ in 0..STEPS {
+        step = solid.walk_step(ray, &mut walk, &mut work);
+        if step != Step::Moving {
+            break;
+        }
+    }
+    (step == Step::Out, f64::from(work.evaluations))
+}
+
+/// Whether a cone is proven free, and its evaluations.
+fn clear<S: Solid>(solid: &S, cone: &Beam) -> (bool, f64) {
+    let mut work = Counts::default();
+    let mut at = Advance::at(0.0, true);
+    for _ in 0..STEPS {
+        let front = at.front;
+        at = solid.advance(cone, at, &mut work);
+        let gained = at.front - front;
+        if at.front > solid.bounds_far() || gained <= LEAST * at.front {
+            break;
+        }
+    }
+    let free = at.front > solid.bounds_far();
+    (free, f64::from(work.evaluations))
+}
+
+fn main() -> Result<()> {
+    let mut rows = Vec::new();
+    for name in PRESETS {
+        eprintln!("{name}");
+        let mut plan = preset::load(name, &[])?.plan.one_sample();
+        plan.size = [320, 180];
+        let extras = Extras {
+            normals: true,
+            ..Extras::default()
+        };
+        let assets = Assets::default();
+        let frame = cpu::render(&plan, &assets, extras, &mut |_| true)?;
+        let solid = plan.scene.solid(&plan.viewpoint(), &assets)?;
+        let light = Light::of(&plan, &solid);
+        let census = solid.run(Count {
+            plan: &plan,
+            light,
+            depth: &frame.depth,
+            normal: &frame.normal,
+        });
+        let percent = |n: f64| 100.0 * n / census.facing;
+        let ray = census.ray_evaluations / census.facing;
+        let [(own, own_cost), (all, all_cost)] = census.cones;
+        // What cones and the rays that are left take, over rays alone.
+        let cost = |free: f64, cost: f64, samples: f64| {
+            let rays = (1.0 - free / census.facing) * ray * samples;
+            (cost / census.facing + rays) / (ray * samples)
+        };
+        rows.push(format!(
+            "{name} | {:.1} | {:.1} | {ray:.1} | {:.1} | {:.1} | {:.2} | {:.1} | {:.1} | {:.2}",
+            percent(census.lit),
+            percent(census.penumbra),
+            percent(own),
+            own_cost / census.facing,
+            cost(own, own_cost, 1.0),
+            percent(all),
+            all_cost / census.facing,
+            cost(all, all_cost, 16.0),
+        ));
+    }
+    let table = markdown::table(
+        "hits that face the sun | lit by all of it, % | by a part, % | evaluations of a ray | a cone proves, % | its evaluations | cost over rays | a cone for 16 samples proves, % | its evaluations | cost over rays",
+        "lr",
+        rows,
+    );
+    println!("{table}");
+    if std::env::args().any(|a| a == "--write") {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/benchmarks.md");
+        let mut page = std::fs::read_to_string(&path)?;
+        markdown::replace(&mut page, MARKS, &format!("\n{table}\n"))?;
+        std::fs::write(path, page)?;
+    }
+    Ok(())
+}
