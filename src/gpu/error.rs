@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::base::units::{bytes_available, bytes_needed};
 use crate::gpu::device::DeviceError;
-use crate::gpu::kernel::KernelError;
+use crate::gpu::kernel_error::KernelError;
 use crate::heightfield::conemap::generate::generator::GenerateError;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::pass::prepare::FrameError;
