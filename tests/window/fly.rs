@@ -52,7 +52,7 @@ fn keys_wheel_and_clicks_fly() {
         assert!(rolled.eye == first.eye && side * rolled.up.dot(right) > 0.1);
     }
     view.point(200, 300);
-    view.xdotool("keydown ctrl click 4 keyup ctrl");
+    view.xdotool("keydown ctrl sleep 0.1 click 4 sleep 0.1 keyup ctrl");
     assert!(saved(&view, &folder).camera.fov < first.fov);
     view.key("Home");
     // What lies in the middle of the part that the panel leaves free.
