@@ -2,8 +2,8 @@
 //!
 //! - `presets` writes `docs/presets.md`, the reference of all keys. A test fails while the page
 //!   differs from what this would write.
-//! - `benchmarks FOLDER DATE` fills the tables of `docs/benchmarks.md` from the rows in a folder, and
-//!   draws its plots.
+//! - `benchmarks FOLDER DATE PART...` fills the named parts of `docs/benchmarks.md` from the rows in a
+//!   folder, and draws their plots.
 //! - `heightfields FOLDER DATE` does so for `docs/heightfields.md`.
 //! - `frames FILE FIELD MAP` measures whole frames over a field and writes rows as JSON. MAP is
 //!   the file of the field's relaxed cone map, which takes long to make.
@@ -50,7 +50,7 @@ fn main() -> Result<()> {
             let page = format!("{DOCS}/presets.md");
             fs::write(&page, presets::reference()).context(page)
         }
-        ["benchmarks", folder, date] => benchmarks(Path::new(folder), date),
+        ["benchmarks", folder, date, ref parts @ ..] => benchmarks(Path::new(folder), date, parts),
         ["heightfields", folder, date] => heightfields(Path::new(folder), date),
         ["frames", file, field, map] => write(file, &frames::measure(field, map)?),
         ["distances", file] => write(file, &distances::measure()?),
@@ -60,7 +60,7 @@ fn main() -> Result<()> {
             pictures::join(Path::new(file), columns, files)
         }
         _ => bail!(
-            "usage: presets | benchmarks FOLDER DATE | heightfields FOLDER DATE | frames FILE FIELD MAP | distances FILE | maps FOLDER | join FILE COLUMNS PNG..."
+            "usage: presets | benchmarks FOLDER DATE PART... | heightfields FOLDER DATE | frames FILE FIELD MAP | distances FILE | maps FOLDER | join FILE COLUMNS PNG..."
         ),
     }
 }
@@ -89,28 +89,40 @@ fn fill(page: &str, sections: &[(&str, String)]) -> Result<()> {
     fs::write(&page, text).context(page)
 }
 
-fn benchmarks(folder: &Path, date: &str) -> Result<()> {
-    let rows: Vec<Row> = read(folder, "error.json")?;
-    let steps: Vec<StepsRow> = read(folder, "steps.json")?;
-    let text = |file: &str| fs::read_to_string(folder.join(file)).context(file.to_owned());
-    let device = rows.first().map_or("", |r| &r.device);
-    let presets = rows.chunk_by(|a, b| a.preset == b.preset);
-    let error: String = presets.map(table::preset).collect();
-    let error = error + &table::means(&rows) + &table::better_than_safe(&rows);
-    fs::write(format!("{DOCS}/benchmarks.svg"), plot::draw(&rows))?;
-    fs::write(format!("{DOCS}/scale.svg"), scale::draw(&text("scale.md")?))?;
-    let levels = steps.chunk_by(|a, b| a.preset == b.preset && a.mode == b.mode);
-    fill(
-        "benchmarks.md",
-        &[
-            ("device", format!("Measured {date} on {device}.")),
-            ("error", error + &table::slides(&rows)),
-            ("steps", levels.map(table::levels).collect()),
-            ("rival", text("rival.md")?),
-            ("scale", text("scale.md")?),
-            ("switches", text("switches.md")?),
-        ],
-    )
+fn benchmarks(folder: &Path, date: &str, parts: &[&str]) -> Result<()> {
+    let text = |part: &str| {
+        let path = folder.join(part).with_extension("md");
+        fs::read_to_string(&path).with_context(|| path.display().to_string())
+    };
+    let mut sections = Vec::new();
+    for part in parts {
+        let content = match *part {
+            "error" => {
+                let rows: Vec<Row> = read(folder, "error.json")?;
+                fs::write(format!("{DOCS}/benchmarks.svg"), plot::draw(&rows))?;
+                let device = rows.first().map_or("", |r| &r.device);
+                sections.push(("device", format!("Measured {date} on {device}.")));
+                let presets = rows.chunk_by(|a, b| a.preset == b.preset);
+                let error: String = presets.map(table::preset).collect();
+                let error = error + &table::means(&rows) + &table::better_than_safe(&rows);
+                error + &table::slides(&rows)
+            }
+            "steps" => {
+                let steps: Vec<StepsRow> = read(folder, "steps.json")?;
+                let levels = steps.chunk_by(|a, b| a.preset == b.preset && a.mode == b.mode);
+                levels.map(table::levels).collect()
+            }
+            "scale" => {
+                let text = text("scale")?;
+                fs::write(format!("{DOCS}/scale.svg"), scale::draw(&text))?;
+                text
+            }
+            "rival" | "switches" => text(part)?,
+            other => bail!("`{other}` is none of error, steps, switches, rival, scale"),
+        };
+        sections.push((*part, content));
+    }
+    fill("benchmarks.md", &sections)
 }
 
 fn heightfields(folder: &Path, date: &str) -> Result<()> {
