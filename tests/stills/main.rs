@@ -14,6 +14,7 @@ mod adapter;
 #[allow(dead_code, reason = "other crates use the rest")]
 mod common {
     pub mod exact;
+    pub mod filtered;
     pub mod folder;
     pub mod plans;
     pub mod random;

@@ -1,0 +1,65 @@
+//! Whether a small picture is the large one made small: `cargo bench --bench reference`. With
+//! `-- --write` it writes its table into docs/accuracy.md. It takes a quarter of an hour on two cores.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use conemarch::gpu::adapters::{Adapters, Choice};
+use conemarch::gpu::device::Device;
+use conemarch::gpu::render::Renderer;
+use conemarch::pass::tone_map::Tone;
+use conemarch::plan::Extras;
+use conemarch::preset::{self, BUILTIN};
+use conemarch::scene::Assets;
+use filtered::apart;
+use glam::DVec3;
+
+#[path = "../tests/common/filtered.rs"]
+mod filtered;
+#[path = "common/markdown.rs"]
+mod markdown;
+
+const MARKS: [&str; 2] = ["<!-- reference -->", "<!-- /reference -->"];
+/// Sizes and samples. A pixel of the small picture has as many samples as those of the large one that
+/// it stands for.
+const LARGE: ([u32; 2], u32) = ([1280, 720], 16);
+const SMALL: ([u32; 2], u32) = ([320, 180], 256);
+
+fn main() -> Result<()> {
+    let adapters = Adapters::find();
+    let chosen = adapters.choose(&Choice::Auto)?;
+    let (adapter, _) = chosen.context("there is no adapter")?;
+    let mut renderer = Renderer::new(Device::open(adapter)?);
+    let mut rows = Vec::new();
+    for (name, _) in BUILTIN {
+        let plan = preset::load(name, &[])?.plan;
+        // The others are for measurements.
+        if plan.reference.is_none() {
+            continue;
+        }
+        eprintln!("{name}");
+        let [large, small] = [LARGE, SMALL].map(|(size, samples)| {
+            let mut plan = plan.clone();
+            (plan.size, plan.samples, plan.until) = (size, samples, 0.0);
+            renderer.render(&plan, &Assets::default(), Extras::default(), &mut |_| true)
+        });
+        let (large, small) = (large?, small?);
+        let tone = Tone::of(&plan.look);
+        let shown = |light| tone.shown(DVec3::from_array(light)).to_array();
+        let [bias, size] = apart(&small, &large, shown).map(|v| 255.0 * v);
+        rows.push(format!("{name} | {size:.2} | {bias:.2}"));
+    }
+    let table = markdown::table(
+        "preset | mean difference, of 255 | mean of the signed difference, of 255",
+        "lr",
+        rows,
+    );
+    println!("{table}");
+    if std::env::args().any(|a| a == "--write") {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/accuracy.md");
+        let mut page = std::fs::read_to_string(&path)?;
+        markdown::replace(&mut page, MARKS, &format!("\n{table}\n"))?;
+        std::fs::write(path, page)?;
+    }
+    Ok(())
+}
