@@ -217,6 +217,11 @@ impl Live {
             Ok(path) => {
                 // It was kept under the name that it had.
                 keep::drop(self.options.kept.as_deref(), &before, self.slot);
+                if before.path != self.document.path {
+                    // What is offered is of the other file, and is offered again when that opens.
+                    self.offered = None;
+                }
+                self.first = self.document.saved().clone();
                 self.watch_file();
                 self.tell(format!("saved to {}", path.display()), false);
             }

@@ -1,46 +1,51 @@
 //! Unsaved work, kept outside the preset's file until it is saved.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, absolute};
 
 use crate::picture::OutputError;
 use crate::plan::Plan;
 use crate::preset;
 use crate::preview::document::{Document, write};
+use crate::preview::play::with_still;
 
 /// The most works that are kept of one document.
 const SLOTS: u32 = 9;
 
 /// The file for a document: named after the preset, and after its folder if it is in a file.
 fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
-    let of = document
-        .path
-        .as_ref()
-        .and_then(|path| fs::canonicalize(path).ok());
-    let place: String = match of {
+    // The file may have vanished.
+    let whole = |path: &PathBuf| fs::canonicalize(path).or_else(|_| absolute(path)).ok();
+    let place: String = match document.path.as_ref().and_then(whole) {
         Some(path) => path.to_string_lossy().into_owned(),
         None => document.name.clone(),
     };
-    let plain = |c: char| if c.is_alphanumeric() { c } else { '_' };
+    // Two places never have one name.
+    let plain = |c: char| match c {
+        '/' => "_".to_string(),
+        c if c.is_alphanumeric() => c.to_string(),
+        c => format!("%{:x}", u32::from(c)),
+    };
     let place: String = place.chars().map(plain).collect();
     // Work that nobody has taken yet is not written over.
-    let number = match slot {
+    let number = match slot.min(SLOTS - 1) {
         0 => String::new(),
         n => format!("-{n}"),
     };
     folder.join(format!("unsaved-{place}{number}.toml"))
 }
 
-/// Keeps the document's plan.
+/// Keeps the document's plan as it would be saved.
 ///
 /// # Errors
 /// The folder cannot be written.
 pub fn keep(folder: Option<&Path>, document: &Document, slot: u32) -> Result<(), OutputError> {
     let Some(folder) = folder else { return Ok(()) };
     let _ = fs::create_dir_all(folder);
+    let plan = with_still(&document.plan, document.saved(), document.beat);
     write(
-        &path(folder, document, slot.min(SLOTS - 1)),
-        preset::write(&document.plan).as_bytes(),
+        &path(folder, document, slot),
+        preset::write(&plan).as_bytes(),
     )
 }
 
@@ -72,6 +77,21 @@ fn read(folder: &Path, document: &Document, slot: u32) -> Option<Plan> {
 mod tests {
     use super::*;
     use crate::scene::Scene;
+
+    #[test]
+    fn works_of_two_presets_are_two_even_if_a_file_vanishes() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let scene = Scene::all().into_iter().next().expect("a scene");
+        let place = |name: &str| {
+            let file = folder.path().join(name);
+            let document = Document::new("box".into(), Some(file), Plan::new(scene.clone()));
+            path(folder.path(), &document, 0)
+        };
+        assert!(place("a-b.toml") != place("a_b.toml"));
+        let gone = place("a.toml");
+        fs::write(folder.path().join("a.toml"), "").expect("written");
+        assert_eq!(place("a.toml"), gone);
+    }
 
     #[test]
     fn work_is_kept_until_it_is_dropped() {

@@ -44,6 +44,14 @@ impl Watched {
         Some(gone)
     }
 
+    /// Whether there are other files now than those that are watched, and have been for so long that
+    /// no editor is replacing one.
+    pub fn others(&mut self, now: &[PathBuf]) -> bool {
+        let same = self.files.len() == now.len() && now.iter().all(|f| self.files.contains(f));
+        self.missing = if same { 0 } else { self.missing + 1 };
+        self.missing == VANISHED
+    }
+
     /// Whether any was written since the last question. One that is gone for now did not change:
     /// editors replace files.
     pub fn changed(&mut self) -> bool {
@@ -59,7 +67,7 @@ impl Watched {
     }
 }
 
-/// The files of a folder and the folders in it.
+/// The shader files of a folder and the folders in it.
 pub fn files_in(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
@@ -69,7 +77,8 @@ pub fn files_in(folder: &Path) -> Vec<PathBuf> {
         true => files_in(&path),
         false => vec![path],
     });
-    files.collect()
+    let is_shader = |path: &PathBuf| path.extension().is_some_and(|e| e == "wgsl");
+    files.filter(is_shader).collect()
 }
 
 /// The texts of shaders in a folder laid out like `wgsl/` of the sources. The program has its own

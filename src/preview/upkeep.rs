@@ -13,7 +13,7 @@ use crate::preview::keep;
 use crate::preview::live::Live;
 use crate::preview::notice::Ends;
 use crate::preview::pictures::Pictures;
-use crate::preview::reload::{Watched, sources};
+use crate::preview::reload::{Watched, files_in, sources};
 
 /// Time after a change until it is kept.
 const KEEP: Duration = Duration::from_secs(1);
@@ -72,7 +72,13 @@ impl Live {
 
     /// Takes in files that have changed.
     pub fn look_at_files(&mut self) {
-        if self.shader_files.changed() {
+        let folder = self.options.wgsl.as_ref();
+        let there = folder.map(|folder| files_in(folder)).unwrap_or_default();
+        let others = self.shader_files.others(&there);
+        if others {
+            self.shader_files = Watched::new(there);
+        }
+        if self.shader_files.changed() || others {
             // After a loss they were set aside.
             self.pictures.renderer.sources = self.options.wgsl.clone().map(sources);
             self.pictures.again();
@@ -95,10 +101,22 @@ impl Live {
         match loaded {
             Ok(preset) if preset.plan == *self.document.saved() => {}
             Ok(preset) => {
+                let was_changed = self.document.is_changed();
+                if was_changed {
+                    // It stays for the next start.
+                    self.keep_now();
+                    self.slot += 1;
+                    (self.unkept, self.kept) = (None, None);
+                }
                 self.first = preset.plan.clone();
                 self.document.reload(preset.plan);
                 self.show_moment();
-                self.tell(format!("read {} again", path.display()), false);
+                let undo = if was_changed {
+                    "; Ctrl+Z returns to your changes"
+                } else {
+                    ""
+                };
+                self.tell(format!("read {} again{undo}", path.display()), false);
             }
             Err(e) => self.tell_until(e.to_string(), true, Ends::WithFile),
         }

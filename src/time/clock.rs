@@ -31,9 +31,10 @@ impl Timing {
         self.beats(f64::from(frame) / self.fps)
     }
 
-    /// A moment of play as one in the film: within its length, again and again if it loops.
+    /// A moment of play as one in the film: within its length, again and again if it loops. The end
+    /// is a moment of its own, that of the last keys.
     pub fn within(&self, beat: f64) -> f64 {
-        match self.looping {
+        match self.looping && !(0.0..=self.length).contains(&beat) {
             true => beat.rem_euclid(self.length),
             false => beat.clamp(0.0, self.length),
         }
@@ -69,5 +70,6 @@ mod tests {
         timing.looping = true;
         assert_eq!(timing.within(13.0), 3.0);
         assert_eq!(timing.within(-1.0), 9.0);
+        assert_eq!(timing.within(10.0), 10.0);
     }
 }

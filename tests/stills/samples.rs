@@ -2,6 +2,7 @@
 
 use conemarch::base::srgb::srgb;
 use conemarch::pass::look::tone;
+use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use glam::DVec3;
 
