@@ -221,7 +221,6 @@ impl Live {
                     // What is offered is of the other file, and is offered again when that opens.
                     self.offered = None;
                 }
-                self.first = self.document.saved().clone();
                 self.watch_file();
                 self.tell(format!("saved to {}", path.display()), false);
             }
