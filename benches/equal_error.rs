@@ -3,10 +3,9 @@
 //! docs/benchmarks.md. It takes ten minutes or more on two cores.
 //!
 //! The *rival* is mode `ray-relaxed` with `clip` on, as in `rival.rs`. Errors are those of a small
-//! picture against one of `safe` with many samples, which begin with those of the tested pictures. Times are medians of warm runs in turns. The error falls
-//! with the number of samples, so a time is multiplied by the error that remains.
-
-use std::path::Path;
+//! picture against one of `safe` with many samples, which begin with those of the tested pictures.
+//! Times are medians of warm runs in turns. The error falls with the number of samples, so a time is
+//! multiplied by the error that remains.
 
 use anyhow::{Context, Result};
 use conemarch::gpu::adapters::{Adapters, Choice};
@@ -17,9 +16,12 @@ use conemarch::plan::look::LightMode;
 use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
+use publish::publish;
 
 #[path = "common/markdown.rs"]
 mod markdown;
+#[path = "common/publish.rs"]
+mod publish;
 
 const MARKS: [&str; 2] = ["<!-- equal-error -->", "<!-- /equal-error -->"];
 const PRESETS: [&str; 5] = [
@@ -140,12 +142,5 @@ fn main() -> Result<()> {
         "lr",
         rows,
     );
-    println!("{table}");
-    if std::env::args().any(|a| a == "--write") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/benchmarks.md");
-        let mut page = std::fs::read_to_string(&path)?;
-        markdown::replace(&mut page, MARKS, &table)?;
-        std::fs::write(path, page)?;
-    }
-    Ok(())
+    publish("benchmarks.md", MARKS, &table)
 }

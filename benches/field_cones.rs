@@ -3,17 +3,18 @@
 //!
 //! Each preset is traced by rays alone, as it is, and with cones from 1/16 on, in turns.
 
-use std::path::Path;
-
 use anyhow::Result;
 use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::Choice;
 use conemarch::plan::Extras;
 use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
+use publish::publish;
 
 #[path = "common/markdown.rs"]
 mod markdown;
+#[path = "common/publish.rs"]
+mod publish;
 
 /// Warm runs that a median is taken of.
 const RUNS: usize = 7;
@@ -84,12 +85,5 @@ fn main() -> Result<()> {
         "lr",
         rows,
     );
-    println!("{table}");
-    if std::env::args().any(|a| a == "--write") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/heightfields.md");
-        let mut page = std::fs::read_to_string(&path)?;
-        markdown::replace(&mut page, MARKS, &table)?;
-        std::fs::write(path, page)?;
-    }
-    Ok(())
+    publish("heightfields.md", MARKS, &table)
 }

@@ -4,7 +4,6 @@
 //! by itself; without rays to the sun; with light of the sky alone that nothing stops. `--write` puts
 //! the table into docs/benchmarks.md.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
@@ -15,9 +14,12 @@ use conemarch::plan::look::LightMode;
 use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::preset;
 use conemarch::scene::Assets;
+use publish::publish;
 
 #[path = "common/markdown.rs"]
 mod markdown;
+#[path = "common/publish.rs"]
+mod publish;
 
 /// The marks around the table in the page.
 const MARKS: [&str; 2] = ["<!-- light -->", "<!-- /light -->"];
@@ -95,12 +97,5 @@ fn main() -> Result<()> {
         "lr",
         rows,
     );
-    println!("{table}");
-    if std::env::args().any(|a| a == "--write") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/benchmarks.md");
-        let mut page = std::fs::read_to_string(&path)?;
-        markdown::replace(&mut page, MARKS, &format!("\n{table}\n"))?;
-        std::fs::write(path, page)?;
-    }
-    Ok(())
+    publish("benchmarks.md", MARKS, &table)
 }

@@ -1,8 +1,6 @@
 //! How exact light by paths is: `cargo bench --bench paths`. With `-- --write` it writes its tables
 //! into docs/accuracy.md. It takes ten minutes on two cores.
 
-use std::path::Path;
-
 use anyhow::{Context, Result};
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
@@ -12,9 +10,12 @@ use conemarch::plan::look::LightMode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, BUILTIN, Override};
 use conemarch::scene::Assets;
+use publish::publish;
 
 #[path = "common/markdown.rs"]
 mod markdown;
+#[path = "common/publish.rs"]
+mod publish;
 
 const MARKS: [&str; 2] = [
     "<!-- cargo bench --bench paths -- --write: begin -->",
@@ -157,12 +158,5 @@ fn main() -> Result<()> {
     let renderer = Renderer::new(Device::open(adapter)?);
     let mut bench = Bench { renderer };
     let tables = [bench.furnace()?, bench.noise()?, bench.beside_quick()?].join("\n");
-    println!("{tables}");
-    if std::env::args().any(|a| a == "--write") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/accuracy.md");
-        let mut page = std::fs::read_to_string(&path)?;
-        markdown::replace(&mut page, MARKS, &tables)?;
-        std::fs::write(path, page)?;
-    }
-    Ok(())
+    publish("accuracy.md", MARKS, &tables)
 }

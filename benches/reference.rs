@@ -1,8 +1,6 @@
 //! Whether a small picture is the large one made small: `cargo bench --bench reference`. With
 //! `-- --write` it writes its table into docs/accuracy.md. It takes a quarter of an hour on two cores.
 
-use std::path::Path;
-
 use anyhow::{Context, Result};
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
@@ -13,11 +11,14 @@ use conemarch::preset::{self, BUILTIN};
 use conemarch::scene::Assets;
 use filtered::apart;
 use glam::DVec3;
+use publish::publish;
 
 #[path = "../tests/common/filtered.rs"]
 mod filtered;
 #[path = "common/markdown.rs"]
 mod markdown;
+#[path = "common/publish.rs"]
+mod publish;
 
 const MARKS: [&str; 2] = ["<!-- reference -->", "<!-- /reference -->"];
 /// Sizes and samples. A pixel of the small picture has as many samples as those of the large one that
@@ -54,12 +55,5 @@ fn main() -> Result<()> {
         "lr",
         rows,
     );
-    println!("{table}");
-    if std::env::args().any(|a| a == "--write") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/accuracy.md");
-        let mut page = std::fs::read_to_string(&path)?;
-        markdown::replace(&mut page, MARKS, &format!("\n{table}\n"))?;
-        std::fs::write(path, page)?;
-    }
-    Ok(())
+    publish("accuracy.md", MARKS, &table)
 }

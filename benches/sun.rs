@@ -5,7 +5,6 @@
 //! `--write` puts the table into docs/benchmarks.md.
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use anyhow::Result;
 use conemarch::base::outcome::Counts;
@@ -16,9 +15,12 @@ use conemarch::plan::{Extras, Plan};
 use conemarch::preset;
 use conemarch::scene::{Advance, Assets, Solid, Step, Task};
 use glam::DVec3;
+use publish::publish;
 
 #[path = "common/markdown.rs"]
 mod markdown;
+#[path = "common/publish.rs"]
+mod publish;
 
 /// The marks around the table in the page.
 const MARKS: [&str; 2] = ["<!-- sun -->", "<!-- /sun -->"];
@@ -185,12 +187,5 @@ fn main() -> Result<()> {
         "lr",
         rows,
     );
-    println!("{table}");
-    if std::env::args().any(|a| a == "--write") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/benchmarks.md");
-        let mut page = std::fs::read_to_string(&path)?;
-        markdown::replace(&mut page, MARKS, &format!("\n{table}\n"))?;
-        std::fs::write(path, page)?;
-    }
-    Ok(())
+    publish("benchmarks.md", MARKS, &table)
 }

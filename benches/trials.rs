@@ -4,7 +4,6 @@
 //! Each trial renders the five views `bench-*` with one constant of the shaders changed, in turns with
 //! the shaders as they are.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
@@ -15,9 +14,12 @@ use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset;
 use conemarch::scene::Assets;
+use publish::publish;
 
 #[path = "common/markdown.rs"]
 mod markdown;
+#[path = "common/publish.rs"]
+mod publish;
 
 const MARKS: [&str; 2] = ["<!-- trials -->", "<!-- /trials -->"];
 const PRESETS: [&str; 5] = [
@@ -164,12 +166,5 @@ fn main() -> Result<()> {
         "lr",
         rows,
     );
-    println!("{table}");
-    if std::env::args().any(|a| a == "--write") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/benchmarks.md");
-        let mut page = std::fs::read_to_string(&path)?;
-        markdown::replace(&mut page, MARKS, &format!("\n{table}\n"))?;
-        std::fs::write(path, page)?;
-    }
-    Ok(())
+    publish("benchmarks.md", MARKS, &table)
 }

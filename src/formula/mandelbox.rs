@@ -223,7 +223,8 @@ impl DistanceEstimate for Mandelbox {
     }
 }
 
-/// The Lipschitz constant at a scale and with or without a rotation: by so much the steps of rays are shortened.
+/// The Lipschitz constant at a scale, with or without a rotation: by so much the steps of rays are
+/// shortened.
 ///
 /// The derivative along an orbit is that at one point and not over a step, so a ball that reaches
 /// into the zone of a ball fold can be too large. docs/method.md, 3 tells by how much steps are

@@ -1,7 +1,8 @@
 //! The GPU executor: the passes of a Plan in f32 on a wgpu device.
 //!
 //! - [`render`]: from a Plan to a Frame
-//! - [`adapters`]: how a device is chosen and opened; [`device`]; [`buffer`]: typed buffers; [`kernel`]: compiled programs; [`kernel_error`]
+//! - [`adapters`]: how a device is chosen and opened; [`device`]; [`buffer`]: typed buffers
+//! - [`kernel`]: compiled programs; [`kernel_error`]: why one cannot be
 //! - [`work`]: a render under way; `target`: its buffers and bound kernels; `cost`: how long
 //!   its dispatches take; `stamps`: the device's own time
 //! - [`pick`]: what there is at a pixel or at a point

@@ -5,7 +5,6 @@ use std::io::{Cursor, Write};
 
 use exif::experimental::Writer;
 use exif::{Error, Field, In, Rational, Tag, Value};
-
 use image::codecs::jpeg::{JpegEncoder, PixelDensity};
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder};
