@@ -260,8 +260,14 @@ fn render(
     Ok(())
 }
 
-/// Whether a frame was rendered already: a complete PNG with this plan and these bits.
+/// Whether a frame was rendered already: a complete PNG with this plan and these bits, no older than
+/// the files that the plan names.
 fn is_there(path: &Path, plan: &Plan, depth: Option<BitDepth>) -> bool {
+    let written = |path: &Path| fs::metadata(path).and_then(|file| file.modified()).ok();
+    let is_newer = |(_, file): &(_, PathBuf)| written(file) > written(path);
+    if plan.files().iter().any(is_newer) {
+        return false;
+    }
     let Ok(bytes) = std::fs::read(path) else {
         return false;
     };

@@ -9,6 +9,12 @@ use crate::preset::write;
 /// that file. Names from the root stay, and so do those that are not UTF-8.
 pub fn write_beside(plan: &Plan, file: &Path) -> String {
     let mut plan = plan.clone();
+    move_beside(&mut plan, file);
+    write(&plan)
+}
+
+/// Makes a plan that of a preset file: the names of its files as in [`write_beside`].
+pub fn move_beside(plan: &mut Plan, file: &Path) {
     let absolute = |path: &Path| std::path::absolute(path).ok();
     let folder = file.parent().map(|folder| Path::new(".").join(folder));
     let folder = folder.as_deref().and_then(absolute);
@@ -17,7 +23,7 @@ pub fn write_beside(plan: &Plan, file: &Path) -> String {
         let named = relative(&path, folder.as_deref()?);
         named.to_str().map(String::from)
     });
-    write(&plan)
+    plan.set_folder(file.parent().unwrap_or(file));
 }
 
 /// The way from a folder to a file.

@@ -20,7 +20,7 @@ mod source;
 mod write;
 
 #[cfg(feature = "cli")]
-pub use beside::write_beside;
+pub use beside::{move_beside, write_beside};
 pub use builtin::{BUILTIN, builtin};
 pub use document::{Override, SECTIONS};
 pub use error::PresetError;

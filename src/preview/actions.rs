@@ -12,14 +12,14 @@ use winit::window::Fullscreen;
 use crate::base::outcome::State;
 use crate::picture::Layer;
 use crate::plan::{Extras, Plan};
-use crate::preset::{self, SECTIONS};
+use crate::preset;
+use crate::preview::command::command;
 use crate::preview::document::{Document, unused};
 use crate::preview::error::PreviewError;
 use crate::preview::flight::{focus, look, orbit};
 use crate::preview::gui::is_in;
 use crate::preview::input::{Action, Drag, action};
-use crate::preview::keep;
-use crate::preview::live::{Live, quoted};
+use crate::preview::live::Live;
 use crate::preview::play::{last_key, set_view, with_still};
 use crate::preview::probe;
 use crate::preview::still::Still;
@@ -33,6 +33,18 @@ const ORBIT: f64 = 0.006;
 const WHEEL: f64 = 1.15;
 /// Pixels of a touch pad for a line of a wheel.
 const LINE: f64 = 40.0;
+
+/// Said of a picture without cone passes.
+pub const NO_PASSES: &str =
+    "this picture has no cone passes: rays alone are faster here (march.coarsest)";
+
+/// The number of cone passes of a plan; 0 of one that does not fit.
+pub fn passes(plan: &Plan) -> usize {
+    match plan.check() {
+        Ok(()) => plan.resolved(Extras::default()).levels().len(),
+        Err(_) => 0,
+    }
+}
 
 impl Live {
     /// Takes in an event.
@@ -65,7 +77,12 @@ impl Live {
             WindowEvent::Occluded(hidden) => self.hidden = *hidden,
             WindowEvent::ModifiersChanged(modifiers) => self.modifiers = *modifiers,
             WindowEvent::Focused(false) => self.held.clear(),
-            WindowEvent::KeyboardInput { event, .. } => {
+            // Of a key that was down before the window had the keyboard, only its end counts.
+            WindowEvent::KeyboardInput {
+                event,
+                is_synthetic,
+                ..
+            } if !is_synthetic || event.state == ElementState::Released => {
                 if let PhysicalKey::Code(code) = event.physical_key {
                     self.key(code, event.state, event.repeat);
                 }
@@ -84,10 +101,16 @@ impl Live {
         Ok(())
     }
 
-    /// Closes the window. Unsaved work is offered at the next start.
+    /// Closes the window, or first says that a still is not written yet. Unsaved work is offered at
+    /// the next start.
     fn close(&mut self) {
         self.keep_now();
-        self.closed = true;
+        self.closed = self.still.is_none() || self.closes;
+        self.closes = true;
+        if !self.closed {
+            let text = "the window closes when the still is written; Ctrl+Q again drops the still";
+            self.tell(text, false);
+        }
     }
 
     /// Whether the panel may change by an event. Keys that fly and a pointer over the picture change
@@ -146,7 +169,7 @@ impl Live {
             Action::Show(shot) => self.shot = shot,
             Action::NextPass(by) => self.next_pass(by),
             Action::Home => {
-                let camera = self.first.camera.clone();
+                let camera = self.document.saved().camera.clone();
                 self.document.change(|plan| plan.camera = camera);
             }
             Action::Undo => self.go_back(Document::undo),
@@ -181,15 +204,9 @@ impl Live {
 
     /// Shows the passes one by one: the fronts of each cone level, and then the picture.
     fn next_pass(&mut self, by: i32) {
-        let plan = self.shown();
-        let levels = match plan.check() {
-            Ok(()) => plan.resolved(Extras::default()).levels().len(),
-            Err(_) => 0,
-        };
+        let levels = passes(&self.shown());
         if levels == 0 {
-            let text =
-                "this picture has no cone passes: rays alone are faster here (march.coarsest)";
-            self.tell(text, false);
+            self.tell(NO_PASSES, false);
             return;
         }
         let now = match self.shot {
@@ -204,6 +221,12 @@ impl Live {
     }
 
     fn save(&mut self) {
+        // What another program has written since is read, not lost.
+        let known = self.document.saved().clone();
+        self.look_at_files();
+        if *self.document.saved() != known {
+            return;
+        }
         let before = self.document.clone();
         let plan = with_still(&self.document.plan, before.saved(), self.play.beat);
         // A file that cannot be opened again would be no preset.
@@ -216,7 +239,7 @@ impl Live {
         match self.document.save(Path::new("."), plan) {
             Ok(path) => {
                 // It was kept under the name that it had.
-                keep::drop(self.options.kept.as_deref(), &before, self.slot);
+                self.slot.drop(self.options.kept.as_deref(), &before);
                 if before.path != self.document.path {
                     // What is offered is of the other file, and is offered again when that opens.
                     self.offered = None;
@@ -256,47 +279,21 @@ impl Live {
 
     /// Copies the command that makes the picture in the window.
     fn copy(&mut self) {
-        if !matches!(self.shot, ShownView::Layer(_)) {
+        let ShownView::Layer(layer) = self.shot else {
             self.tell("no command makes this view; 1 to 6 show layers", true);
             return;
-        }
-        let command = self.command();
-        self.ctx.copy_text(command.clone());
-        self.tell(format!("copied: {command}"), false);
-    }
-
-    /// The command that makes the picture in the window: the preset as it is known to others, and
-    /// what differs from it.
-    fn command(&self) -> String {
-        let [width, height] = self.stage.screen.size();
+        };
         let name = match &self.document.path {
             Some(path) => path.display().to_string(),
             None => self.document.name.clone(),
         };
-        // What a render reads, without what this window was started with.
-        let loaded = preset::load(Path::new(&name), &[]);
-        let mut known = loaded.map_or_else(|_| self.document.saved().clone(), |p| p.plan);
-        let mut now = self.shown();
-        let mut line = format!("conemarch render {}", quoted(&name));
-        let others = |section: &&str| *section != "time";
-        for section in SECTIONS.into_iter().filter(others) {
-            let old = known.keys(section).unwrap_or_default();
-            let new = now.keys(section).unwrap_or_default();
-            for (old, new) in old.into_iter().zip(new) {
-                let value = new.slot.get();
-                // The size is that of the window.
-                if value != old.slot.get() && new.name != "size" {
-                    let set = format!("{section}.{}={}", new.name, value);
-                    line += &format!(" --set {}", quoted(&set));
-                }
+        match command(&name, &self.shown(), layer) {
+            Ok(command) => {
+                self.ctx.copy_text(command.clone());
+                self.tell(format!("copied: {command}"), false);
             }
+            Err(why) => self.tell(format!("{why}; Ctrl+S makes a preset of it"), true),
         }
-        if let ShownView::Layer(layer) = self.shot
-            && layer != Layer::Color
-        {
-            line += &format!(" --layer {}", layer.name());
-        }
-        line + &format!(" --size {width}x{height} -o picture.png")
     }
 
     /// The pixel under the cursor.
@@ -347,6 +344,8 @@ impl Live {
         let (dx, dy) = (to.x - self.cursor.x, to.y - self.cursor.y);
         self.cursor = to;
         let Some(drag) = self.drag else { return };
+        // An undo or a save in the middle has ended the step.
+        self.document.begin();
         let pixel = self.shown().view().pixel;
         self.document.change(|plan| match drag {
             Drag::Look => look(&mut plan.camera, dx * pixel, -dy * pixel),
@@ -372,7 +371,7 @@ impl Live {
     /// Sets a key as the panel asks.
     pub fn set(&mut self, section: &str, name: &str, value: &Value) {
         let mut said = None;
-        if self.panel_drag {
+        if self.panel_drag || self.panel_typing {
             self.document.begin();
         }
         self.document.change(|plan| {

@@ -1,11 +1,12 @@
 //! What is edited: a plan with its history and its file.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::picture::{OutputError, Place, commit};
 use crate::plan::Plan;
 use crate::preset;
-use crate::preview::play::pose_at;
+use crate::preview::play::{pose_at, shows_film};
 
 /// The most steps that can be undone. Each is a plan, a few kilobytes.
 const MOST_STEPS: usize = 1000;
@@ -77,12 +78,8 @@ impl Document {
                 // The saved plan was undone, and is out of reach now.
                 self.saved_at = usize::MAX;
             }
-            self.past.push(before);
+            self.push(before);
             self.future.clear();
-            if self.past.len() > MOST_STEPS {
-                self.past.remove(0);
-                self.saved_at = self.saved_at.checked_sub(1).unwrap_or(usize::MAX);
-            }
         }
     }
 
@@ -114,6 +111,29 @@ impl Document {
         Some(beat)
     }
 
+    /// Goes to another moment of the film. Changes that no file has and that are not of the film are
+    /// left by a step, so that an undo returns to them. Returns what does not fit.
+    pub fn go_to(&mut self, beat: f64) -> Option<String> {
+        let alone = beat != self.beat && self.before.is_none() && !self.plan.tracks.is_empty();
+        if alone && self.is_changed() && !shows_film(&self.plan, self.beat) {
+            // What was undone can still be done again after it.
+            if self.saved_at > self.past.len() {
+                self.saved_at = self.saved_at.saturating_add(1);
+            }
+            self.push((self.plan.clone(), self.beat));
+        }
+        self.beat = beat;
+        pose_at(&mut self.plan, beat)
+    }
+
+    fn push(&mut self, step: (Plan, f64)) {
+        self.past.push(step);
+        if self.past.len() > MOST_STEPS {
+            self.past.remove(0);
+            self.saved_at = self.saved_at.checked_sub(1).unwrap_or(usize::MAX);
+        }
+    }
+
     /// Takes in the file as another program has written it. It is a step that can be undone.
     pub fn reload(&mut self, plan: Plan) {
         self.saved = plan.clone();
@@ -121,21 +141,29 @@ impl Document {
         self.saved_at = self.past.len();
     }
 
-    /// Writes a plan, which is this one but for its still, to its file, or a new one for a built-in
-    /// preset, in `folder`. The file is replaced at once or not at all.
+    /// Writes a plan, which is this one but for its still, to its file. A built-in preset, a picture
+    /// and a write-protected file get a new one in `folder`. The file is replaced at once or not at
+    /// all.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn save(&mut self, folder: &Path, plan: Plan) -> Result<PathBuf, OutputError> {
         let is_toml = |path: &&PathBuf| path.extension().is_some_and(|e| e == "toml");
+        let may_change = |path: &&PathBuf| {
+            fs::metadata(path).map_or(true, |file| !file.permissions().readonly())
+        };
         // A picture that carries a preset stays as it is.
-        let path = match self.path.as_ref().filter(is_toml) {
+        let own = self.path.as_ref().filter(is_toml).filter(may_change);
+        let path = match own {
             Some(path) => path.clone(),
             None => unused(folder, &self.name, "toml"),
         };
         write(&path, preset::write_beside(&plan, &path).as_bytes())?;
         self.end();
         self.saved = plan;
+        for plan in [&mut self.saved, &mut self.plan] {
+            preset::move_beside(plan, &path);
+        }
         self.saved_at = self.past.len();
         self.path = Some(path.clone());
         Ok(path)
@@ -223,6 +251,30 @@ mod tests {
     }
 
     #[test]
+    fn a_view_that_is_left_by_another_moment_is_a_step() {
+        let mut doc = document();
+        let first = doc.plan.clone();
+        for (beat, x) in [(0.0, -9.0), (4.0, -12.0)] {
+            doc.plan.camera.eye = DVec3::new(0.0, x, 1.0);
+            doc.change(|plan| set_view(plan, beat));
+        }
+        assert_eq!(doc.go_to(1.0), None);
+        let steps = doc.past.len();
+        doc.change(|plan| plan.camera.eye.z = 3.0);
+        let flown = doc.plan.clone();
+        assert_eq!(doc.go_to(2.0), None);
+        // A film that goes on from there is none.
+        assert_eq!(doc.go_to(3.0), None);
+        assert_eq!(doc.past.len(), steps + 2);
+        assert_eq!((doc.undo(), doc.plan == flown), (Some(1.0), true));
+        // Nor is a gesture under way.
+        doc.begin();
+        assert_eq!(doc.go_to(3.5), None);
+        doc.end();
+        assert!(doc.plan != first);
+    }
+
+    #[test]
     fn a_built_in_preset_is_saved_to_a_new_file_and_then_to_that() {
         let folder = tempfile::tempdir().expect("a folder");
         let mut doc = document();
@@ -235,8 +287,16 @@ mod tests {
         assert!(doc.is_changed());
         assert_eq!(save(&mut doc), path);
         let text = std::fs::read_to_string(&path).expect("a file");
-        assert_eq!(preset::read(&text, "box").expect("a preset"), doc.plan);
+        let mut read = preset::read(&text, "box").expect("a preset");
+        read.set_folder(folder.path());
+        assert_eq!(read, doc.plan);
         let again = save(&mut document());
         assert_eq!(again, folder.path().join("box-2.toml"));
+        // A write-protected file stays as it is.
+        let mut protected = fs::metadata(&path).expect("a file").permissions();
+        protected.set_readonly(true);
+        fs::set_permissions(&path, protected).expect("set");
+        doc.change(|plan| plan.camera.fov = 35.0);
+        assert_eq!(save(&mut doc), folder.path().join("box-3.toml"));
     }
 }

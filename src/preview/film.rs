@@ -2,16 +2,14 @@
 
 use crate::preview::document::Document;
 use crate::preview::live::{Live, PANEL};
-use crate::preview::play::{overwrite, pose_at, remove, shows_film};
+use crate::preview::play::{overwrite, remove, shows_film};
 
 impl Live {
     /// Shows the moment of the film under the playhead.
     pub fn show_moment(&mut self) {
         // Another program may have made the film shorter.
         self.play.fit(self.document.plan.time.length);
-        let beat = self.play.beat;
-        self.document.beat = beat;
-        if let Some(wrong) = pose_at(&mut self.document.plan, beat) {
+        if let Some(wrong) = self.document.go_to(self.play.beat) {
             self.warn(wrong);
         }
         self.paint_soon(PANEL);

@@ -165,6 +165,7 @@ impl Live {
 
     fn answer(&mut self, asked: Requests) {
         self.panel_drag = asked.panel.dragging || asked.timeline.dragging;
+        self.panel_typing = asked.panel.typing;
         if let Some(name) = asked.open {
             self.open(name);
             return;

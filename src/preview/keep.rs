@@ -1,6 +1,6 @@
 //! Unsaved work, kept outside the preset's file until it is saved.
 
-use std::fs;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf, absolute};
 
 use crate::picture::OutputError;
@@ -35,25 +35,52 @@ fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
     folder.join(format!("unsaved-{place}{number}.toml"))
 }
 
-/// Keeps the document's plan as it would be saved.
-///
-/// # Errors
-/// The folder cannot be written.
-pub fn keep(folder: Option<&Path>, document: &Document, slot: u32) -> Result<(), OutputError> {
-    let Some(folder) = folder else { return Ok(()) };
-    let _ = fs::create_dir_all(folder);
-    let plan = with_still(&document.plan, document.saved(), document.beat);
-    write(
-        &path(folder, document, slot),
-        preset::write(&plan).as_bytes(),
-    )
+/// Where the unsaved work of a window is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slot {
+    /// In none yet: the first free one from this on will do. Another window may have any.
+    After(u32),
+    /// In this one.
+    Own(u32),
 }
 
-/// Forgets what was kept.
-pub fn drop(folder: Option<&Path>, document: &Document, slot: u32) {
-    if let Some(folder) = folder {
-        // Nothing may have been kept.
-        let _ = fs::remove_file(path(folder, document, slot));
+impl Slot {
+    /// The first slot that is not this one's.
+    pub fn next(self) -> u32 {
+        match self {
+            Self::After(slot) => slot,
+            Self::Own(slot) => slot + 1,
+        }
+    }
+
+    /// Keeps the document's plan as it would be saved.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn keep(&mut self, folder: Option<&Path>, document: &Document) -> Result<(), OutputError> {
+        let Some(folder) = folder else { return Ok(()) };
+        let _ = fs::create_dir_all(folder);
+        let plan = with_still(&document.plan, document.saved(), document.beat);
+        let slot = match *self {
+            Self::Own(slot) => slot,
+            Self::After(first) => {
+                let is_free = |slot: &u32| File::create_new(path(folder, document, *slot)).is_ok();
+                (first..SLOTS).find(is_free).unwrap_or(SLOTS - 1)
+            }
+        };
+        *self = Self::Own(slot);
+        write(
+            &path(folder, document, slot),
+            preset::write(&plan).as_bytes(),
+        )
+    }
+
+    /// Forgets what was kept.
+    pub fn drop(&mut self, folder: Option<&Path>, document: &Document) {
+        if let (Some(folder), Self::Own(slot)) = (folder, *self) {
+            let _ = fs::remove_file(path(folder, document, slot));
+            *self = Self::After(slot);
+        }
     }
 }
 
@@ -99,19 +126,24 @@ mod tests {
         let at = Some(folder.path());
         let scene = Scene::all().into_iter().next().expect("a scene");
         let mut document = Document::new("box".into(), None, Plan::new(scene));
-        keep(at, &document, 0).expect("kept");
+        // Two windows.
+        let [mut one, mut two] = [Slot::After(0); 2];
+        one.keep(at, &document).expect("kept");
         assert_eq!(find(at, &document), None);
         document.plan.camera.fov = 33.0;
-        keep(at, &document, 0).expect("kept");
+        one.keep(at, &document).expect("kept");
         let older = document.plan.clone();
         document.plan.camera.fov = 34.0;
-        keep(at, &document, 1).expect("kept");
+        two.keep(at, &document).expect("kept");
         let newer = document.plan.clone();
         document.plan.camera.fov = 40.0;
         assert_eq!(find(at, &document), Some((1, newer)));
-        drop(at, &document, 1);
+        two.drop(at, &document);
+        assert_eq!(find(at, &document), Some((0, older.clone())));
+        // What is another's is not dropped.
+        two.drop(at, &document);
         assert_eq!(find(at, &document), Some((0, older)));
-        drop(at, &document, 0);
+        one.drop(at, &document);
         assert_eq!(find(at, &document), None);
         assert_eq!(find(None, &document), None);
     }

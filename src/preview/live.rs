@@ -11,11 +11,13 @@ use winit::keyboard::KeyCode;
 
 use crate::picture::Layer;
 use crate::plan::{Extras, Plan};
+use crate::preview::actions::{NO_PASSES, passes};
 use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
 use crate::preview::flight::Flight;
 use crate::preview::gui;
 use crate::preview::input::{Drag, thrust};
+use crate::preview::keep::Slot;
 use crate::preview::meter::{Figures, Meter};
 use crate::preview::notice::{Ends, Notice};
 use crate::preview::pictures::Pictures;
@@ -59,8 +61,6 @@ pub struct Live {
     pub ctx: egui::Context,
     pub gui: egui_winit::State,
     pub document: Document,
-    /// The camera to go back to.
-    pub first: Plan,
     pub flight: Flight,
     pub play: Play,
     pub held: HashSet<KeyCode>,
@@ -69,6 +69,8 @@ pub struct Live {
     pub drag: Option<Drag>,
     pub clicked: Option<Instant>,
     pub shot: ShownView,
+    /// What the picture on the screen shows.
+    pub shows: Option<ShownView>,
     pub visible: Visible,
     /// What lies over the picture: x, y, width and height of each part in pixels.
     pub over: Vec<[u32; 4]>,
@@ -76,19 +78,23 @@ pub struct Live {
     pub panels: Vec<[u32; 4]>,
     /// Whether a value is dragged in the panel or the timeline.
     pub panel_drag: bool,
+    /// Whether a number is typed there in a box of colours, whose digits are one step.
+    pub panel_typing: bool,
     /// When the panel is painted again, and whether a user waits for that.
     pub panel_due: Option<Instant>,
     pub urgent: bool,
     pub redraw: bool,
     pub hidden: bool,
     pub closed: bool,
+    /// Whether it closes when the still is written.
+    pub closes: bool,
     pub notice: Option<Notice>,
     pub still: Option<Still>,
     pub question: Option<Question>,
     /// Unsaved work of an earlier session with its slot, until it is taken or dropped.
     pub offered: Option<(u32, Plan)>,
     /// Where unsaved work of this session is kept.
-    pub slot: u32,
+    pub slot: Slot,
     pub options: Options,
     pub meter: Meter,
     /// The wish of a picture that is not on the screen yet, and whether it is a full one.
@@ -141,7 +147,6 @@ impl Live {
             ctx,
             gui,
             document,
-            first: preset.plan.clone(),
             flight: Flight::default(),
             play: Play::default(),
             held: HashSet::new(),
@@ -150,6 +155,7 @@ impl Live {
             drag: None,
             clicked: None,
             shot: ShownView::Layer(Default::default()),
+            shows: None,
             visible: Visible {
                 panel: true,
                 timeline: !preset.plan.tracks.is_empty(),
@@ -158,16 +164,18 @@ impl Live {
             over: Vec::new(),
             panels: Vec::new(),
             panel_drag: false,
+            panel_typing: false,
             panel_due: Some(now),
             urgent: true,
             redraw: true,
             hidden: false,
             closed: false,
+            closes: false,
             notice: None,
             still: None,
             question: None,
             offered: None,
-            slot: 0,
+            slot: Slot::After(0),
             meter: Meter::default(),
             taken: None,
             drawn: now,
@@ -242,7 +250,8 @@ impl Live {
             self.keep_work();
         }
         if self.hidden {
-            return Ok(REST);
+            self.go_on_with_still();
+            return Ok(if self.still.is_some() { BUSY } else { REST });
         }
         let moving = flies || self.play.playing || self.drag.is_some() || self.panel_drag;
         self.render(moving)?;
@@ -278,7 +287,7 @@ impl Live {
         let thrust = thrust(&self.held, self.modifiers.state().shift_key());
         let flies = thrust.way != DVec3::ZERO || thrust.roll != 0.0;
         if !flies {
-            if self.drag.is_none() && !self.panel_drag {
+            if self.drag.is_none() && !self.panel_drag && !self.panel_typing {
                 self.document.end();
             }
             return false;
@@ -301,6 +310,12 @@ impl Live {
             self.warn(format!("{}: {}", fault.key, fault.why));
             return Ok(());
         }
+        if let ShownView::Fronts(n) = self.shot
+            && n >= passes(&plan)
+        {
+            self.shot = ShownView::Layer(Layer::Color);
+            self.tell(NO_PASSES, false);
+        }
         let extras = self.shot.extras();
         let figures = self.visible.figures;
         let is_plain = self.shot == ShownView::Layer(Layer::Color) && !figures;
@@ -317,20 +332,14 @@ impl Live {
             self.meter.ask(self.pictures.wish());
         }
         match self.pictures.advance() {
-            Ok(false) => {}
-            Ok(true) => self.take(),
+            // Several views show the same layers.
+            Ok(false) if self.shows == Some(self.shot) => {}
+            Ok(_) => self.take(),
             Err(e) => self.failed(e)?,
         }
         self.answer_question();
-        if !self.pictures.is_busy()
-            && let Some(still) = &mut self.still
-            && let Some(said) = still.advance()
-        {
-            self.still = None;
-            match said {
-                Ok(path) => self.tell(format!("wrote {}", path.display()), false),
-                Err(why) => self.tell(why, true),
-            }
+        if !self.pictures.is_busy() {
+            self.go_on_with_still();
         }
         if moving || before || self.pictures.is_busy() || self.still.is_some() {
             // The last picture turns with the camera, unless the next one comes soon.
@@ -338,6 +347,23 @@ impl Live {
             self.paint_soon(if self.play.playing { PLAYING } else { PANEL });
         }
         Ok(())
+    }
+
+    fn go_on_with_still(&mut self) {
+        let Some(said) = self.still.as_mut().and_then(Still::advance) else {
+            return;
+        };
+        self.still = None;
+        match said {
+            Ok(path) => {
+                self.tell(format!("wrote {}", path.display()), false);
+                self.closed |= self.closes;
+            }
+            Err(why) => {
+                self.closes = false;
+                self.tell(why, true);
+            }
+        }
     }
 
     /// Takes in a finished picture.
@@ -356,6 +382,7 @@ impl Live {
             }
         }
         let (wish, is_full) = (finished.wish, finished.is_full);
+        self.shows = Some(self.shot);
         self.taken = Some((wish, is_full));
         if is_full {
             self.losses = 0;
@@ -387,14 +414,5 @@ impl Live {
             Shown::Again => self.redraw = true,
         }
         Ok(())
-    }
-}
-
-/// A word of a command as a shell takes it.
-pub fn quoted(text: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "_./=-,".contains(c);
-    match text.chars().all(plain) {
-        true => text.into(),
-        false => format!("'{}'", text.replace('\'', "'\\''")),
     }
 }

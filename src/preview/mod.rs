@@ -5,7 +5,7 @@
 //! - [`window`]: how it opens, and the loop of its events
 //! - `live`: the open window and its turns; `actions`: what events do to it; `gui`: what lies over
 //!   the picture; `upkeep`: files, unsaved work and lost devices
-//! - `input`: what keys and drags mean
+//! - `input`: what keys and drags mean; `command`: the command line of a picture
 //! - [`document`]: the plan that is edited, its history and its file; `keep`: unsaved work;
 //!   `reload`: files that change
 //! - [`flight`]: how the camera moves; [`probe`]: what the CPU can tell about the scene at once;
@@ -18,6 +18,7 @@
 //! - [`meter`]: how quickly the window answers; [`error`]: why a preview cannot go on
 
 mod actions;
+mod command;
 pub mod document;
 pub mod draw;
 pub mod error;

@@ -11,9 +11,13 @@ use crate::plan::Plan;
 use crate::preset::SECTIONS;
 use crate::preview::gui::small;
 
-/// Widths of the names of keys and of one number of three, in points.
+/// Widths of the names of keys, of one number of three, of the same beside `auto`, of a colour among
+/// others, and of the buttons after the value, in points.
 const NAME_WIDTH: f32 = 92.0;
 const NUMBER_WIDTH: f32 = 48.0;
+const NARROW_WIDTH: f32 = 36.0;
+const COLOR_WIDTH: f32 = 18.0;
+const BUTTONS_WIDTH: f32 = 44.0;
 
 /// What the panel asks for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,6 +28,8 @@ pub struct PanelRequest {
     pub key: Option<String>,
     /// A drag is under way, so that all values until its end are one step.
     pub dragging: bool,
+    /// A number is typed in a box of colours, digit by digit.
+    pub typing: bool,
 }
 
 /// Shows all keys.
@@ -46,7 +52,9 @@ pub fn show(ui: &mut Ui, plan: &Plan, defaults: &Plan) -> PanelRequest {
         });
     }
     // A drag in a box of colours is not one of the button that opened it.
-    asked.dragging |= Popup::is_any_open(ui.ctx()) && ui.input(|i| i.pointer.any_down());
+    let boxed = Popup::is_any_open(ui.ctx());
+    asked.dragging |= boxed && ui.input(|i| i.pointer.any_down());
+    asked.typing = boxed && ui.ctx().text_edit_focused();
     asked
 }
 
@@ -72,16 +80,23 @@ fn row(ui: &mut Ui, section: &'static str, key: &Key<'_>, usual: &Value, asked: 
             if reset.on_hover_text("back to the default").clicked() {
                 asked.set = Some((section, key.name, usual.clone()));
             }
-            let film = matches!(
-                key.slot.kind(),
-                Kind::Number(_) | Kind::Count(_) | Kind::Triple(_)
-            );
             let fixed = ["time", "image"].contains(&section);
-            if film && !fixed && small(ui, "k", "set a key of the timeline") {
+            if !fixed
+                && is_tracked(&key.slot.kind(), &now)
+                && small(ui, "k", "set a key of the timeline")
+            {
                 asked.key = Some(format!("{section}.{}", key.name));
             }
         });
     });
+}
+
+/// Whether a value is one that a track can hold.
+fn is_tracked(kind: &Kind, now: &Value) -> bool {
+    match kind {
+        Kind::Auto(kind) => !now.is_str() && is_tracked(kind, now),
+        kind => matches!(kind, Kind::Number(_) | Kind::Count(_) | Kind::Triple(_)),
+    }
 }
 
 fn cost(redo: Option<Redo>) -> &'static str {
@@ -250,20 +265,28 @@ fn triples(
 ) -> Option<Value> {
     let mut all: Vec<[f64; 3]> = now.as_array()?.iter().filter_map(floats).collect();
     let mut changed = false;
-    ui.spacing_mut().item_spacing.x = 2.0;
-    if is_color(range) {
-        for three in &mut all {
-            changed |= color(ui, three, asked);
+    let size = [
+        ui.available_width() - BUTTONS_WIDTH,
+        ui.spacing().interact_size.y,
+    ];
+    let rows = Layout::left_to_right(Align::Center).with_main_wrap(true);
+    ui.allocate_ui_with_layout(size.into(), rows, |ui| {
+        ui.spacing_mut().item_spacing = [2.0, 2.0].into();
+        ui.spacing_mut().interact_size.x = COLOR_WIDTH;
+        if is_color(range) {
+            for three in &mut all {
+                changed |= color(ui, three, asked);
+            }
         }
-    }
-    if all.len() > 1 && ui.small_button("-").clicked() {
-        all.pop();
-        changed = true;
-    }
-    if all.len() < most && ui.small_button("+").clicked() {
-        all.extend(all.last().copied());
-        changed = true;
-    }
+        if all.len() > 1 && ui.small_button("-").clicked() {
+            all.pop();
+            changed = true;
+        }
+        if all.len() < most && ui.small_button("+").clicked() {
+            all.extend(all.last().copied());
+            changed = true;
+        }
+    });
     let list: Vec<Value> = all.iter().map(|three| three.to_vec().into()).collect();
     changed.then(|| list.into())
 }
@@ -294,10 +317,11 @@ fn auto(
     if is_auto {
         return None;
     }
+    ui.spacing_mut().interact_size.x = NARROW_WIDTH;
     editor(ui, id, kind, now, asked)
 }
 
-/// Edits any value as TOML. It is taken when the field is left.
+/// Edits any value as TOML. It is taken when the field is left, unless by Escape.
 fn other(ui: &mut Ui, id: (&str, &str), now: &Value) -> Option<Value> {
     let id = ui.scope_id().with(id);
     let shown = match now {
@@ -310,7 +334,8 @@ fn other(ui: &mut Ui, id: (&str, &str), now: &Value) -> Option<Value> {
     let response = ui.add(egui::TextEdit::singleline(&mut text).desired_width(110.0));
     if response.lost_focus() {
         ui.data_mut(|data| data.remove::<String>(id));
-        return (text != shown).then(|| read(&text));
+        let kept = !ui.input(|input| input.key_pressed(egui::Key::Escape));
+        return (kept && text != shown).then(|| read(&text));
     }
     if response.has_focus() {
         ui.data_mut(|data| data.insert_temp(id, text));

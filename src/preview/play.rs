@@ -36,6 +36,8 @@ pub struct Play {
     pub range: Option<[f64; 2]>,
     /// The chosen key.
     pub chosen: Option<TimelineKey>,
+    /// Whether the drag under way is to copy that key.
+    pub copies: bool,
 }
 
 impl Play {

@@ -9,7 +9,7 @@ use crate::gpu::device::DeviceError;
 use crate::gpu::render::Renderer;
 use crate::gpu::work::Work;
 use crate::picture::frame::Frame;
-use crate::picture::{BitDepth, Layer, Shades, write_png};
+use crate::picture::{BitDepth, Layer, Place, Shades, write_png};
 use crate::plan::{Extras, Plan};
 use crate::preset;
 use crate::preview::document::write;
@@ -30,7 +30,7 @@ impl Still {
     /// Begins a still of a plan that passes [`Plan::check`].
     ///
     /// # Errors
-    /// The device failed or has no room.
+    /// The device failed or has no room, or the file cannot be written.
     pub fn begin(
         renderer: &mut Renderer,
         plan: Plan,
@@ -42,6 +42,8 @@ impl Still {
                 "camera.stereo: the window writes no pairs; save the preset and use `conemarch render`, or set stereo to off".into(),
             );
         }
+        // A folder that cannot be written is found before the work.
+        Place::prepare(&path).map_err(|e| e.to_string())?;
         let work = renderer.begin(&plan, assets, Extras::default());
         Ok(Self {
             work: Some(work.map_err(|e| e.to_string())?),
@@ -54,7 +56,7 @@ impl Still {
     /// The same on another device, unless the picture is made already.
     ///
     /// # Errors
-    /// The device failed or has no room.
+    /// As [`Still::begin`].
     pub fn again(self, renderer: &mut Renderer, assets: &Assets) -> Result<Self, String> {
         match self.work {
             Some(_) => Self::begin(renderer, self.plan, assets, self.path),

@@ -191,6 +191,7 @@ fn mark(
     let response = ui.interact(rect, id, Sense::click_and_drag());
     if response.clicked() || response.drag_started() {
         play.chosen = Some(place.clone());
+        play.copies = response.drag_started() && ui.input(|input| input.modifiers.alt);
         play.beat = place.time;
         asked.moved = true;
     }
@@ -199,10 +200,12 @@ fn mark(
         && let (Some(at), Some(chosen)) = (ui.input(|i| i.pointer.interact_pos()), &play.chosen)
     {
         asked.dragging = true;
-        let copy = response.drag_started() && ui.input(|input| input.modifiers.alt);
         let to = scale.beat(at.x);
         let mut plan = plan.clone();
-        play.chosen = Some(retime(&mut plan, chosen, to, copy));
+        let moved = retime(&mut plan, chosen, to, play.copies);
+        // The copy is made as soon as it has a place of its own.
+        play.copies &= moved == *chosen;
+        play.chosen = Some(moved);
         asked.plan = Some(plan);
     }
     let color = match play.chosen == Some(place) {

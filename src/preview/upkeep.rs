@@ -9,7 +9,7 @@ use crate::preset;
 use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
 use crate::preview::gui;
-use crate::preview::keep;
+use crate::preview::keep::{self, Slot};
 use crate::preview::live::Live;
 use crate::preview::notice::Ends;
 use crate::preview::pictures::Pictures;
@@ -105,10 +105,9 @@ impl Live {
                 if was_changed {
                     // It stays for the next start.
                     self.keep_now();
-                    self.slot += 1;
+                    self.slot = Slot::After(self.slot.next());
                     (self.unkept, self.kept) = (None, None);
                 }
-                self.first = preset.plan.clone();
                 self.document.reload(preset.plan);
                 self.show_moment();
                 let undo = if was_changed {
@@ -135,7 +134,6 @@ impl Live {
         match preset::load(Path::new(name), &[]) {
             Ok(preset) => {
                 let path: Option<PathBuf> = preset::file(Path::new(name));
-                self.first = preset.plan.clone();
                 self.stage
                     .window
                     .set_title(&format!("{} - conemarch", preset.name));
@@ -172,7 +170,7 @@ impl Live {
     /// Offers unsaved work that was kept. New work is kept beside it.
     pub fn offer(&mut self) {
         self.offered = keep::find(self.options.kept.as_deref(), &self.document);
-        self.slot = self.offered.as_ref().map_or(0, |(slot, _)| slot + 1);
+        self.slot = Slot::After(self.offered.as_ref().map_or(0, |(slot, _)| slot + 1));
     }
 
     /// Takes or discards the work that is offered. What was kept beside it goes in its place.
@@ -181,12 +179,12 @@ impl Live {
             return;
         };
         let kept = self.options.kept.as_deref();
-        keep::drop(kept, &self.document, self.slot);
-        self.slot = slot;
+        self.slot.drop(kept, &self.document);
+        self.slot = Slot::Own(slot);
         if restore {
             self.document.change(|now| *now = plan);
         } else {
-            keep::drop(kept, &self.document, slot);
+            self.slot.drop(kept, &self.document);
         }
         self.kept = None;
         self.keep_now();
@@ -198,7 +196,7 @@ impl Live {
     }
 
     fn drop_kept(&mut self) {
-        keep::drop(self.options.kept.as_deref(), &self.document, self.slot);
+        self.slot.drop(self.options.kept.as_deref(), &self.document);
         (self.unkept, self.kept) = (None, None);
     }
 
@@ -206,7 +204,7 @@ impl Live {
     pub fn keep_now(&mut self) {
         if self.document.is_changed() && self.document.plan.check().is_ok() {
             // A cache that cannot be written is no reason to disturb.
-            let _ = keep::keep(self.options.kept.as_deref(), &self.document, self.slot);
+            let _ = self.slot.keep(self.options.kept.as_deref(), &self.document);
             (self.unkept, self.kept) = (None, Some(self.document.plan.clone()));
         }
     }

@@ -172,6 +172,29 @@ fn frames_end_their_samples_as_stills_do() {
 }
 
 #[test]
+fn a_frame_is_made_again_when_a_file_of_its_preset_has_changed() {
+    let folder = Folder::new();
+    let heights = |rise: u32| {
+        let bump = |x, y| image::Luma([((x * rise) ^ y) as u8]);
+        let heights = image::GrayImage::from_fn(16, 16, bump);
+        heights.save(folder.0.join("h.png")).unwrap();
+    };
+    heights(3);
+    let film = "[scene]\nkind = 'heightfield'\nfield = 'h.png'\n[image]\nsize = [32, 18]\n[time]\nlength = 1\nfps = 2\n[[track]]\nkey = 'look.key'\nkeys = [[0, 1], [1, 2]]\n";
+    folder.write("film.toml", film);
+    let line = "animate film.toml -o f-%d.png --device cpu";
+    let made = |says: &str| {
+        let said = said(&folder.done(line));
+        assert!(said.ends_with(says), "{said}");
+    };
+    made("2 frames\n");
+    made("0 frames; 2 there already\n");
+    std::thread::sleep(std::time::Duration::from_millis(20));
+    heights(5);
+    made("2 frames\n");
+}
+
+#[test]
 fn frames_are_those_of_their_moments_and_are_rendered_once() {
     let folder = Folder::new();
     folder.write("film.toml", FILM);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use conemarch::preset;
 
@@ -39,6 +39,33 @@ fn a_still_and_unsaved_work_outlive_the_window() {
     let before = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
     let plan = preset::load(&kept[0], &[]).unwrap().plan;
     assert!(plan.camera != before.camera && plan.scene == before.scene);
+}
+
+#[test]
+fn a_still_is_finished_though_the_window_is_hidden_or_closed() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let large = FILM.replace("[320, 180]", "[2560, 1440]");
+    folder.write("film.toml", large);
+    let view = Preview::open(&desktop, &folder.0, &format!("film.toml {SIZE}"));
+    let has = |name: &str| {
+        let began = Instant::now();
+        while !folder.files().contains(&name.to_string()) {
+            assert!(began.elapsed() < Duration::from_secs(60), "no {name}");
+            sleep(Duration::from_millis(100));
+        }
+    };
+    view.at_rest();
+    view.key("F12");
+    view.hide(true);
+    has("film-1.png");
+    view.hide(false);
+    view.key("F12");
+    view.close();
+    has("film-2.png");
+    folder.done("render film.toml --at 0 -o a.png");
+    for name in ["film-1.png", "film-2.png"] {
+        assert!(picture(&folder, name) == picture(&folder, "a.png"));
+    }
 }
 
 /// The first rows of a picture.

@@ -124,6 +124,21 @@ fn keys_are_dragged_and_copied_and_a_part_is_played_again() {
     assert_eq!(keys(), [0.0, 7.0]);
     view.key("ctrl+z");
     assert_eq!(keys(), [0.0, 5.0]);
+    // The last key is copied too, on a way that begins beyond the end.
+    view.drag(1, [x(5), row], [x(10), row]);
+    view.xdotool("keydown alt");
+    view.point(x(10), row);
+    view.xdotool("mousedown 1");
+    for to in [x(10) + 12, x(9), x(8)] {
+        sleep(Duration::from_millis(300));
+        view.point(to, row);
+    }
+    sleep(Duration::from_millis(300));
+    view.xdotool("mouseup 1 keyup alt");
+    assert_eq!(keys(), [0.0, 8.0, 10.0]);
+    view.key("ctrl+z");
+    view.key("ctrl+z");
+    assert_eq!(keys(), [0.0, 5.0]);
     // Two handles, and the playhead at 7: the part from 4 to 5 is played again and again.
     view.drag(1, [x(10), handles], [x(5), handles]);
     view.drag(1, [x(0), handles], [x(4), handles]);

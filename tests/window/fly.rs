@@ -38,7 +38,7 @@ fn keys_wheel_and_clicks_fly() {
     let flown = |key: &str| {
         view.hold(key, 300);
         let camera = saved(&view, &folder).camera;
-        view.key("Home");
+        view.key("ctrl+z");
         camera
     };
     for (key, way) in ways {
@@ -53,8 +53,16 @@ fn keys_wheel_and_clicks_fly() {
     }
     view.point(200, 300);
     view.xdotool("keydown ctrl sleep 0.1 click 4 sleep 0.1 keyup ctrl");
-    assert!(saved(&view, &folder).camera.fov < first.fov);
+    let narrow = saved(&view, &folder).camera;
+    assert!(narrow.fov < first.fov);
+    // The preset's camera is that of its file.
+    view.hold("w", 300);
     view.key("Home");
+    assert_eq!(saved(&view, &folder).camera, narrow);
+    // The flight, the way home, and each of two notches of the wheel.
+    for _ in 0..4 {
+        view.key("ctrl+z");
+    }
     // What lies in the middle of the part that the panel leaves free.
     view.point(300, 270);
     view.xdotool("click --repeat 2 --delay 60 1");
@@ -68,6 +76,27 @@ fn keys_wheel_and_clicks_fly() {
     view.hold("w", 1000);
     let stopped = saved(&view, &folder).camera;
     assert!(stopped.eye.dot(ahead) < 0.0, "{stopped:?}");
+    view.close();
+}
+
+#[test]
+fn a_drag_stays_one_step_after_an_undo_in_its_middle() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
+    let first = preset::load("mandelbox", &[]).unwrap().plan.camera;
+    view.point(200, 300);
+    view.xdotool("mousedown 3");
+    for x in [230, 260, 290, 320] {
+        view.point(x, 300);
+        sleep(Duration::from_millis(200));
+        if x == 260 {
+            view.key("ctrl+z");
+        }
+    }
+    view.xdotool("mouseup 3");
+    assert!(saved(&view, &folder).camera != first);
+    view.key("ctrl+z");
+    assert_eq!(saved(&view, &folder).camera, first);
     view.close();
 }
 

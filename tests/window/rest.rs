@@ -113,7 +113,14 @@ fn a_slider_is_one_step_and_the_layers_are_those_of_files() {
         .plan;
     assert_eq!(undone.scene, before.scene);
     view.key("Tab");
-    for (key, layer) in [("2", "depth"), ("3", "normal"), ("6", "state")] {
+    // Several layers come from the same render.
+    for (key, layer) in [
+        ("2", "depth"),
+        ("4", "position"),
+        ("3", "normal"),
+        ("6", "state"),
+        ("2", "depth"),
+    ] {
         let file = format!("{layer}.png");
         folder.done(&format!(
             "render mandelbox --size 960x540 --layer {layer} -o {file}"
@@ -121,6 +128,13 @@ fn a_slider_is_one_step_and_the_layers_are_those_of_files() {
         let shown = picture(&folder, &file);
         view.key(key);
         view.wait_for(layer, |shot| *shot == shown);
+    }
+    // So do the views of passes.
+    let mut before = view.at_rest();
+    for key in ["bracketleft", "bracketleft", "7"] {
+        view.key(key);
+        view.wait_for("another pass", |shot| *shot != before);
+        before = view.at_rest();
     }
     view.close();
 }
