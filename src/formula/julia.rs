@@ -43,9 +43,11 @@ impl Julia {
             let fold = folds.fold(z);
             // Within the inner radius, the ball fold only scales.
             if fold.length >= low {
-                // Outside the fixed sphere, it bends only what the trial ball has inside.
+                // Outside the fixed sphere, it bends only what the trial ball has inside. 1/inverse is
+                // the radius of the trial ball here, which the fold spreads to 1/spread at most.
                 let inverse = ((1.0 / trial - bend) / w).max(0.0);
-                let inside = 1.0 - (fold.length - high).max(0.0) * inverse;
+                let spread = (fold.length * inverse - 1.0).max(0.0) / high;
+                let inside = 1.0 - (fold.length - high).max(0.0) * spread;
                 bend += w * inside.max(0.0) / fold.length;
             }
             // Kept finite. The estimate is zero in f64 long before this limit.
@@ -111,7 +113,8 @@ impl Julia {
             if let Some(trial) = trial {
                 let length = fold.length();
                 let inverse = ((one / trial - bend) / w).max(0.0);
-                let inside = one - (length - high).max(0.0) * inverse;
+                let spread = (length * inverse - one).max(0.0) / all(high);
+                let inside = one - (length - high).max(0.0) * spread;
                 let bent = bend + w * inside.max(0.0) / length;
                 bend = (on & length.simd_ge(low)).select(bent, bend);
             }

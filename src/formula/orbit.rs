@@ -17,9 +17,6 @@ pub(super) const PREFIX: u32 = 3;
 /// Divisor of the chain where cones go by it.
 pub const ROTATED_SLOPE: f64 = 1.25;
 
-/// Radii of balls stay below this, as their squares could overflow in f32.
-pub(super) const MOST_RADIUS: f64 = 1e15;
-
 /// The derivative of a point of the orbit by the starting point, while all folds are linear.
 pub trait Jacobian: Copy {
     /// The identity.
@@ -138,7 +135,7 @@ impl Orbits {
         let [low, high] = self.0.radii;
         let near = (fold.length - radius).clamp(low, high);
         let growth = high * high / (fold.length.clamp(low, high) * near);
-        (self.0.scale.abs() * growth * radius + trial).min(MOST_RADIUS)
+        self.0.scale.abs() * growth * radius + trial
     }
 
     /// The estimate at the end of an orbit, with the norm of the Jacobian, and with one growth

@@ -6,7 +6,7 @@ use crate::base::lanes::{LANES, Mask, Places, Reals, Triples, mask};
 use crate::formula::contract::Reading;
 use crate::formula::folds::Folds;
 use crate::formula::folds_lanes::FoldLanes;
-use crate::formula::orbit::{MOST_RADIUS, Orbits, PREFIX};
+use crate::formula::orbit::{Orbits, PREFIX};
 
 /// The derivatives of the lanes; see [`crate::formula::orbit::Jacobian`].
 pub trait Jacobians<S: Simd>: Copy {
@@ -228,7 +228,7 @@ impl Orbits {
         let [low, high] = self.0.radii;
         let near = (length - radius).max(low).min(high);
         let growth = high * high / (length.max(low).min(high) * near);
-        (growth * self.0.scale.abs() * radius + trial).min(MOST_RADIUS)
+        growth * self.0.scale.abs() * radius + trial
     }
 
     /// See `Orbits::trial_ball`.

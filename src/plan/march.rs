@@ -116,7 +116,7 @@ impl Mode {
 
 /// Steps of a cone and of a ray where `march.steps` and the scene do not say. The slowest rays
 /// of the presets end well before.
-const STEPS: u32 = 256;
+pub const STEPS: u32 = 256;
 /// The divisor of the first cone level by default. More levels above it cost little and bring
 /// little.
 const COARSEST: u32 = 16;

@@ -309,7 +309,8 @@ impl Plan {
         solid.run(Probe {
             view: self.view(),
             size: self.size,
-            steps: self.march.ray_steps(None),
+            // A low limit does not make rays cheap: it leaves more of them unfinished.
+            steps: self.march.ray_steps(None).max(march::STEPS),
         })
     }
 }

@@ -25,6 +25,9 @@ use crate::scene::Viewpoint;
 use crate::scene::contract::{Advance, Hit, Solid, Step, Surface, Twin};
 use crate::wgsl;
 
+/// What roundings in f32 may take from the square of a sine, and from the growth of a cone.
+const SQUARE_SLACK: f64 = 1e-6;
+const GROWTH_SLACK: f64 = 4e-7;
 /// The most windows in the search of an empty ball: it halves the levels of the pyramid, of which
 /// a map of 8192 has 14.
 const HEIGHTFIELD_SEARCHES: u32 = 6;
@@ -273,11 +276,15 @@ impl Solid for Heightfield {
     fn advance(&self, cone: &Beam, at: Advance, work: &mut Counts) -> Advance {
         let LocalRay { origin, axis } = self.local(cone);
         let units = self.made.placement.units();
+        // Unit vectors that differ by k differ by k²/2 along either of them.
+        let along = (axis * units).abs();
+        let across = (DVec3::ONE - along * along).max(DVec3::ZERO) + SQUARE_SLACK;
+        let growth = cone.k * (across.map(f64::sqrt) + 0.5 * cone.k * along) + GROWTH_SLACK;
         let cone = LocalCone {
             origin,
             axis,
             radius: cone.r0 / units + 2.0 * self.slack,
-            growth: cone.k / units,
+            growth: growth.min(DVec3::splat(cone.k)) / units,
             slack: self.slack,
         };
         // Nothing is as far as that.

@@ -53,10 +53,59 @@ pub fn of_the_set(m: &Mandelbox, count: usize, random: &mut Random) -> Vec<(DVec
     found
 }
 
+/// A point of the set in Julia mode, with any direction. All inverses of an iteration bring points
+/// nearer to each other, so whatever inverses are taken of any point tend to points of the set.
+fn of_the_julia_set(m: &Mandelbox, random: &mut Random) -> (DVec3, DVec3) {
+    let [low, high] = [m.min_radius, m.fixed_radius];
+    let mut z = random.cube(1.0);
+    for _ in 0..MANY {
+        let folded = (z - m.julia_constant) / m.scale;
+        let l = folded.length();
+        let scaled = (low / high).powi(2) * folded;
+        let inverses = [
+            (l >= high, folded),
+            (
+                l >= high && l * low <= high * high,
+                (high / l).powi(2) * folded,
+            ),
+            (l * low <= high * high, scaled),
+        ];
+        let inverses: Vec<DVec3> = inverses.iter().filter(|i| i.0).map(|i| i.1).collect();
+        let b = inverses[random.between(0.0, inverses.len() as f64) as usize];
+        let side = m.fold_limit;
+        z = DVec3::from_array(b.to_array().map(|b| {
+            let sides = [
+                (b.abs() <= side, b),
+                (b <= side, 2.0 * side - b),
+                (b >= -side, -2.0 * side - b),
+            ];
+            let sides: Vec<f64> = sides.iter().filter(|i| i.0).map(|i| i.1).collect();
+            sides[random.between(0.0, sides.len() as f64) as usize]
+        }));
+    }
+    (z, random.direction())
+}
+
+/// As [`start`], for a set in Julia mode that may be dust.
+pub fn start_in_julia_mode(m: &Mandelbox, count: usize, random: &mut Random) -> Vec<Climb> {
+    let points = (0..count.div_ceil(4)).map(|_| of_the_julia_set(m, random));
+    let points: Vec<_> = points.collect();
+    start_at(&points, m, count, random)
+}
+
 /// Starts so many climbs, from 1e-4 to 1 limits off the points. Half of them start on the ray that
 /// ended there, before the point.
 pub fn start(m: &Mandelbox, count: usize, random: &mut Random) -> Vec<Climb> {
     let points = of_the_set(m, count.div_ceil(4), random);
+    start_at(&points, m, count, random)
+}
+
+fn start_at(
+    points: &[(DVec3, DVec3)],
+    m: &Mandelbox,
+    count: usize,
+    random: &mut Random,
+) -> Vec<Climb> {
     let off = |i: usize, random: &mut Random| {
         let (set, axis) = points[i / 4];
         let distance = m.fold_limit * 10.0_f64.powf(random.between(-4.0, 0.0));

@@ -5,7 +5,9 @@ use conemarch::formula::DistanceEstimate;
 use conemarch::formula::mandelbox::{Estimate, Mandelbox};
 use glam::DVec3;
 
-use crate::common::climbs::{Climb, climb, largest, of_the_set, settings, start};
+use crate::common::climbs::{
+    Climb, climb, largest, of_the_set, settings, start, start_in_julia_mode,
+};
 use crate::common::random::Random;
 
 /// Iterations after which an estimate in f64 no longer changes.
@@ -16,7 +18,15 @@ const ROUNDED: f64 = 1.0 + 1e-6;
 /// The largest overstep of so many climbs. `radius` is told a centre and its distance from the set.
 fn search(m: &Mandelbox, count: usize, radius: impl Fn(DVec3, f64) -> f64) -> Climb {
     let random = &mut Random::new(77);
-    let mut climbs = start(m, count, random);
+    let climbs = start(m, count, random);
+    search_from(climbs, random, radius)
+}
+
+fn search_from(
+    mut climbs: Vec<Climb>,
+    random: &mut Random,
+    radius: impl Fn(DVec3, f64) -> f64,
+) -> Climb {
     climb(&mut climbs, 40, random, |tried| {
         tried.iter().map(|(p, off)| radius(*p, *off)).collect()
     });
@@ -53,6 +63,61 @@ fn proven_balls_are_empty_in_julia_mode_and_with_a_rotation() {
         let worst = search(&m, 1000, |p, off| evaluator.ball(p, MANY, off).radius);
         assert!(worst.ratio < ROUNDED, "{m:?}: {worst:?}");
     }
+}
+
+/// A ball about a point outside the fixed sphere, which reaches into it: the fold spreads that part.
+#[test]
+fn a_ball_pulled_back_across_the_fixed_sphere_is_empty() {
+    let mut m = Mandelbox {
+        scale: 5.292_22,
+        fold_limit: 7.011_92,
+        min_radius: 0.063_048_8,
+        fixed_radius: 1.0,
+        julia: true,
+        julia_constant: DVec3::new(7.710_814_66, 107.135_507, -42.349_377_6),
+        ..Mandelbox::default()
+    };
+    let p = DVec3::new(14.422_873_290_2, 16.711_312_984_9, 0.678_272_732_855);
+    let q = DVec3::new(14.032_543_322_1, 14.082_448_537_9, 0.014_791_452_701);
+    let (evaluator, off) = (m.evaluator(), p.distance(q));
+    // It is of the set, but for the digits that are written here.
+    let value = evaluator.value(q, MANY).0;
+    assert!(value < 1e-4, "{value}");
+    let ball = evaluator.ball(p, MANY, 1.33 * off).radius;
+    assert!(ball > 0.5 * off && ball < off, "{}", ball / off);
+    // Small inner radii, and constants far out.
+    let random = &mut Random::new(8);
+    let mut closest = 0.0_f64;
+    for i in 0..60 {
+        m.scale = random.between(1.5, 6.0) * if i % 2 == 0 { 1.0 } else { -1.0 };
+        m.fold_limit = random.between(0.5, 8.0);
+        m.min_radius = 10.0_f64.powf(random.between(-2.0, -0.2));
+        m.julia_constant = m.fold_limit * m.scale.abs() * random.cube(3.0);
+        let evaluator = m.evaluator();
+        for trial in [1.1, 1.5] {
+            let ball = |p, off: f64| evaluator.ball(p, MANY, trial * off).radius;
+            let climbs = start_in_julia_mode(&m, 400, random);
+            let worst = search_from(climbs, random, ball);
+            assert!(worst.ratio < ROUNDED, "{m:?}, trial {trial}: {worst:?}");
+            closest = closest.max(worst.ratio);
+        }
+    }
+    assert!(closest > 0.99, "{closest}");
+}
+
+/// A fold with extreme radii spreads a ball over all numbers. No part of it is proven then.
+#[test]
+fn a_ball_that_spreads_beyond_all_numbers_proves_nothing() {
+    let m = Mandelbox {
+        scale: 2.0,
+        fold_limit: 1.0,
+        min_radius: 1e-6,
+        fixed_radius: 1e3,
+        ..Mandelbox::default()
+    };
+    // The origin is of the set.
+    let ball = m.evaluator().ball(DVec3::new(1e-7, 0.0, 0.0), MANY, 1.0);
+    assert!(ball.radius < 1e-7, "{ball:?}");
 }
 
 /// Steps of rays follow the derivative at their start, and a ball fold's factor varies over a step.

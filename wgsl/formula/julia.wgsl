@@ -20,9 +20,11 @@ fn julia_follow(p: real3, most: u32, trial: real) -> real2 {
     while n < most && !fold_ended(z, exit) {
         let f = fold(z);
         let l = sqrt(f.square);
-        // Outside the fixed sphere, the fold bends only what the trial ball has inside.
+        // Outside the fixed sphere, the fold bends only what the trial ball has inside. 1/inverse is
+        // the radius of the trial ball here, which the fold spreads to 1/spread at most.
         let inverse = max((real(1.0) / trial - bend) / w, real(0.0));
-        let inside = real(1.0) - max(l - high, real(0.0)) * inverse;
+        let spread = max(l * inverse - real(1.0), real(0.0)) / high;
+        let inside = real(1.0) - max(l - high, real(0.0)) * spread;
         if f.square >= real(folds.min2) {
             bend += w * max(inside, real(0.0)) / l;
         }

@@ -150,7 +150,10 @@ fn estimate_ball(p: real3, most: u32, trial: real) -> real2 {
         }
         z = fold_next(f, p);
         n += 1u;
-        share = max(share, fold_top(z, p) / (radius + shift));
+        // A radius that was cut off proves nothing.
+        if radius < real(ORBIT_MOST) {
+            share = max(share, fold_top(z, p) / (radius + shift));
+        }
     }
     count_evaluation();
     count_iterations(n);

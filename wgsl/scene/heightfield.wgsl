@@ -23,6 +23,10 @@ struct HeightfieldUniform {
     map: HeightmapUniform,
 }
 
+/// What roundings may take from the square of a sine, and from the growth of a cone.
+const SQUARE_SLACK = 1e-6;
+const GROWTH_SLACK = 4e-7;
+
 /// Windows that are tried in the search of an empty ball.
 override HEIGHTFIELD_SEARCHES: u32;
 /// Weight of the height above the surface in a guess of the free room.
@@ -74,11 +78,16 @@ fn block_distance(p: vec3<f32>) -> f32 {
 /// The way of a cone over the maxima. At t the rays of the cone are within r0 + k t of the axis.
 fn advance(cone: Beam, at: Advance) -> Advance {
     let units = local_units();
+    let axis = to_local(cone.axis);
+    // Unit vectors that differ by k differ by k²/2 along either of them.
+    let along = abs(axis * units);
+    let across = sqrt(max(vec3<f32>(1.0) - along * along, vec3<f32>(0.0)) + SQUARE_SLACK);
+    let growth = cone.k * (across + 0.5 * cone.k * along) + GROWTH_SLACK;
     let own = LocalCone(
         heightfield.eye + to_local(cone.origin),
-        to_local(cone.axis),
+        axis,
         cone.r0 / units + 2.0 * heightfield.slack,
-        cone.k / units,
+        min(growth, vec3<f32>(cone.k)) / units,
         heightfield.slack,
     );
     // Nothing is as far as that.
