@@ -5,6 +5,7 @@ use std::io::{Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
+use std::time::SystemTime;
 
 use anyhow::{Context, Result, anyhow};
 use clap::{Args, ValueHint};
@@ -185,27 +186,23 @@ pub fn run(args: &Animate) -> Result<()> {
         Sink::prepare(video)?;
     }
     let [part, parts] = args.shard.unwrap_or([1, 1]);
-    let plan = |frame: u32| {
-        moment(&film, film.time.beat_of(frame)).with_context(|| format!("frame {frame}"))
-    };
+    let plan = |frame: u32| plan_of(&film, frame);
     // A film that fails does so before its first frame.
     let frames: Vec<u32> = (first..=last).filter(|f| f % parts == part - 1).collect();
-    let plans: Vec<Plan> = frames.iter().map(|f| plan(*f)).collect::<Result<_>>()?;
     // A frame must not take the place of what the film is made from.
     let preset = preset::file(&args.preset).map(|file| ("the preset", file));
     let mut inputs = film.files();
     inputs.extend(preset);
     spared(&[("--video", args.video.as_deref())], &inputs)?;
+    let mut missing = Vec::new();
     for frame in &frames {
-        spared(&[("a frame", Some(&pattern.name(*frame)))], &inputs)?;
+        let name = pattern.name(*frame);
+        spared(&[("a frame", Some(&name))], &inputs)?;
+        if !is_there(&name, &plan(*frame)?, args.depth) {
+            missing.push(*frame);
+        }
     }
-    let missing: Vec<(u32, Plan)> = frames
-        .iter()
-        .copied()
-        .zip(plans)
-        .filter(|(frame, plan)| !is_there(&pattern.name(*frame), plan, args.depth))
-        .collect();
-    render(args, &pattern, &missing, &assets)?;
+    render(args, &film, &pattern, &missing, &assets)?;
     let kept = frames.len() - missing.len();
     let made = counted(missing.len(), "frame");
     say(&match kept {
@@ -218,25 +215,35 @@ pub fn run(args: &Animate) -> Result<()> {
     }
 }
 
+/// The plan of a frame.
+fn plan_of(film: &Plan, frame: u32) -> Result<Plan> {
+    moment(film, film.time.beat_of(frame)).with_context(|| format!("frame {frame}"))
+}
+
 /// Renders and writes the missing frames.
 fn render(
     args: &Animate,
+    film: &Plan,
     pattern: &Pattern,
-    missing: &[(u32, Plan)],
+    missing: &[u32],
     assets: &Assets,
 ) -> Result<()> {
-    let Some((first, plan)) = missing.first() else {
+    let Some(first) = missing.first() else {
         return Ok(());
     };
+    let plan = plan_of(film, *first)?;
+    let stamps = || -> Vec<_> { film.files().iter().map(|(_, file)| changed(file)).collect() };
+    let loaded = stamps();
     let extras = Extras::default();
-    let per_pixel = Format::Png.bytes_per_pixel(Layer::Color, plan, extras);
+    let per_pixel = Format::Png.bytes_per_pixel(Layer::Color, &plan, extras);
     memory::check(&plan.resolved(extras), per_pixel, assets, &args.device)?;
     // A folder that cannot be written is found before the first frame.
     Sink::prepare(&pattern.name(*first))?;
     let (mut executor, who) = Executor::open(&args.device)?;
     say(&format!("rendering on {who}"));
     let mut progress = Reporter::start("rendering");
-    for (done, (frame, plan)) in missing.iter().enumerate() {
+    for (done, frame) in missing.iter().enumerate() {
+        let plan = &plan_of(film, *frame)?;
         let all = counted(missing.len(), "frame");
         let kept = format!("{done} of {all} written; the same command goes on");
         interrupt::keeps(Some(kept.clone()));
@@ -253,6 +260,11 @@ fn render(
         let name = pattern.name(*frame);
         let text = preset::write_beside(plan, &name);
         write_png(to, &picture, depth, &plan.title, &text)?;
+        // Else it would pass for a frame of the new file.
+        if stamps() != loaded {
+            let why = "a file that the preset names has changed; the same command renders the frames before again, too";
+            return Err(anyhow!("{why}")).context(format!("frame {frame}"));
+        }
         let mut results = Results::default();
         results.put(Sink::prepare(&name)?, &content)?;
         results.hand_over()?;
@@ -260,11 +272,26 @@ fn render(
     Ok(())
 }
 
-/// Whether a frame was rendered already: a complete PNG with this plan and these bits, no older than
+/// When a file got its content or its name, as far as the system tells.
+fn changed(path: &Path) -> Option<SystemTime> {
+    let file = fs::metadata(path).ok()?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        use std::time::{Duration, UNIX_EPOCH};
+        // A file that is copied or moved here may keep an older time of its content.
+        let [seconds, rest] = [file.ctime(), file.ctime_nsec()].map(|n| n.max(0) as u64);
+        let since = Duration::from_secs(seconds) + Duration::from_nanos(rest);
+        file.modified().ok().max(Some(UNIX_EPOCH + since))
+    }
+    #[cfg(not(unix))]
+    file.modified().ok()
+}
+
+/// Whether a frame was rendered already: a complete PNG with this plan and these bits, newer than
 /// the files that the plan names.
 fn is_there(path: &Path, plan: &Plan, depth: Option<BitDepth>) -> bool {
-    let written = |path: &Path| fs::metadata(path).and_then(|file| file.modified()).ok();
-    let is_newer = |(_, file): &(_, PathBuf)| written(file) > written(path);
+    let is_newer = |(_, file): &(_, PathBuf)| changed(file) >= changed(path);
     if plan.files().iter().any(is_newer) {
         return false;
     }

@@ -15,6 +15,7 @@ use crate::command::sink::{Results, Sink};
 use crate::gpu::adapters::Choice;
 use crate::measure::truth::cache_folder;
 use crate::preset::{self, Override};
+use crate::preview::screen::MOST_SIDE;
 use crate::preview::window::{self, Options};
 
 /// What `preview` takes.
@@ -25,7 +26,7 @@ pub struct Preview {
     preset: PathBuf,
 
     /// Width and height of the window in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = window_size)]
     size: [u32; 2],
 
     /// Set one value of the preset; may be given again
@@ -45,6 +46,16 @@ pub struct Preview {
     /// Who renders: auto, gpu, software, or an index or part of a name from `devices`
     #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = device)]
     device: Choice,
+}
+
+fn window_size(text: &str) -> Result<[u32; 2], String> {
+    let size = size(text)?;
+    match size.iter().all(|n| *n <= MOST_SIDE) {
+        true => Ok(size),
+        false => Err(format!(
+            "a window has at most {MOST_SIDE}x{MOST_SIDE} pixels; F12 and `render` make larger pictures"
+        )),
+    }
 }
 
 /// Opens a window on a preset.

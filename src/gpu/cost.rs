@@ -21,8 +21,8 @@ const MOST_LONGER: f64 = 4.0;
 const PEAK: f64 = 1.5;
 /// How much of the peak stays at each report.
 const PEAK_STAYS: f64 = 0.95;
-/// Rounds beyond the first that are expected of a stage with a step limit.
-const ROUNDS: u32 = 2;
+/// The most rounds that are encoded ahead.
+const ROUNDS: u32 = 8;
 /// The largest number of workgroups along an axis.
 const MOST_GROUPS: u32 = 65_535;
 
@@ -75,8 +75,11 @@ impl Cost {
         if stage.limit <= stage.chunk {
             return first;
         }
-        // One more, as another view may need it.
-        self.last.map_or(first + ROUNDS, |last| last + 1)
+        // Later rounds visit few cells, each mostly in one dispatch. One more, as another view may
+        // need it.
+        let rounds = (stage.limit - stage.chunk).div_ceil(stage.most.max(1)) + 1;
+        let ahead = self.last.map_or(first + rounds, |last| last + 1);
+        ahead.min(ROUNDS * first + ROUNDS)
     }
 
     /// Learns from a stage that so far took so many dispatches, `ran` of them in a submission, of so

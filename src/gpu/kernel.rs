@@ -44,7 +44,7 @@ enum Kind {
     Picture,
 }
 
-/// The compiled programs of a device. Each is compiled once. Clones share them.
+/// The compiled programs of a device. Each is kept once. Clones share them.
 #[derive(Clone, Default)]
 pub struct Kernels(Arc<Mutex<Compiled>>);
 
@@ -61,7 +61,12 @@ impl Kernels {
         }
         // Other threads go on meanwhile.
         let kernel = Arc::new(Kernel::new(device, program)?);
-        self.lock().push((program.clone(), kernel.clone()));
+        let mut all = self.lock();
+        // Another thread may have been quicker.
+        if let Some((_, kernel)) = all.iter().find(|(p, _)| p == program) {
+            return Ok(kernel.clone());
+        }
+        all.push((program.clone(), kernel.clone()));
         Ok(kernel)
     }
 

@@ -256,6 +256,7 @@ impl Target {
     pub fn serves(
         &self,
         needs: &Needs,
+        arrange: &Arc<Kernel>,
         stages: usize,
         parameters: &Parameters,
         scene: &[DeviceArray],
@@ -266,6 +267,7 @@ impl Target {
         };
         let mut arrays = self.arrays.iter().zip(scene);
         self.generation < u32::MAX >> 3
+            && Arc::ptr_eq(&self.arrange, arrange)
             && self.needs.like(needs, stages)
             && self.parameters.iter().all(same)
             && self.arrays.len() == scene.len()

@@ -131,7 +131,7 @@ settings! {
         ], triples(MOST_STOPS, 0.0, 1.0), "colours of the surface, sRGB; the height picks one, or the orbit trap of a formula: how near the iterated point comes to given shapes";
         palette_cycles: f64 = 1.7, number(0.01, 100.0), "how many times the palette is passed through, in turns forwards and backwards";
         exposure: f64 = 0.0, number(-20.0, 20.0), "brightness in stops; each stop doubles the light" => Tone;
-        palette_space: PaletteSpace = PaletteSpace::Linear, word(&PaletteSpace::WORDS), "in which space the colours of palettes blend: as light, or in Oklab, where equal steps look equally large and blends keep their colour";
+        palette_space: PaletteSpace = PaletteSpace::Oklab, word(&PaletteSpace::WORDS), "in which space the colours of palettes blend: as light, or in Oklab, where equal steps look equally large and blends keep their colour";
         tone: ToneMap = ToneMap::Filmic, word(&ToneMap::WORDS), "how light becomes display values: a filmic curve of each channel, AgX, AgX with more contrast, the neutral map that keeps palettes true, a fit of ACES, or none, which clips" => Tone;
         white: f64 = DAYLIGHT, number(1500.0, 15000.0), "temperature in kelvins of the light that appears white; a lower one makes the picture bluer" => Tone;
         saturation: f64 = 1.0, number(0.0, 4.0), "strength of the colours before the tone map, 0 for grey" => Tone;

@@ -44,6 +44,9 @@ pub const MOST_PIXELS: u32 = 65_536;
 /// The most samples of a pixel. Their sum has the precision of an f32.
 pub const MOST_PIXEL_SAMPLES: u32 = 65_536;
 
+/// Height of the picture whose details are shown by default: that of a large screen.
+const REFERENCE: u32 = 2160;
+
 /// Windows begin at multiples of this many pixels: the widest cell of any cone level.
 pub const WINDOW_STEP: u32 = 64;
 
@@ -118,7 +121,7 @@ impl Plan {
             size: [1280, 720],
             samples: 1,
             until: 0.0,
-            reference: None,
+            reference: Some(REFERENCE),
             background: Background::Sky,
             ppi: None,
             time: Timing::default(),

@@ -14,7 +14,7 @@ use crate::picture::Layer;
 use crate::plan::{Extras, Plan};
 use crate::preset;
 use crate::preview::command::command;
-use crate::preview::document::{Document, unused};
+use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
 use crate::preview::flight::{focus, look, orbit};
 use crate::preview::gui::is_in;
@@ -101,18 +101,6 @@ impl Live {
         Ok(())
     }
 
-    /// Closes the window, or first says that a still is not written yet. Unsaved work is offered at
-    /// the next start.
-    fn close(&mut self) {
-        self.keep_now();
-        self.closed = self.still.is_none() || self.closes;
-        self.closes = true;
-        if !self.closed {
-            let text = "the window closes when the still is written; Ctrl+Q again drops the still";
-            self.tell(text, false);
-        }
-    }
-
     /// Whether the panel may change by an event. Keys that fly and a pointer over the picture change
     /// nothing there, and a painted panel costs a software device as much as a small picture.
     fn concerns_panel(&self, event: &WindowEvent) -> bool {
@@ -132,12 +120,19 @@ impl Live {
             self.held.remove(&code);
             return;
         }
-        // Text is typed into a field of the panel.
-        if self.ctx.text_edit_focused() {
-            return;
-        }
         let keys = self.modifiers.state();
         let ctrl = keys.control_key() || keys.super_key();
+        // Text is typed into a field of the panel. What is done with the whole document takes it in.
+        if self.ctx.text_edit_focused() {
+            let whole = match code {
+                KeyCode::KeyS | KeyCode::KeyQ => ctrl,
+                code => [KeyCode::F1, KeyCode::F11, KeyCode::F12].contains(&code),
+            };
+            if !whole {
+                return;
+            }
+            self.leave_field();
+        }
         match action(code, ctrl, keys.shift_key()) {
             Some(Action::Step(_)) => {}
             Some(_) if repeat => return,
@@ -150,6 +145,14 @@ impl Live {
         }
         if let Some(action) = action(code, ctrl, keys.shift_key()) {
             self.act(action);
+        }
+    }
+
+    /// Takes in what is typed into a field of the panel.
+    pub fn leave_field(&mut self) {
+        if self.ctx.text_edit_focused() {
+            self.leaves_field = true;
+            self.paint();
         }
     }
 
@@ -227,6 +230,12 @@ impl Live {
         if *self.document.saved() != known {
             return;
         }
+        if std::mem::take(&mut self.unread) {
+            let text =
+                "not saved: the file was changed and cannot be read; Ctrl+S again writes over it";
+            self.tell(text, true);
+            return;
+        }
         let before = self.document.clone();
         let plan = with_still(&self.document.plan, before.saved(), self.play.beat);
         // A file that cannot be opened again would be no preset.
@@ -269,9 +278,9 @@ impl Live {
             self.tell(format!("{}: {}", fault.key, fault.why), true);
             return;
         }
-        let path = unused(Path::new("."), &self.document.name, "png");
+        let name = self.document.name.clone();
         let assets = self.pictures.assets.clone();
-        match Still::begin(&mut self.pictures.renderer, plan, &assets, path) {
+        match Still::begin(&mut self.pictures.renderer, plan, &assets, name) {
             Ok(still) => self.still = Some(still),
             Err(why) => self.tell(why, true),
         }

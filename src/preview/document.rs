@@ -136,6 +136,7 @@ impl Document {
 
     /// Takes in the file as another program has written it. It is a step that can be undone.
     pub fn reload(&mut self, plan: Plan) {
+        self.end();
         self.saved = plan.clone();
         self.change(|now| *now = plan);
         self.saved_at = self.past.len();

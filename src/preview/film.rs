@@ -18,12 +18,16 @@ impl Live {
     /// Undoes or redoes a step. Under another playhead than that of the step, its film is shown at
     /// the present one, unless it showed another view than that of the film.
     pub fn go_back(&mut self, step: fn(&mut Document) -> Option<f64>) {
+        // Else the next moment of the film would take the place of what comes back.
+        self.play.playing = false;
         let tracks = self.document.plan.tracks.clone();
         let Some(beat) = step(&mut self.document) else {
             return;
         };
         let plan = &self.document.plan;
         if beat != self.play.beat && (tracks != plan.tracks || shows_film(plan, beat)) {
+            // A view that comes back with other tracks stays a step.
+            self.document.beat = beat;
             self.show_moment();
         }
     }

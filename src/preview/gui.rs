@@ -67,6 +67,9 @@ impl Live {
 
     fn lay_out(&mut self, ui: &mut Ui, asked: &mut Requests) {
         let ctx = ui.ctx().clone();
+        if std::mem::take(&mut self.leaves_field) {
+            ctx.memory_mut(|memory| memory.stop_text_input());
+        }
         let plan = self.document.plan.clone();
         if self.visible.panel {
             let panel = Panel::right("panel")

@@ -9,8 +9,8 @@ use crate::preset;
 use crate::preview::document::{Document, write};
 use crate::preview::play::with_still;
 
-/// The most works that are kept of one document.
-const SLOTS: u32 = 9;
+/// The most works that are kept of one document. Nobody leaves so many.
+const SLOTS: u32 = 1000;
 
 /// The file for a document: named after the preset, and after its folder if it is in a file.
 fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
@@ -27,30 +27,48 @@ fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
         c => format!("%{:x}", u32::from(c)),
     };
     let place: String = place.chars().map(plain).collect();
-    // Work that nobody has taken yet is not written over.
-    let number = match slot.min(SLOTS - 1) {
+    let number = match slot {
         0 => String::new(),
         n => format!("-{n}"),
     };
     folder.join(format!("unsaved-{place}{number}.toml"))
 }
 
-/// Where the unsaved work of a window is kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Slot {
-    /// In none yet: the first free one from this on will do. Another window may have any.
-    After(u32),
-    /// In this one.
-    Own(u32),
+/// Where the unsaved work of a window is kept. A window locks its slot as long as it is open, so that
+/// no other one takes its work for that of a crash.
+#[derive(Debug, Default)]
+pub struct Slot(Option<(u32, Lock)>);
+
+/// A file that is locked as long as this lives.
+#[derive(Debug)]
+struct Lock(
+    PathBuf,
+    #[expect(dead_code, reason = "its end unlocks it")] File,
+);
+
+impl Lock {
+    /// Locks a slot, unless another window has it.
+    fn take(folder: &Path, document: &Document, slot: u32) -> Option<Self> {
+        let path = path(folder, document, slot).with_extension("lock");
+        let file = File::create(&path).ok()?;
+        file.try_lock().ok()?;
+        Some(Self(path, file))
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.0);
+    }
 }
 
 impl Slot {
-    /// The first slot that is not this one's.
-    pub fn next(self) -> u32 {
-        match self {
-            Self::After(slot) => slot,
-            Self::Own(slot) => slot + 1,
-        }
+    /// That of work of an earlier session; `None` if another window has taken it.
+    pub fn of(folder: Option<&Path>, document: &Document, slot: u32) -> Option<Self> {
+        let folder = folder?;
+        let lock = Lock::take(folder, document, slot)?;
+        let is_there = path(folder, document, slot).exists();
+        is_there.then(|| Self(Some((slot, lock))))
     }
 
     /// Keeps the document's plan as it would be saved.
@@ -61,14 +79,14 @@ impl Slot {
         let Some(folder) = folder else { return Ok(()) };
         let _ = fs::create_dir_all(folder);
         let plan = with_still(&document.plan, document.saved(), document.beat);
-        let slot = match *self {
-            Self::Own(slot) => slot,
-            Self::After(first) => {
-                let is_free = |slot: &u32| File::create_new(path(folder, document, *slot)).is_ok();
-                (first..SLOTS).find(is_free).unwrap_or(SLOTS - 1)
-            }
+        // Work that nobody has taken yet is not written over.
+        let mut free = (0..SLOTS).filter(|slot| !path(folder, document, *slot).exists());
+        if self.0.is_none() {
+            self.0 = free.find_map(|slot| Some((slot, Lock::take(folder, document, slot)?)));
+        }
+        let Some((slot, _)) = self.0 else {
+            return Ok(());
         };
-        *self = Self::Own(slot);
         write(
             &path(folder, document, slot),
             preset::write(&plan).as_bytes(),
@@ -77,18 +95,26 @@ impl Slot {
 
     /// Forgets what was kept.
     pub fn drop(&mut self, folder: Option<&Path>, document: &Document) {
-        if let (Some(folder), Self::Own(slot)) = (folder, *self) {
+        if let (Some(folder), Some((slot, _))) = (folder, self.0.take()) {
             let _ = fs::remove_file(path(folder, document, slot));
-            *self = Self::After(slot);
         }
     }
 }
 
-/// What was kept last of a document and differs from it, with its slot.
+/// What was kept last of a document by a window that is gone, and differs from it, with its slot.
 pub fn find(folder: Option<&Path>, document: &Document) -> Option<(u32, Plan)> {
     let folder = folder?;
-    let mut slots = (0..SLOTS).rev();
-    slots.find_map(|slot| Some((slot, read(folder, document, slot)?)))
+    let written =
+        |slot| fs::metadata(path(folder, document, slot)).and_then(|file| file.modified());
+    let slots = (0..SLOTS).filter_map(|slot| Some((written(slot).ok()?, slot)));
+    let mut slots: Vec<_> = slots.collect();
+    slots.sort();
+    let unlocked = |slot: &u32| Lock::take(folder, document, *slot).is_some();
+    let mut slots = slots.into_iter().rev().map(|(_, slot)| slot);
+    slots.find_map(|slot| {
+        let plan = read(folder, document, slot)?;
+        unlocked(&slot).then_some((slot, plan))
+    })
 }
 
 fn read(folder: &Path, document: &Document, slot: u32) -> Option<Plan> {
@@ -127,7 +153,7 @@ mod tests {
         let scene = Scene::all().into_iter().next().expect("a scene");
         let mut document = Document::new("box".into(), None, Plan::new(scene));
         // Two windows.
-        let [mut one, mut two] = [Slot::After(0); 2];
+        let [mut one, mut two] = [Slot::default(), Slot::default()];
         one.keep(at, &document).expect("kept");
         assert_eq!(find(at, &document), None);
         document.plan.camera.fov = 33.0;
@@ -137,13 +163,22 @@ mod tests {
         two.keep(at, &document).expect("kept");
         let newer = document.plan.clone();
         document.plan.camera.fov = 40.0;
+        // What an open window keeps is no unsaved work of another time.
+        assert_eq!(find(at, &document), None);
+        assert!(Slot::of(at, &document, 1).is_none());
+        // One of them crashes, and then the other.
+        let crash = |slot: &mut Slot| *slot = Slot::default();
+        crash(&mut two);
+        assert_eq!(find(at, &document), Some((1, newer.clone())));
+        crash(&mut one);
         assert_eq!(find(at, &document), Some((1, newer)));
-        two.drop(at, &document);
-        assert_eq!(find(at, &document), Some((0, older.clone())));
-        // What is another's is not dropped.
-        two.drop(at, &document);
+        Slot::of(at, &document, 1)
+            .expect("free")
+            .drop(at, &document);
         assert_eq!(find(at, &document), Some((0, older)));
-        one.drop(at, &document);
+        Slot::of(at, &document, 0)
+            .expect("free")
+            .drop(at, &document);
         assert_eq!(find(at, &document), None);
         assert_eq!(find(None, &document), None);
     }

@@ -76,6 +76,8 @@ pub struct Live {
     pub over: Vec<[u32; 4]>,
     /// The same of the panel and the timeline alone, which take every press of a button.
     pub panels: Vec<[u32; 4]>,
+    /// Whether a field of text is left in the next painting of the panel.
+    pub leaves_field: bool,
     /// Whether a value is dragged in the panel or the timeline.
     pub panel_drag: bool,
     /// Whether a number is typed there in a box of colours, whose digits are one step.
@@ -107,6 +109,8 @@ pub struct Live {
     pub ticked: Instant,
     looked: Instant,
     pub preset_file: Watched,
+    /// Whether it holds something that could not be read.
+    pub unread: bool,
     pub shader_files: Watched,
     /// When the first change was made that is not kept yet, and what is kept.
     pub unkept: Option<Instant>,
@@ -163,6 +167,7 @@ impl Live {
             },
             over: Vec::new(),
             panels: Vec::new(),
+            leaves_field: false,
             panel_drag: false,
             panel_typing: false,
             panel_due: Some(now),
@@ -175,7 +180,7 @@ impl Live {
             still: None,
             question: None,
             offered: None,
-            slot: Slot::After(0),
+            slot: Slot::default(),
             meter: Meter::default(),
             taken: None,
             drawn: now,
@@ -184,6 +189,7 @@ impl Live {
             ticked: now,
             looked: now,
             preset_file: Watched::new(options.path.iter().cloned().collect()),
+            unread: false,
             shader_files: options.wgsl.as_ref().map(watched).unwrap_or_default(),
             unkept: None,
             kept: None,
@@ -308,6 +314,7 @@ impl Live {
         self.pictures.moving = moving;
         if let Err(fault) = plan.check() {
             self.warn(format!("{}: {}", fault.key, fault.why));
+            self.go_on_with_still();
             return Ok(());
         }
         if let ShownView::Fronts(n) = self.shot
@@ -347,23 +354,6 @@ impl Live {
             self.paint_soon(if self.play.playing { PLAYING } else { PANEL });
         }
         Ok(())
-    }
-
-    fn go_on_with_still(&mut self) {
-        let Some(said) = self.still.as_mut().and_then(Still::advance) else {
-            return;
-        };
-        self.still = None;
-        match said {
-            Ok(path) => {
-                self.tell(format!("wrote {}", path.display()), false);
-                self.closed |= self.closes;
-            }
-            Err(why) => {
-                self.closes = false;
-                self.tell(why, true);
-            }
-        }
     }
 
     /// Takes in a finished picture.

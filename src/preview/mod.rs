@@ -38,7 +38,7 @@ pub mod play;
 pub mod probe;
 mod question;
 mod reload;
-mod screen;
+pub mod screen;
 mod still;
 mod timeline;
 mod upkeep;

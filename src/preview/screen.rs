@@ -55,6 +55,9 @@ pub enum Shown {
     Again,
 }
 
+/// Width and height of the largest window: WebGPU's default limit, with which devices are opened.
+pub const MOST_SIDE: u32 = 8192;
+
 impl Screen {
     /// Takes over a window's surface.
     ///
@@ -66,6 +69,7 @@ impl Screen {
         adapter: &wgpu::Adapter,
         size: [u32; 2],
     ) -> Result<Self, PreviewError> {
+        let size = size.map(|n| n.min(MOST_SIDE));
         let can = surface.get_capabilities(adapter);
         // Its bytes go to the screen as they are.
         let plain = |f: &&TextureFormat| matches!(**f, TextureFormat::Bgra8Unorm | BYTES);
@@ -162,6 +166,7 @@ impl Screen {
 
     /// Follows the window's size. Both sides are at least 1.
     pub fn resize(&mut self, size: [u32; 2]) {
+        let size = size.map(|n| n.min(MOST_SIDE));
         if size == self.size() {
             return;
         }

@@ -1,7 +1,7 @@
 //! A still that is rendered while the window rests.
 
 use std::io::Cursor;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use crate::gpu::RenderError;
@@ -12,7 +12,7 @@ use crate::picture::frame::Frame;
 use crate::picture::{BitDepth, Layer, Place, Shades, write_png};
 use crate::plan::{Extras, Plan};
 use crate::preset;
-use crate::preview::document::write;
+use crate::preview::document::{unused, write};
 use crate::scene::Assets;
 
 /// Milliseconds of work in each turn of the loop.
@@ -21,7 +21,8 @@ const SLICE_MS: f64 = 20.0;
 /// A still under way.
 pub struct Still {
     plan: Plan,
-    path: PathBuf,
+    /// Its file is called after this.
+    name: String,
     work: Option<Work>,
     written: Option<Receiver<Result<PathBuf, String>>>,
 }
@@ -35,7 +36,7 @@ impl Still {
         renderer: &mut Renderer,
         plan: Plan,
         assets: &Assets,
-        path: PathBuf,
+        name: String,
     ) -> Result<Self, String> {
         if plan.is_stereo() {
             return Err(
@@ -43,12 +44,12 @@ impl Still {
             );
         }
         // A folder that cannot be written is found before the work.
-        Place::prepare(&path).map_err(|e| e.to_string())?;
+        Place::prepare(&unused(Path::new("."), &name, "png")).map_err(|e| e.to_string())?;
         let work = renderer.begin(&plan, assets, Extras::default());
         Ok(Self {
             work: Some(work.map_err(|e| e.to_string())?),
             plan,
-            path,
+            name,
             written: None,
         })
     }
@@ -59,7 +60,7 @@ impl Still {
     /// As [`Still::begin`].
     pub fn again(self, renderer: &mut Renderer, assets: &Assets) -> Result<Self, String> {
         match self.work {
-            Some(_) => Self::begin(renderer, self.plan, assets, self.path),
+            Some(_) => Self::begin(renderer, self.plan, assets, self.name),
             None => Ok(self),
         }
     }
@@ -92,8 +93,10 @@ impl Still {
     /// Writes the file on a thread of its own.
     fn write(&mut self, frame: Frame) {
         let (send, receive) = channel();
-        let (plan, path) = (self.plan.clone(), self.path.clone());
+        let (plan, name) = (self.plan.clone(), self.name.clone());
         std::thread::spawn(move || {
+            // Another window may have written a still since this one began.
+            let path = unused(Path::new("."), &name, "png");
             let mut content = Vec::new();
             let shades = Shades::new(Layer::Color, &frame, &plan);
             let text = preset::write_beside(&plan, &path);

@@ -1,4 +1,4 @@
-//! What keeps a session going: files that change or are opened, unsaved work, and lost devices.
+//! What keeps a session going: files that change or are opened, stills, unsaved work, and lost devices.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -14,6 +14,7 @@ use crate::preview::live::Live;
 use crate::preview::notice::Ends;
 use crate::preview::pictures::Pictures;
 use crate::preview::reload::{Watched, files_in, sources};
+use crate::preview::still::Still;
 
 /// Time after a change until it is kept.
 const KEEP: Duration = Duration::from_secs(1);
@@ -70,6 +71,39 @@ impl Live {
         Ok(())
     }
 
+    /// Goes on with a still, and tells when it is written.
+    pub fn go_on_with_still(&mut self) {
+        let Some(said) = self.still.as_mut().and_then(Still::advance) else {
+            return;
+        };
+        self.still = None;
+        match said {
+            Ok(path) => {
+                self.tell(format!("wrote {}", path.display()), false);
+                self.closed |= self.closes;
+            }
+            Err(why) => {
+                self.closes = false;
+                self.tell(why, true);
+            }
+        }
+    }
+
+    /// Closes the window, or first says that a still is not written yet. Unsaved work is offered at
+    /// the next start.
+    pub fn close(&mut self) {
+        self.leave_field();
+        self.keep_now();
+        // A film that is played leaves a still no time.
+        self.play.playing = false;
+        self.closed = self.still.is_none() || self.closes;
+        self.closes = true;
+        if !self.closed {
+            let text = "the window closes when the still is written; Ctrl+Q again drops the still";
+            self.tell(text, false);
+        }
+    }
+
     /// Takes in files that have changed.
     pub fn look_at_files(&mut self) {
         let folder = self.options.wgsl.as_ref();
@@ -95,7 +129,8 @@ impl Live {
             return;
         };
         let loaded = preset::load(&path, &self.options.sets);
-        if loaded.is_ok() {
+        self.unread = loaded.is_err();
+        if !self.unread {
             self.end_notice(Ends::WithFile);
         }
         match loaded {
@@ -105,7 +140,7 @@ impl Live {
                 if was_changed {
                     // It stays for the next start.
                     self.keep_now();
-                    self.slot = Slot::After(self.slot.next());
+                    self.slot = Slot::default();
                     (self.unkept, self.kept) = (None, None);
                 }
                 self.document.reload(preset.plan);
@@ -124,6 +159,7 @@ impl Live {
     /// After the document was saved: its file is the one to watch.
     pub fn watch_file(&mut self) {
         self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
+        self.unread = false;
         // What was set from outside is in the file now.
         self.options.sets.clear();
         self.drop_kept();
@@ -140,6 +176,9 @@ impl Live {
                 self.visible.timeline = !preset.plan.tracks.is_empty();
                 self.play = Default::default();
                 self.keep_now();
+                self.slot = Slot::default();
+                self.unread = false;
+                self.end_notice(Ends::WithFile);
                 self.document = Document::new(preset.name, path, preset.plan);
                 self.options.sets.clear();
                 self.offer();
@@ -170,24 +209,28 @@ impl Live {
     /// Offers unsaved work that was kept. New work is kept beside it.
     pub fn offer(&mut self) {
         self.offered = keep::find(self.options.kept.as_deref(), &self.document);
-        self.slot = Slot::After(self.offered.as_ref().map_or(0, |(slot, _)| slot + 1));
     }
 
-    /// Takes or discards the work that is offered. What was kept beside it goes in its place.
+    /// Takes or discards the work that is offered. What was changed before is a step, and stays for
+    /// the next start.
     pub fn take_offer(&mut self, restore: bool) {
         let Some((slot, plan)) = self.offered.take() else {
             return;
         };
-        let kept = self.options.kept.as_deref();
-        self.slot.drop(kept, &self.document);
-        self.slot = Slot::Own(slot);
+        let kept = self.options.kept.clone();
+        let Some(mut slot) = Slot::of(kept.as_deref(), &self.document, slot) else {
+            self.tell("another window has taken this work", false);
+            return;
+        };
         if restore {
+            self.keep_now();
             self.document.change(|now| *now = plan);
+            self.slot = slot;
+            self.kept = None;
+            self.keep_now();
         } else {
-            self.slot.drop(kept, &self.document);
+            slot.drop(kept.as_deref(), &self.document);
         }
-        self.kept = None;
-        self.keep_now();
         if !restore && !self.document.is_changed() {
             // There may be older work.
             self.offer();

@@ -192,6 +192,13 @@ fn a_frame_is_made_again_when_a_file_of_its_preset_has_changed() {
     std::thread::sleep(std::time::Duration::from_millis(20));
     heights(5);
     made("2 frames\n");
+    // A file that is moved into its place keeps the older time of its content.
+    fs::rename(folder.0.join("h.png"), folder.0.join("5.png")).unwrap();
+    heights(7);
+    made("2 frames\n");
+    std::thread::sleep(std::time::Duration::from_millis(20));
+    fs::rename(folder.0.join("5.png"), folder.0.join("h.png")).unwrap();
+    made("2 frames\n");
 }
 
 #[test]

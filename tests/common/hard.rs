@@ -47,6 +47,8 @@ fn twice(name: &str, change: impl FnOnce(&mut Mandelbox)) -> [Case; 2] {
 /// A Mandelbox seen from one point towards another, with cones.
 pub fn from(m: Mandelbox, eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Plan {
     let mut plan = Plan::new(boxed(m, None));
+    // The details of its own pixels.
+    plan.reference = None;
     plan.camera = camera(eye, target);
     plan.size = SIZE;
     (plan.march.coarsest, plan.march.shell) = (Some(16), SHELL);

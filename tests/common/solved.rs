@@ -29,6 +29,8 @@ pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
         ..Balls::default()
     });
     let mut plan = Plan::new(distance(formula, None));
+    // The details of its own pixels.
+    plan.reference = None;
     plan.camera = camera.clone();
     plan.march.coarsest = Some(32);
     // Rays that graze a ball creep for hundreds of steps; none is to end half-way.

@@ -42,6 +42,31 @@ fn a_shader_text_changes_and_a_wrong_one_keeps_the_old() {
     assert_eq!((traffic.compilations, traffic.drains), (0, 0));
 }
 
+/// The program that arranges dispatches belongs to no stage.
+#[test]
+fn the_text_of_what_arranges_dispatches_changes_too() {
+    const TEXT: &str = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/wgsl/pass/arrange.wgsl"
+    ));
+    let mut renderer = adapter::open();
+    let plan = sized("mandelbox", [64, 36]);
+    let old = whole(&mut renderer, &plan).unwrap();
+    let line = "return turn.stage.tiles;";
+    for (text, same) in [
+        (TEXT.replace(line, "return turn.stage.tiles / 2u;"), false),
+        (TEXT.into(), true),
+    ] {
+        renderer.sources = Some(Arc::new(move |path| {
+            (path == "wgsl/pass/arrange.wgsl").then(|| text.clone())
+        }));
+        let mut other = plan.clone();
+        other.camera.fov += 1e-9;
+        let made = whole(&mut renderer, &other);
+        assert_eq!(made.is_ok_and(|made| made == old), same);
+    }
+}
+
 /// What a text asks of a device can be wrong too.
 #[test]
 fn a_shader_text_that_no_device_can_run_is_told_with_its_file_and_line() {

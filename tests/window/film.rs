@@ -61,9 +61,20 @@ fn the_timeline_shows_the_frames_of_the_film() {
     let keyed = picture(&folder, "g-19.png");
     view.key("comma");
     view.wait_for("a frame before the key", |shot| *shot == keyed);
+    // The view of the flight stays a step.
     view.key("ctrl+z");
+    view.key("ctrl+z");
+    shows_flown();
     view.key("ctrl+z");
     shows(19);
+    // An undo stops the film, which would go on from there.
+    view.key("Home");
+    let home = view.at_rest();
+    view.key("comma");
+    view.key("space");
+    sleep(Duration::from_millis(500));
+    view.key("ctrl+z");
+    view.wait_for("the view before the film went on", |shot| *shot == home);
     view.close();
 }
 

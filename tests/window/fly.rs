@@ -127,6 +127,13 @@ fn a_typed_number_and_a_dragged_color_are_one_step() {
     view.key("ctrl+z");
     assert_eq!(saved(&view, &folder).scene, first.scene);
     view.key("ctrl+y");
+    // A save takes in what is still typed.
+    view.click(858, 94);
+    sleep(Duration::from_millis(500));
+    view.key("ctrl+a");
+    view.xdotool("type --delay 200 2.45");
+    let typed = saved(&view, &folder);
+    assert!(preset::write(&typed).contains("scale = 2.45"));
     // Its default is that of the preset.
     view.click(927, 94);
     assert_eq!(saved(&view, &folder).scene, first.scene);

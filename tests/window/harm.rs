@@ -80,4 +80,5 @@ fn without_a_display_a_sentence_tells_what_would_do() {
         "{said}"
     );
     folder.fails("preview mandelbox --wgsl none", 2, "`none` is no folder");
+    folder.fails("preview --size 8200x40", 2, "at most 8192x8192 pixels");
 }

@@ -251,7 +251,7 @@ impl FrameRequest {
         if !new.is_empty() && !tell(&compile_first) {
             return Err(RenderError::Cancelled);
         }
-        // A window shows its first picture before all programs are compiled.
+        // Coarse levels are shown before all programs are compiled.
         let warms = !extras.sketched;
         for kernel in all_at_once(&new, compile) {
             let kernel = kernel?;

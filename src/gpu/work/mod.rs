@@ -63,6 +63,7 @@ pub struct Work {
 const _: () = {
     const fn sends<T: Send>() {}
     sends::<Work>();
+    sends::<crate::gpu::render::Renderer>();
 };
 
 impl Work {

@@ -88,7 +88,9 @@ impl Run {
         let device = &shared.device;
         let traffic = frame.traffic.get_or_insert_default();
         match &mut reusable.target {
-            Some(target) if target.serves(&needs, job.colors_at, &parameters, &arrays) => {
+            Some(target)
+                if target.serves(&needs, &arrange, job.colors_at, &parameters, &arrays) =>
+            {
                 // Another program takes another time.
                 let first = job.first_costs();
                 for (stage, (cost, first)) in reusable.costs.iter_mut().zip(first).enumerate() {

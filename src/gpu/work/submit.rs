@@ -63,15 +63,22 @@ impl Run {
                     .dispatch_indirect(&mut compute, &bound.groups, workgroups);
             }
         };
+        let mut estimate = 0.0;
         for unsure in first..self.cursor {
-            dispatch(self.place(unsure).1, 1);
+            let (_, index) = self.place(unsure);
+            dispatch(index, 1);
+            estimate += self.reusable.costs[index].longest_ms(&stages[index]);
         }
         let mut cursor = self.cursor;
-        let mut estimate = 0.0;
+        let mut is_first = true;
         let mut ends_block = false;
-        while estimate < budget_ms {
+        loop {
             let (_, index) = self.place(cursor);
             let each = self.reusable.costs[index].longest_ms(&stages[index]);
+            // Something is done in each submission.
+            if !std::mem::take(&mut is_first) && estimate + each > budget_ms {
+                break;
+            }
             let room = ((budget_ms - estimate) / each).max(1.0) as u32;
             let count = self.dispatches.min(room);
             dispatch(index, count);
