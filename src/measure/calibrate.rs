@@ -233,7 +233,7 @@ mod tests {
     fn plan(shape: Formula) -> Plan {
         let mut plan = Plan::new(shape);
         plan.camera.eye = glam::DVec3::new(3.0, 2.5, -9.0);
-        plan.size = [160, 90];
+        (plan.size, plan.reference) = ([160, 90], None);
         plan
     }
 

@@ -216,6 +216,7 @@ mod tests {
     fn ball(size: [u32; 2]) -> Plan {
         use crate::formula::{Formula, balls::Balls};
         let mut plan = Plan::new(Formula::Balls(Balls::default()));
+        plan.reference = None;
         plan.camera.eye = DVec3::new(0.0, -6.0, 0.3);
         plan.camera.target = DVec3::ZERO;
         plan.size = size;
@@ -305,7 +306,7 @@ mod tests {
     #[test]
     fn errors_are_counted_on_their_side_of_the_thresholds() {
         let mut plan = Plan::new(SlabSettings::default());
-        plan.size = [11, 1];
+        (plan.size, plan.reference) = ([11, 1], None);
         let view = plan.view();
         let grain = |x: u32| view.view_ray([x, 0]).grain;
         let frame = |pixels: &[(State, f64)]| Frame {

@@ -167,6 +167,7 @@ mod tests {
         for formula in Formula::all() {
             let name = formula.name();
             let mut plan = plan(Plan::new(formula));
+            plan.reference = None;
             for (eye, fov) in [
                 (DVec3::new(10.0, -17.0, 12.0), 40.0),
                 (DVec3::new(4.0, -7.0, 9.0), 100.0),
