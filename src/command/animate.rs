@@ -186,7 +186,6 @@ pub fn run(args: &Animate) -> Result<()> {
         Sink::prepare(video)?;
     }
     let [part, parts] = args.shard.unwrap_or([1, 1]);
-    let plan = |frame: u32| plan_of(&film, frame);
     // A film that fails does so before its first frame.
     let frames: Vec<u32> = (first..=last).filter(|f| f % parts == part - 1).collect();
     // A frame must not take the place of what the film is made from.
@@ -198,7 +197,7 @@ pub fn run(args: &Animate) -> Result<()> {
     for frame in &frames {
         let name = pattern.name(*frame);
         spared(&[("a frame", Some(&name))], &inputs)?;
-        if !is_there(&name, &plan(*frame)?, args.depth) {
+        if !is_there(&name, &plan_of(&film, *frame)?, args.depth) {
             missing.push(*frame);
         }
     }
@@ -262,7 +261,7 @@ fn render(
         write_png(to, &picture, depth, &plan.title, &text)?;
         // Else it would pass for a frame of the new file.
         if stamps() != loaded {
-            let why = "a file that the preset names has changed; the same command renders the frames before again, too";
+            let why = "a file that the preset names changed meanwhile; the same command renders all frames from the new one";
             return Err(anyhow!("{why}")).context(format!("frame {frame}"));
         }
         let mut results = Results::default();

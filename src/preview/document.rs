@@ -254,7 +254,6 @@ mod tests {
     #[test]
     fn a_view_that_is_left_by_another_moment_is_a_step() {
         let mut doc = document();
-        let first = doc.plan.clone();
         for (beat, x) in [(0.0, -9.0), (4.0, -12.0)] {
             doc.plan.camera.eye = DVec3::new(0.0, x, 1.0);
             doc.change(|plan| set_view(plan, beat));
@@ -272,7 +271,7 @@ mod tests {
         doc.begin();
         assert_eq!(doc.go_to(3.5), None);
         doc.end();
-        assert!(doc.plan != first);
+        assert_eq!(doc.past.len(), steps + 1);
     }
 
     #[test]
