@@ -345,7 +345,8 @@ impl Live {
             Err(e) => self.failed(e)?,
         }
         self.answer_question();
-        if !self.pictures.is_busy() {
+        // A still takes what pictures leave, and its share of a film that plays.
+        if self.play.playing || !self.pictures.is_busy() {
             self.go_on_with_still();
         }
         if moving || before || self.pictures.is_busy() || self.still.is_some() {

@@ -94,7 +94,7 @@ impl Live {
     pub fn close(&mut self) {
         self.leave_field();
         self.keep_now();
-        // A film that is played leaves a still no time.
+        // Without the film, the still is written sooner.
         self.play.playing = false;
         self.closed = self.still.is_none() || self.closes;
         self.closes = true;

@@ -46,10 +46,10 @@ fn a_still_and_unsaved_work_outlive_the_window() {
 }
 
 #[test]
-fn a_still_is_finished_though_the_window_is_hidden_or_closed() {
+fn a_still_is_finished_though_the_window_is_busy_hidden_or_closed() {
     let (desktop, folder) = (Desktop::new(), Folder::new());
     let large = FILM.replace("[320, 180]", "[2560, 1440]");
-    folder.write("film.toml", large);
+    folder.write("film.toml", large.replace("fps", "loop = true\nfps"));
     let view = Preview::open(&desktop, &folder.0, &format!("film.toml {SIZE}"));
     let has = |name: &str| {
         let began = Instant::now();
@@ -63,9 +63,16 @@ fn a_still_is_finished_though_the_window_is_hidden_or_closed() {
     view.hide(true);
     has("film-1.png");
     view.hide(false);
+    // The film loops, and goes on.
+    view.key("F12");
+    view.key("space");
+    has("film-2.png");
+    let shot = view.shot();
+    view.wait_for("the film", |later| Some(later) != shot.as_ref());
+    view.key("space");
     view.key("F12");
     view.close();
-    has("film-2.png");
+    has("film-3.png");
     folder.done("render film.toml --at 0 -o a.png");
     for name in ["film-1.png", "film-2.png"] {
         assert!(picture(&folder, name) == picture(&folder, "a.png"));
