@@ -10,10 +10,14 @@ use crate::command::arguments::size;
 use crate::command::completions;
 use crate::command::executor::device;
 use crate::command::failure::usage;
+use crate::command::memory;
+use crate::command::output::Format;
 use crate::command::render::loaded;
 use crate::command::sink::{Results, Sink};
 use crate::gpu::adapters::Choice;
 use crate::measure::truth::cache_folder;
+use crate::picture::Layer;
+use crate::plan::{Extras, Plan};
 use crate::preset::{self, Override};
 use crate::preview::screen::MOST_SIDE;
 use crate::preview::window::{self, Options};
@@ -58,6 +62,13 @@ fn window_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
+/// Whether a still, which is no file of bands, fits into memory.
+fn fits(plan: &Plan) -> Result<(), String> {
+    let per_pixel = Format::Png.bytes_per_pixel(Layer::Color, plan, Extras::default());
+    let helps = "save the preset with Ctrl+S and use `conemarch render`, which writes pictures of any size in bands";
+    memory::check_pixels("a still", plan.size, per_pixel, helps).map_err(|e| e.to_string())
+}
+
 /// Opens a window on a preset.
 ///
 /// # Errors
@@ -81,6 +92,7 @@ pub fn run(args: &Preview) -> Result<()> {
         size: args.size,
         wgsl: args.wgsl.clone(),
         kept: cache_folder(),
+        fits,
         started,
     })?;
     if let Some(stats) = stats {
@@ -89,4 +101,19 @@ pub fn run(args: &Preview) -> Result<()> {
         results.hand_over()?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_still_that_does_not_fit_is_refused_with_advice() {
+        let (preset, _) = loaded("mandelbox".as_ref(), &[]).expect("a preset");
+        let mut plan = preset.plan;
+        assert_eq!(fits(&plan), Ok(()));
+        plan.size = [1 << 20, 1 << 20];
+        let why = fits(&plan).expect_err("more than there is");
+        assert!(why.contains("a still") && why.contains("bands"), "{why}");
+    }
 }

@@ -147,6 +147,21 @@ impl Arrays {
         Ok(self.0.clone())
     }
 
+    /// Whether kernels read an array of a scene that is not kept.
+    pub fn lacks(&self, kernels: &[Arc<Kernel>], scene: &[SceneArray]) -> bool {
+        scene.iter().any(|asked| {
+            let reads = kernels.iter().any(|k| k.reads(asked.name));
+            reads && self.kept(asked).is_none()
+        })
+    }
+
+    fn kept(&self, asked: &SceneArray) -> Option<&DeviceArray> {
+        let same = |kept: &&DeviceArray| {
+            kept.name == asked.name && Arc::ptr_eq(&kept.origin, &asked.origin)
+        };
+        self.0.iter().find(same)
+    }
+
     /// As [`Arrays::keep`], without a change of what is kept.
     ///
     /// # Errors
@@ -160,10 +175,7 @@ impl Arrays {
     ) -> Result<Vec<DeviceArray>, RenderError> {
         let mut found = Vec::new();
         for asked in scene {
-            let same = |kept: &DeviceArray| {
-                kept.name == asked.name && Arc::ptr_eq(&kept.origin, &asked.origin)
-            };
-            if let Some(kept) = self.0.iter().find(|kept| same(kept)) {
+            if let Some(kept) = self.kept(&asked) {
                 found.push(kept.clone());
                 continue;
             }

@@ -278,6 +278,10 @@ impl Live {
             self.tell(format!("{}: {}", fault.key, fault.why), true);
             return;
         }
+        if let Err(why) = (self.options.fits)(&plan) {
+            self.tell(why, true);
+            return;
+        }
         let name = self.document.name.clone();
         let assets = self.pictures.assets.clone();
         match Still::begin(&mut self.pictures.renderer, plan, &assets, name) {
@@ -299,7 +303,11 @@ impl Live {
         match command(&name, &self.shown(), layer) {
             Ok(command) => {
                 self.ctx.copy_text(command.clone());
-                self.tell(format!("copied: {command}"), false);
+                let shaders = match self.options.wgsl {
+                    Some(_) => "; it has the program's own shaders, and not those of --wgsl",
+                    None => "",
+                };
+                self.tell(format!("copied: {command}{shaders}"), false);
             }
             Err(why) => self.tell(format!("{why}; Ctrl+S makes a preset of it"), true),
         }

@@ -13,6 +13,7 @@ use winit::window::{Window, WindowId};
 
 use crate::gpu::adapters::{Adapters, Choice};
 use crate::gpu::device::Device;
+use crate::plan::Plan;
 use crate::preset::{Override, Preset};
 use crate::preview::error::PreviewError;
 use crate::preview::live::Live;
@@ -38,6 +39,8 @@ pub struct Options {
     pub wgsl: Option<PathBuf>,
     /// Where unsaved work is kept; `None` to keep none.
     pub kept: Option<PathBuf>,
+    /// Says why a still does not fit into memory, if it does not.
+    pub fits: fn(&Plan) -> Result<(), String>,
     /// When the program was started.
     pub started: Instant,
 }

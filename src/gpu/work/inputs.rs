@@ -9,6 +9,7 @@ use bytemuck::{bytes_of, cast_slice};
 
 use super::job::{Job, Made};
 use super::{Arrays, Shared};
+use crate::base::array::SceneArray;
 use crate::base::shader::{Program, Sources};
 use crate::gpu::array::DeviceArray;
 use crate::gpu::background::all_at_once;
@@ -66,6 +67,13 @@ pub fn marched(plan: &Plan, scene: &AnySolid) -> Parameters {
     own.chain([("view_parameters", view)]).collect()
 }
 
+/// What a scene and its sky bring to the device.
+fn arrays_of(scene: &AnySolid, light: &Light) -> Vec<SceneArray> {
+    let mut all = scene.twin().arrays();
+    all.extend(light.sky.iter().flat_map(|file| file.sky.arrays()));
+    all
+}
+
 /// A frame that is asked for.
 pub struct FrameRequest {
     pub plan: Plan,
@@ -101,7 +109,7 @@ struct Draft {
 }
 
 impl FrameRequest {
-    /// The inputs, unless an asset or a program is missing.
+    /// The inputs, unless an asset, an array on the device or a program is missing.
     ///
     /// # Errors
     /// A scene's settings do not fit.
@@ -114,8 +122,13 @@ impl FrameRequest {
             return Ok(None);
         }
         let draft = self.draft()?;
-        let known = |program| self.shared.kernels.known(program).is_some();
-        if !draft.needs.programs.iter().all(known) || !known(&draft.arrange) {
+        let known = |program| self.shared.kernels.known(program);
+        let kernels: Option<Vec<_>> = draft.needs.programs.iter().map(known).collect();
+        let (Some(kernels), Some(_)) = (kernels, known(&draft.arrange)) else {
+            return Ok(None);
+        };
+        let light = self.light(&draft.scene)?;
+        if arrays.lacks(&kernels, &arrays_of(&draft.scene, &light)) {
             return Ok(None);
         }
         let maps = self.plan.scene.preparations(&self.assets);
@@ -209,6 +222,11 @@ impl FrameRequest {
         })
     }
 
+    fn light(&self, scene: &AnySolid) -> Result<Light, RenderError> {
+        let sky = self.assets.sky(&self.plan).map_err(PrepareError::from)?;
+        Ok(Light::of(&self.plan, scene).with_sky(sky))
+    }
+
     fn complete(
         &self,
         draft: Draft,
@@ -219,8 +237,7 @@ impl FrameRequest {
         let Self { plan, extras, .. } = self;
         let (scene, needs) = (draft.scene, draft.needs);
         let marched = marched(plan, &scene);
-        let sky = self.assets.sky(plan).map_err(PrepareError::from)?;
-        let light = Light::of(plan, &scene).with_sky(sky);
+        let light = self.light(&scene)?;
         let mut look = bytes_of(&light.parameters()).to_vec();
         let mut parameters = marched.clone();
         parameters.push(("look_parameters", look.clone()));
@@ -272,8 +289,7 @@ impl FrameRequest {
         let lock = || self.shared.arrays.lock();
         let mut arrays = arrays.unwrap_or_else(|| lock().unwrap_or_else(PoisonError::into_inner));
         let uploads = &mut traffic.uploads;
-        let mut read = scene.twin().arrays();
-        read.extend(light.sky.iter().flat_map(|file| file.sky.arrays()));
+        let read = arrays_of(&scene, &light);
         let arrays = arrays.keep(device, &kernels, read, uploads)?;
         let color = StageKind::Pass(Pass::Color);
         let colors = draft.kinds.iter().position(|kind| *kind == color);

@@ -292,7 +292,7 @@ impl Run {
         let budget_ms = budget_ms.max(0.0);
         let aim = budget_ms.clamp(1.0, LONGEST_MS);
         let factor = aim / self.reusable.aim_ms;
-        if !(0.5..=2.0).contains(&factor) {
+        if !(1.0..=2.0).contains(&factor) {
             self.reusable.aim_ms = aim;
             let slice = self.slice();
             for cost in &mut self.reusable.costs {

@@ -6,7 +6,7 @@ use crate::pass::layout::CellsHead;
 use crate::pass::turn::{StageKind, Turn};
 use crate::plan::Pass;
 
-use super::run::{Flight, REPORT, Run};
+use super::run::{Flight, REPORT, Run, SUBMISSION_MS};
 
 impl Run {
     /// The first stage of the next submission. The last one may have held too few dispatches of a
@@ -64,19 +64,30 @@ impl Run {
             }
         };
         let mut estimate = 0.0;
+        // Something is done in each submission.
+        let mut is_first = true;
+        let mut room_for = |estimate: f64, each: f64, most: f64| {
+            std::mem::take(&mut is_first) || estimate + each <= most
+        };
+        let mut all_unsure = true;
         for unsure in first..self.cursor {
             let (_, index) = self.place(unsure);
+            let each = self.reusable.costs[index].longest_ms(&stages[index]);
+            all_unsure = room_for(estimate, each, SUBMISSION_MS);
+            if !all_unsure {
+                break;
+            }
             dispatch(index, 1);
-            estimate += self.reusable.costs[index].longest_ms(&stages[index]);
+            estimate += each;
         }
         let mut cursor = self.cursor;
-        let mut is_first = true;
+        let mut most = budget_ms.max(SUBMISSION_MS);
         let mut ends_block = false;
         loop {
             let (_, index) = self.place(cursor);
             let each = self.reusable.costs[index].longest_ms(&stages[index]);
-            // Something is done in each submission.
-            if !std::mem::take(&mut is_first) && estimate + each > budget_ms {
+            let most = std::mem::replace(&mut most, budget_ms);
+            if !all_unsure || !room_for(estimate, each, most) {
                 break;
             }
             let room = ((budget_ms - estimate) / each).max(1.0) as u32;
