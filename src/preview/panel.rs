@@ -168,8 +168,7 @@ fn number(ui: &mut Ui, range: [f64; 2], now: f64, asked: &mut PanelRequest) -> O
     } else {
         let drag = DragValue::new(&mut x).range(low..=high);
         ui.add(
-            // From zero a drag of the panel's width reaches some parts of one.
-            drag.speed(speed(now).max(if low == 0.0 { 1e-3 } else { 0.0 }))
+            drag.speed(speed(now))
                 .update_while_editing(false)
                 .custom_formatter(short),
         )

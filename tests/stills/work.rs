@@ -1,9 +1,8 @@
 //! A render in slices: whatever their sizes, and whatever was begun before, the picture is the
 //! same; and what a frame needs again stays on the device.
 
-use std::time::{Duration, Instant};
-
 use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
 
 use conemarch::base::clock::clock;
 use conemarch::gpu::adapters::{Adapters, Choice};

@@ -81,6 +81,8 @@ impl Run {
             estimate += each;
         }
         let mut cursor = self.cursor;
+        // Behind stages that may be over already, the first dispatch may exceed the budget, or the
+        // device would have nothing to do.
         let mut most = budget_ms.max(SUBMISSION_MS);
         let mut ends_block = false;
         loop {
