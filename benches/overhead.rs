@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use as_sharp::as_sharp;
 use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::{Adapters, Choice};
@@ -19,7 +19,7 @@ use conemarch::gpu::render::Renderer;
 use conemarch::measure::sharpness::{self, sharpness};
 use conemarch::pass::progress::Progress;
 use conemarch::picture::frame::Frame;
-use conemarch::plan::{Extras, Plan};
+use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 use one_sample::one_sample;
@@ -358,8 +358,9 @@ fn frames() -> Result<String> {
 const CANCEL_AFTER: Duration = Duration::from_millis(5);
 const CANCELLED_WITHIN: Duration = Duration::from_millis(2000);
 
-/// How soon a render that another thread cancels returns. Every preset is rendered with its own
-/// samples and light, by a renderer that has rendered nothing yet, and cancelled in each pass.
+/// How soon a render that another thread cancels returns, and its renderer ends, which waits for its
+/// threads. Every preset is rendered with its own samples and light, by a renderer that has rendered
+/// nothing yet, and cancelled in each pass, those that prepare it included.
 fn cancels() -> Result<String> {
     let adapters = Adapters::find();
     let chosen = adapters.choose(&Choice::Auto)?;
@@ -367,19 +368,21 @@ fn cancels() -> Result<String> {
     let mut rows = Vec::new();
     for (name, _) in preset::BUILTIN {
         let mut plan = preset::load(name, &[])?.plan;
+        let mut wanted = prepared_in(adapter, &plan)?;
         plan.size = [1280, 720];
-        let mut times = Vec::new();
-        let mut passes = BTreeSet::new();
         let resolved = plan.resolved(Extras::default());
-        for wanted in resolved.passes(Extras::default()) {
+        wanted.extend(resolved.passes(Extras::default()).iter().map(Pass::name));
+        let mut times: [Vec<f64>; 2] = Default::default();
+        let mut passes = BTreeSet::new();
+        for wanted in wanted {
             let mut renderer = Renderer::new(Device::open(adapter)?);
             let asked: OnceLock<Instant> = OnceLock::new();
             let pass = Mutex::new(String::new());
             let now_in = |name: &str| pass.lock().is_ok_and(|pass| *pass == name);
-            let cancelled = std::thread::scope(|scope| {
+            let returned = std::thread::scope(|scope| {
                 scope.spawn(|| {
                     let begun = Instant::now();
-                    while begun.elapsed() < CANCELLED_WITHIN && !now_in(&wanted.name()) {
+                    while begun.elapsed() < CANCELLED_WITHIN && !now_in(&wanted) {
                         std::thread::sleep(Duration::from_micros(200));
                     }
                     std::thread::sleep(CANCEL_AFTER);
@@ -396,24 +399,54 @@ fn cancels() -> Result<String> {
                 let returned = asked.get().map(Instant::elapsed);
                 rendered.is_err().then_some(returned).flatten()
             });
+            drop(renderer);
             // A render that was over by then cannot be cancelled.
-            if let Some(returned) = cancelled {
-                times.push(returned.as_secs_f64() * 1e3);
+            if let (Some(returned), Some(asked)) = (returned, asked.get()) {
+                for (times, time) in times.iter_mut().zip([returned, asked.elapsed()]) {
+                    times.push(time.as_secs_f64() * 1e3);
+                }
                 passes.extend(pass.into_inner());
             }
         }
-        times.sort_by(f64::total_cmp);
-        let most = times.last().context("no render was cancelled")?;
+        times
+            .iter_mut()
+            .for_each(|times| times.sort_by(f64::total_cmp));
+        let [returned, ended] = &times;
+        let [Some(most), Some(end)] = [returned, ended].map(|times| times.last()) else {
+            bail!("no render of {name} was cancelled");
+        };
         let passes: Vec<String> = passes.into_iter().collect();
         rows.push(format!(
-            "{name} | {} | {:.0} | {most:.0}",
+            "{name} | {} | {:.0} | {most:.0} | {end:.0}",
             passes.join(", "),
-            times[times.len() / 2]
+            returned[returned.len() / 2]
         ));
     }
     Ok(markdown::table(
-        "preset, 1280 x 720 | cancelled in | returned after, median, ms | the longest, ms",
+        "preset, 1280 x 720 | cancelled in | returned after, median, ms | the longest, ms | renderer ended after, the longest, ms",
         "llr",
         rows,
     ))
+}
+
+/// The names of the passes that prepare a preset.
+fn prepared_in(adapter: &wgpu::Adapter, plan: &Plan) -> Result<Vec<String>> {
+    let mut plan = plan.one_sample();
+    plan.size = [64, 36];
+    let passes: Vec<String> = plan
+        .passes(Extras::default())
+        .iter()
+        .map(Pass::name)
+        .collect();
+    let mut names = BTreeSet::new();
+    let watch = &mut |now: &Progress| {
+        names.insert(now.pass.clone());
+        true
+    };
+    let mut renderer = Renderer::new(Device::open(adapter)?);
+    renderer.render(&plan, &Assets::default(), Extras::default(), watch)?;
+    Ok(names
+        .into_iter()
+        .filter(|name| !passes.contains(name))
+        .collect())
 }

@@ -97,16 +97,6 @@ impl Program {
         Self { entry, modules }
     }
 
-    /// The program with the texts of other sources, as far as they have them.
-    pub fn with_sources(mut self, sources: &Sources) -> Self {
-        for module in &mut self.modules {
-            if let Some(text) = sources(module.path) {
-                module.source = text.into();
-            }
-        }
-        self
-    }
-
     /// Whether the program can replace another, whose parameters it gets.
     pub fn serves(&self, other: &Self) -> bool {
         let mut pairs = self.modules.iter().zip(&other.modules);

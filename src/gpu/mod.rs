@@ -5,6 +5,7 @@
 //! - [`kernel`]: compiled programs; [`kernel_error`]: why one cannot be
 //! - [`work`]: a render under way; `target`: its buffers and bound kernels; `cost`: how long
 //!   its dispatches take; `stamps`: the device's own time
+//! - `texts`: shader texts of a host, and what is used while one of them is wrong
 //! - [`pick`]: what there is at a pixel or at a point
 //! - `array`: arrays of the host on the device
 //! - `staging`: read-back without waiting; `collect`: results into the Frame
@@ -37,6 +38,7 @@ mod staging;
 mod stamps;
 mod target;
 mod task_status;
+mod texts;
 #[cfg(feature = "cli")]
 pub mod wait;
 pub mod work;

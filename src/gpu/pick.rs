@@ -14,7 +14,7 @@ use crate::gpu::device::Device;
 use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
 use crate::gpu::task_status::Panicked;
-use crate::gpu::work::{Shared, marched, most_steps, with_texts};
+use crate::gpu::work::{Shared, marched, most_steps};
 use crate::pass::pick::{self, At, PickAnswer, PickQuestion, Picked};
 use crate::plan::Plan;
 use crate::scene::Assets;
@@ -83,8 +83,9 @@ impl SubmittedPick {
     ) -> Result<Self, RenderError> {
         let gpu = &*shared.device;
         let scene = plan.scene.solid(&plan.viewpoint(), assets)?;
-        let program = with_texts(sources, pick::program(&plan.view(), &scene));
-        let kernel = shared.kernels.get(gpu, &program)?;
+        let mut program = [pick::program(&plan.view(), &scene)];
+        shared.texts.put(sources, &mut program);
+        let kernel = shared.kernels.get(gpu, &program[0])?;
         let arrays = shared.arrays.lock();
         let arrays = arrays.unwrap_or_else(PoisonError::into_inner);
         let kernels = std::slice::from_ref(&kernel);

@@ -13,6 +13,7 @@ pub use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
 use crate::gpu::pick::{Pick, SubmittedPick};
 use crate::gpu::target::Needs;
+use crate::gpu::texts::TextHistory;
 use crate::gpu::work::{FrameRequest, Shared, Work};
 use crate::pass::pick::At;
 #[cfg(feature = "cli")]
@@ -60,8 +61,9 @@ pub struct Renderer {
     pub device: Arc<Device>,
     /// How work is cut.
     pub cutting: Cutting,
-    /// Texts of shader files that take precedence, for live editing. The makers of maps do not ask
-    /// for them.
+    /// Texts of shader files that take precedence, for live editing. If programs cannot be made of
+    /// them, one frame fails and says why; until a text changes, those that follow take the last
+    /// texts that worked, or the program's own. The makers of maps do not ask for them.
     pub sources: Option<Sources>,
     shared: Arc<Shared>,
     threads: Threads,
@@ -84,6 +86,7 @@ impl Renderer {
                 kernels: Kernels::default(),
                 arrays: Mutex::default(),
                 reusable: Mutex::default(),
+                texts: TextHistory::default(),
             }),
             threads: Threads::default(),
         }

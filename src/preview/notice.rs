@@ -17,6 +17,8 @@ pub enum Ends {
     WithPicture,
     /// The preset's file, when it can be read again.
     WithFile,
+    /// The shader files, when they are read again.
+    WithShaders,
 }
 
 /// A notice to the user.

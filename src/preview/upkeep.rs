@@ -24,9 +24,21 @@ const MOST_LOSSES: u32 = 3;
 impl Live {
     /// After an error: a lost device is opened again, and everything else is told.
     pub fn failed(&mut self, error: RenderError) -> Result<(), PreviewError> {
-        let RenderError::Device(lost @ DeviceError::Lost { .. }) = error else {
-            self.warn(error.to_string());
-            return Ok(());
+        let lost = match error {
+            RenderError::Device(lost @ DeviceError::Lost { .. }) => lost,
+            RenderError::Kernel(_) if self.options.wgsl.is_some() => {
+                let text = error.to_string();
+                if self.notice.as_ref().is_none_or(|n| n.text != text) {
+                    self.tell_until(text, true, Ends::WithShaders);
+                    // The last shaders that worked make the picture.
+                    self.pictures.again();
+                }
+                return Ok(());
+            }
+            _ => {
+                self.warn(error.to_string());
+                return Ok(());
+            }
         };
         self.keep_now();
         self.losses += 1;

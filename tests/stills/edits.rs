@@ -12,7 +12,7 @@ use super::work::bits;
 use crate::adapter::{self, EVERYTHING};
 
 #[test]
-fn a_shader_text_changes_and_a_wrong_one_keeps_the_old() {
+fn a_shader_text_changes_and_a_wrong_one_is_told_once_and_keeps_the_old() {
     const COLOR: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl/pass/color.wgsl"));
     let mut renderer = adapter::open();
     let plan = sized("mandelbox", [64, 36]);
@@ -34,6 +34,18 @@ fn a_shader_text_changes_and_a_wrong_one_keeps_the_old() {
         error.contains(&format!("wgsl/pass/color.wgsl:{at}: ")),
         "{error}"
     );
+    // The last text that worked stays, in the programs of other plans too.
+    let stays = whole(&mut renderer, &plan).unwrap();
+    assert!(stays != old);
+    let mut foggy = plan.clone();
+    foggy.look.fog = 0.3;
+    let changed = whole(&mut renderer, &foggy).unwrap();
+    // Whoever comes back to a wrong text hears of it again.
+    edit("        let behind = vec3<f32>(7.0);");
+    assert!(whole(&mut renderer, &plan).unwrap() == stays);
+    assert!(whole(&mut renderer, &foggy).unwrap() == changed);
+    edit("        let behind = skye(ray.axis);");
+    assert!(whole(&mut renderer, &foggy).is_err());
     edit(line);
     let frame = renderer.render(&plan, &Assets::default(), EVERYTHING, &mut |_| true);
     let frame = frame.unwrap();

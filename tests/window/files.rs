@@ -241,8 +241,8 @@ fn shaders_are_read_again_and_a_paused_film_stays_paused() {
     for _ in 0..3 {
         view.key("period");
     }
-    folder.done("animate film.toml --set image.size=[640,360] -o f-%02d.png --frames 3..3");
-    let good = picture(&folder, "f-03.png");
+    folder.done("animate film.toml --set image.size=[640,360] -o f-%02d.png --frames 2..3");
+    let [before, good] = ["f-02.png", "f-03.png"].map(|name| picture(&folder, name));
     let is_good = |shot: &Shot| *shot == good;
     view.wait_for("a frame of the film", is_good);
     let edit = |file: &str, from: &str, to: &str| {
@@ -254,14 +254,23 @@ fn shaders_are_read_again_and_a_paused_film_stays_paused() {
     let (tone, store) = ("pass/tone.wgsl", "(bytes) / 255.0");
     // Without red, and the notice is gone.
     edit(tone, store, "(bytes) / 255.0 * vec3<f32>(0.0, 1.0, 1.0)");
-    let mut blue = good.clone();
-    blue.rgb.chunks_exact_mut(3).for_each(|p| p[0] = 0);
-    view.wait_for("the other shader", |shot| *shot == blue);
-    // An error lies over the last good picture.
-    edit(tone, store, "(nothing) / 255.0");
-    view.wait_for("what is wrong", |shot| {
-        *shot != blue && upper(shot, 240) == upper(&blue, 240)
+    let [blue_before, blue] = [before, good.clone()].map(|mut shot| {
+        shot.rgb.chunks_exact_mut(3).for_each(|p| p[0] = 0);
+        shot
     });
+    view.wait_for("the other shader", |shot| *shot == blue);
+    // An error lies over pictures by the last shader that worked.
+    edit(tone, store, "(nothing) / 255.0");
+    for (key, blue) in [
+        (None, &blue),
+        (Some("comma"), &blue_before),
+        (Some("period"), &blue),
+    ] {
+        key.into_iter().for_each(|key| view.key(key));
+        view.wait_for("what is wrong", |shot| {
+            *shot != *blue && upper(shot, 240) == upper(blue, 240)
+        });
+    }
     edit(tone, store, store);
     view.wait_for("the mended shader", is_good);
     // A loop without an end leaves a window that answers. Of the loops that a driver cuts off, pixels

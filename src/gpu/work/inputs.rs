@@ -20,6 +20,7 @@ use crate::gpu::kernel::Kernel;
 use crate::gpu::render::Cutting;
 use crate::gpu::target::{Needs, Parameters};
 use crate::gpu::task_status::TaskStatus;
+use crate::gpu::texts::Texts;
 use crate::heightfield::assets::Preparation;
 #[cfg(not(feature = "cli"))]
 use crate::heightfield::conemap::generate::cpu::generate;
@@ -50,14 +51,6 @@ const MOST_ROUNDS_AT_ONCE: u32 = 60_000;
 pub fn most_steps(scene: &AnySolid) -> u32 {
     let rounds = scene.twin().rounds().saturating_add(1);
     (MOST_ROUNDS_AT_ONCE / rounds).clamp(1, MOST_STEPS_AT_ONCE)
-}
-
-/// A program with the texts of `sources`.
-pub fn with_texts(sources: Option<&Sources>, program: Program) -> Program {
-    match sources {
-        Some(sources) => program.with_sources(sources),
-        None => program,
-    }
 }
 
 /// The parameters of cones and rays by the names of the WGSL variables.
@@ -97,6 +90,24 @@ pub struct FrameInputs {
     pub kernels: Vec<Arc<Kernel>>,
     pub arrange: Arc<Kernel>,
     pub arrays: Vec<DeviceArray>,
+    /// The shader texts of the host in the programs.
+    pub texts: Texts,
+}
+
+/// Why a frame cannot begin.
+pub struct PrepareFailure {
+    pub error: RenderError,
+    /// The shader texts of the host in the programs.
+    pub texts: Texts,
+}
+
+impl<E: Into<RenderError>> From<E> for PrepareFailure {
+    fn from(error: E) -> Self {
+        Self {
+            error: error.into(),
+            texts: Texts::new(),
+        }
+    }
 }
 
 /// The programs of a frame, and what follows from the plan besides.
@@ -106,6 +117,7 @@ struct Draft {
     blocks: Vec<Layout>,
     needs: Needs,
     arrange: Program,
+    texts: Texts,
 }
 
 impl FrameRequest {
@@ -142,7 +154,7 @@ impl FrameRequest {
     /// # Errors
     /// The device fails, a named file cannot be read or does not fit, a cone map cannot be made, a
     /// shader text is wrong, or nobody waits any more. What was compiled and uploaded stays.
-    pub fn prepare(&self, told: &TaskStatus) -> Result<FrameInputs, RenderError> {
+    pub fn prepare(&self, told: &TaskStatus) -> Result<FrameInputs, PrepareFailure> {
         let device = &self.shared.device;
         // Large heights take seconds to make.
         if let Some([w, h]) = self.plan.scene.pattern_size() {
@@ -151,7 +163,10 @@ impl FrameRequest {
         }
         let mut tell = |progress: &Progress| told.tell(progress);
         let maps = self.maps(&mut tell)?;
-        self.complete(self.draft()?, maps, None, &mut tell)
+        let draft = self.draft()?;
+        let texts = draft.texts.clone();
+        self.complete(draft, maps, None, &mut tell)
+            .map_err(|error| PrepareFailure { error, texts })
     }
 
     /// Makes the cone maps on the device. This waits for it.
@@ -200,15 +215,17 @@ impl FrameRequest {
         let shown = extras.shown && fits;
         let some = [shown, shown && extras.sketched, plan.is_adaptive()];
         let kinds = StageKind::all(&plan.passes(*extras), some);
-        let text = |program| with_texts(self.sources.as_ref(), program);
+        let programs = kinds.iter().map(|k| k.program(plan, &scene, *extras));
+        let mut programs: Vec<Program> = [turn::arrange()].into_iter().chain(programs).collect();
+        let texts = self.shared.texts.put(self.sources.as_ref(), &mut programs);
+        let arrange = programs.remove(0);
         let held = self.held.as_ref().filter(|_| extras.held);
-        let program = |kind: &StageKind| {
-            let lean = text(kind.program(plan, &scene, *extras));
+        let program = |lean: Program| {
             let held = held.and_then(|needs| needs.held(&lean));
             held.unwrap_or(lean)
         };
         let needs = Needs {
-            programs: kinds.iter().map(program).collect(),
+            programs: programs.into_iter().map(program).collect(),
             picture: shown.then_some(plan.size),
             // The first block is as large as any.
             layout: blocks[0].clone(),
@@ -218,7 +235,8 @@ impl FrameRequest {
             kinds,
             blocks,
             needs,
-            arrange: text(turn::arrange()),
+            arrange,
+            texts,
         })
     }
 
@@ -338,6 +356,7 @@ impl FrameRequest {
             kernels,
             arrange,
             arrays,
+            texts: draft.texts,
         })
     }
 }

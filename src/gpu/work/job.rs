@@ -31,21 +31,26 @@ pub(in crate::gpu) struct Made {
 }
 
 impl Made {
-    /// The stage of a block from which a frame goes on after a finished one, if it can.
-    pub(super) fn resumes(&self, last: &Self, kinds: &[StageKind]) -> Option<u32> {
+    /// The stage from which a frame of so many visits goes on after a finished one, if it can.
+    pub(super) fn resumes(&self, last: &Self, kinds: &[StageKind], visits: u32) -> Option<u32> {
         let same_rays = Self {
             look: last.look.clone(),
             colors: last.colors.clone(),
             ..self.clone()
         } == *last;
-        // The buffers hold one block.
-        if !same_rays || self.blocks.len() > 1 {
+        // The buffers hold one block, and of its rays those of the last visit.
+        if !same_rays || self.blocks.len() > visits as usize {
             return None;
         }
-        let after = |pass: Pass| kinds.iter().position(|k| *k == StageKind::Pass(pass));
-        let color = after(Pass::Color)?;
-        let same = self.look == last.look && self.colors == last.colors;
-        Some(color as u32 + u32::from(same))
+        let color = kinds
+            .iter()
+            .position(|k| *k == StageKind::Pass(Pass::Color))? as u32;
+        match self.look == last.look && self.colors == last.colors {
+            // The tone decides which tiles end.
+            true if kinds.contains(&StageKind::Judge) => None,
+            true => Some((visits - 1) * kinds.len() as u32 + color + 1),
+            false => (visits == 1).then_some(color),
+        }
     }
 }
 

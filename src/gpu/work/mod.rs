@@ -27,6 +27,7 @@ use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
 use crate::gpu::target::Needs;
 use crate::gpu::task_status::Panicked;
+use crate::gpu::texts::TextHistory;
 #[cfg(feature = "cli")]
 use crate::gpu::wait::read_picture;
 use crate::pass::progress::Progress;
@@ -34,7 +35,8 @@ use crate::pass::progress::Progress;
 use crate::pass::progress::Watch;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::Extras;
-pub(super) use inputs::{FrameInputs, FrameRequest, marched, most_steps, with_texts};
+use inputs::PrepareFailure;
+pub(super) use inputs::{FrameInputs, FrameRequest, marched, most_steps};
 use job::Reusable;
 use run::Run;
 pub use run::SUBMISSION_MS;
@@ -45,6 +47,7 @@ pub(super) struct Shared {
     pub kernels: Kernels,
     pub arrays: Mutex<Arrays>,
     pub reusable: Mutex<Reusable>,
+    pub texts: TextHistory,
 }
 
 /// A render under way on a device. Dropping it cancels it.
@@ -53,7 +56,7 @@ pub struct Work {
     extras: Extras,
     /// What is prepared, until a run begins: for the last plan, and for plans before it, to go back
     /// to if the last one fails.
-    inputs: Vec<Background<Result<FrameInputs, RenderError>>>,
+    inputs: Vec<Background<Result<FrameInputs, PrepareFailure>>>,
     /// The run of the last plan that was prepared.
     run: Option<Run>,
 }
@@ -77,15 +80,21 @@ impl Work {
     }
 
     /// Begins a run in place of the one under way. If it cannot begin, the other one goes on.
-    pub(super) fn start(&mut self, inputs: FrameInputs) -> Result<(), RenderError> {
+    pub(super) fn start(&mut self, mut inputs: FrameInputs) -> Result<(), RenderError> {
+        let texts = std::mem::take(&mut inputs.texts);
         let shelf = self.shared.reusable.lock();
         let mut shelf = shelf.unwrap_or_else(PoisonError::into_inner);
         let reusable = match &mut self.run {
             Some(old) => &mut old.reusable,
             None => &mut *shelf,
         };
-        let mut run = Run::begin(self.shared.clone(), inputs, reusable)?;
+        let begun = Run::begin(self.shared.clone(), inputs, reusable);
         drop(shelf);
+        let mut run = match begun {
+            Ok(run) => run,
+            Err(error) => return Err(self.failed(PrepareFailure { error, texts })),
+        };
+        self.shared.texts.worked(texts);
         if let Some(old) = self.run.as_mut().filter(|_| run.traffic().allocations == 0) {
             old.discard_flights(&mut run.reusable.stagings);
         }
@@ -107,7 +116,7 @@ impl Work {
     /// only the first is kept, which is ready soonest; the threads of the others stop.
     pub(super) fn start_when_ready(
         &mut self,
-        inputs: Background<Result<FrameInputs, RenderError>>,
+        inputs: Background<Result<FrameInputs, PrepareFailure>>,
     ) {
         if self.inputs.len() > 2 {
             self.inputs.drain(1..self.inputs.len() - 1);
@@ -118,7 +127,7 @@ impl Work {
     /// Takes in an answer of the thread that prepares the run.
     fn answered(
         &mut self,
-        answer: Result<Option<Result<FrameInputs, RenderError>>, Panicked>,
+        answer: Result<Option<Result<FrameInputs, PrepareFailure>>, Panicked>,
     ) -> Result<(), RenderError> {
         match answer {
             Ok(None) => Ok(()),
@@ -129,17 +138,25 @@ impl Work {
                 }
                 begun
             }
-            Ok(Some(Err(error))) => {
+            Ok(Some(Err(failure))) => {
                 self.inputs.pop();
                 // On a lost device, programs fail too.
                 self.shared.device.check()?;
-                Err(error)
+                Err(self.failed(failure))
             }
             Err(Panicked) => {
                 self.inputs.pop();
                 Err(RenderError::Panicked)
             }
         }
+    }
+
+    /// Remembers the shader texts of a frame whose programs cannot be.
+    fn failed(&self, failure: PrepareFailure) -> RenderError {
+        if let RenderError::Kernel(_) = failure.error {
+            self.shared.texts.failed(failure.texts);
+        }
+        failure.error
     }
 
     fn receive(&mut self) -> Result<(), RenderError> {

@@ -84,6 +84,7 @@ impl Run {
             kernels,
             arrange,
             arrays,
+            texts: _,
         } = inputs;
         let device = &shared.device;
         let traffic = frame.traffic.get_or_insert_default();
@@ -138,7 +139,8 @@ impl Run {
             delivered: false,
         };
         let last = run.reusable.made.take().filter(|_| run.job.extras.reuse);
-        let first = last.and_then(|last| run.job.made.resumes(&last, &run.job.kinds));
+        let (job, visits) = (&run.job, run.job.visits);
+        let first = last.and_then(|last| job.made.resumes(&last, &job.kinds, visits));
         run.from = first.unwrap_or(0);
         run.reached = run.from;
         let blocks = run.job.made.blocks.len();
