@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use toml::Value;
 use winit::dpi::PhysicalPosition;
-use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
+use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::keyboard::{KeyCode, PhysicalKey};
 use winit::window::Fullscreen;
 
@@ -18,7 +18,7 @@ use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
 use crate::preview::flight::{focus, look, orbit};
 use crate::preview::gui::is_in;
-use crate::preview::input::{Action, Drag, action};
+use crate::preview::input::{Action, Drag, action, shortcut};
 use crate::preview::live::Live;
 use crate::preview::play::{last_key, set_view, with_still};
 use crate::preview::probe;
@@ -84,7 +84,7 @@ impl Live {
                 ..
             } if !is_synthetic || event.state == ElementState::Released => {
                 if let PhysicalKey::Code(code) = event.physical_key {
-                    self.key(code, event.state, event.repeat);
+                    self.key(code, event);
                 }
             }
             WindowEvent::CursorMoved { position, .. } => self.moved(*position),
@@ -115,36 +115,33 @@ impl Live {
         }
     }
 
-    fn key(&mut self, code: KeyCode, state: ElementState, repeat: bool) {
-        if state == ElementState::Released {
-            self.held.remove(&code);
+    fn key(&mut self, place: KeyCode, event: &KeyEvent) {
+        if event.state == ElementState::Released {
+            self.held.remove(&place);
             return;
         }
         let keys = self.modifiers.state();
         let ctrl = keys.control_key() || keys.super_key();
+        let action = match ctrl {
+            true => shortcut(place, &event.logical_key, keys.shift_key()),
+            false => action(place),
+        };
         // Text is typed into a field of the panel. What is done with the whole document takes it in.
         if self.ctx.text_edit_focused() {
-            let whole = match code {
-                KeyCode::KeyS | KeyCode::KeyQ => ctrl,
-                code => [KeyCode::F1, KeyCode::F11, KeyCode::F12].contains(&code),
+            let whole = match action {
+                Some(Action::Save | Action::Quit) => true,
+                Some(Action::Help | Action::FullScreen | Action::Still) => true,
+                _ => false,
             };
             if !whole {
                 return;
             }
             self.leave_field();
         }
-        match action(code, ctrl, keys.shift_key()) {
-            Some(Action::Step(_)) => {}
-            Some(_) if repeat => return,
-            Some(_) => {}
-            None if !ctrl => {
-                self.held.insert(code);
-                return;
-            }
-            None => return,
-        }
-        if let Some(action) = action(code, ctrl, keys.shift_key()) {
-            self.act(action);
+        match action {
+            Some(action) if !event.repeat || matches!(action, Action::Step(_)) => self.act(action),
+            None if !ctrl => _ = self.held.insert(place),
+            _ => {}
         }
     }
 

@@ -1,9 +1,10 @@
-//! What keys and drags mean. Keys are places on the keyboard, so that every layout works.
+//! What keys and drags mean. Keys are places on the keyboard, so that every layout works. With Ctrl, they
+//! are letters, as in other programs.
 
 use std::collections::HashSet;
 
 use glam::DVec3;
-use winit::keyboard::KeyCode;
+use winit::keyboard::{Key, KeyCode};
 
 use crate::picture::Layer;
 use crate::preview::flight::Thrust;
@@ -86,21 +87,40 @@ pub enum Action {
     Quit,
 }
 
-/// What a key that goes down asks for at once.
-pub fn action(key: KeyCode, ctrl: bool, shift: bool) -> Option<Action> {
-    let layer = |layer| Some(Action::Show(ShownView::Layer(layer)));
-    if ctrl {
-        return match key {
-            KeyCode::KeyZ if shift => Some(Action::Redo),
-            KeyCode::KeyZ => Some(Action::Undo),
-            KeyCode::KeyY => Some(Action::Redo),
-            KeyCode::KeyS => Some(Action::Save),
-            KeyCode::KeyC => Some(Action::Copy),
-            KeyCode::KeyK => Some(Action::Overwrite),
-            KeyCode::KeyQ => Some(Action::Quit),
-            _ => None,
-        };
+/// What a key with Ctrl asks for. Layouts of other alphabets have the letters of a US keyboard.
+pub fn shortcut(place: KeyCode, key: &Key, shift: bool) -> Option<Action> {
+    let of_layout = key.to_text().and_then(|text| text.chars().next());
+    let letter = of_layout.filter(char::is_ascii_alphabetic);
+    match letter
+        .or_else(|| of_us_keyboard(place))?
+        .to_ascii_lowercase()
+    {
+        'z' if shift => Some(Action::Redo),
+        'z' => Some(Action::Undo),
+        'y' => Some(Action::Redo),
+        's' => Some(Action::Save),
+        'c' => Some(Action::Copy),
+        'k' => Some(Action::Overwrite),
+        'q' => Some(Action::Quit),
+        _ => None,
     }
+}
+
+fn of_us_keyboard(place: KeyCode) -> Option<char> {
+    match place {
+        KeyCode::KeyZ => Some('z'),
+        KeyCode::KeyY => Some('y'),
+        KeyCode::KeyS => Some('s'),
+        KeyCode::KeyC => Some('c'),
+        KeyCode::KeyK => Some('k'),
+        KeyCode::KeyQ => Some('q'),
+        _ => None,
+    }
+}
+
+/// What a key that goes down without Ctrl asks for at once.
+pub fn action(key: KeyCode) -> Option<Action> {
+    let layer = |layer| Some(Action::Show(ShownView::Layer(layer)));
     match key {
         KeyCode::Tab => Some(Action::Panel),
         KeyCode::KeyT => Some(Action::Timeline),
@@ -155,4 +175,21 @@ pub enum Drag {
     Look,
     /// Turns it about a point.
     Orbit(DVec3),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shortcuts_are_letters_and_else_places() {
+        let shortcut = |place, text: &str| shortcut(place, &Key::Character(text.into()), false);
+        assert_eq!(shortcut(KeyCode::KeyZ, "z"), Some(Action::Undo));
+        // A French keyboard.
+        assert_eq!(shortcut(KeyCode::KeyW, "Z"), Some(Action::Undo));
+        assert_eq!(shortcut(KeyCode::KeyQ, "a"), None);
+        // A Russian one.
+        assert_eq!(shortcut(KeyCode::KeyQ, "й"), Some(Action::Quit));
+        assert_eq!(shortcut(KeyCode::KeyW, "ц"), None);
+    }
 }

@@ -12,21 +12,28 @@ use crate::preview::play::with_still;
 /// The most works that are kept of one document. Nobody leaves so many.
 const SLOTS: u32 = 1000;
 
-/// The file for a document: named after the preset, and after its folder if it is in a file.
-fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
+/// The first line of kept work, before the place of its preset.
+const TITLE: &str = "# unsaved work of ";
+
+/// The place of a document's preset: its file, or the name of a built-in one.
+fn place(document: &Document) -> String {
     // The file may have vanished.
     let whole = |path: &PathBuf| fs::canonicalize(path).or_else(|_| absolute(path)).ok();
-    let place: String = match document.path.as_ref().and_then(whole) {
+    match document.path.as_ref().and_then(whole) {
         Some(path) => path.to_string_lossy().into_owned(),
         None => document.name.clone(),
-    };
+    }
+}
+
+/// The file for a document, named after the place of its preset.
+fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
     // Two places never have one name.
     let plain = |c: char| match c {
         '/' => "_".to_string(),
         c if c.is_alphanumeric() => c.to_string(),
-        c => format!("%{:x}", u32::from(c)),
+        c => format!("%{:x}.", u32::from(c)),
     };
-    let place: String = place.chars().map(plain).collect();
+    let place: String = place(document).chars().map(plain).collect();
     let number = match slot {
         0 => String::new(),
         n => format!("-{n}"),
@@ -49,7 +56,12 @@ struct Lock(
 impl Lock {
     /// Locks a slot, unless another window has it.
     fn take(folder: &Path, document: &Document, slot: u32) -> Option<Self> {
-        let path = path(folder, document, slot).with_extension("lock");
+        Self::beside(&path(folder, document, slot))
+    }
+
+    /// Locks the slot of a file.
+    fn beside(path: &Path) -> Option<Self> {
+        let path = path.with_extension("lock");
         let file = File::create(&path).ok()?;
         file.try_lock().ok()?;
         Some(Self(path, file))
@@ -89,7 +101,7 @@ impl Slot {
         };
         write(
             &path(folder, document, slot),
-            preset::write(&plan).as_bytes(),
+            format!("{TITLE}{}\n{}", place(document), preset::write(&plan)).as_bytes(),
         )
     }
 
@@ -114,6 +126,23 @@ pub fn find(folder: Option<&Path>, document: &Document) -> Option<(u32, Plan)> {
     slots.find_map(|slot| {
         let plan = read(folder, document, slot)?;
         unlocked(&slot).then_some((slot, plan))
+    })
+}
+
+/// The preset of the last work that was kept of another document by a window that is gone.
+pub fn elsewhere(folder: Option<&Path>, document: &Document) -> Option<String> {
+    let files = fs::read_dir(folder?)
+        .ok()?
+        .flatten()
+        .map(|file| file.path());
+    let is_work = |path: &PathBuf| path.extension().is_some_and(|e| e == "toml");
+    let mut files: Vec<_> = files.filter(is_work).collect();
+    files.sort_by_cached_key(|path| fs::metadata(path).and_then(|file| file.modified()).ok());
+    let here = place(document);
+    files.into_iter().rev().find_map(|path| {
+        let text = fs::read_to_string(&path).ok()?;
+        let place = text.lines().next()?.strip_prefix(TITLE)?;
+        (place != here && Lock::beside(&path).is_some()).then(|| place.to_string())
     })
 }
 
@@ -181,5 +210,14 @@ mod tests {
             .drop(at, &document);
         assert_eq!(find(at, &document), None);
         assert_eq!(find(None, &document), None);
+        // Who opens another preset hears of it.
+        let scene = document.plan.scene.clone();
+        let other = Document::new("other".into(), None, Plan::new(scene));
+        assert_eq!(elsewhere(at, &other), None);
+        one.keep(at, &document).expect("kept");
+        assert_eq!(elsewhere(at, &other), None, "its window is open");
+        crash(&mut one);
+        assert_eq!(elsewhere(at, &other), Some("box".into()));
+        assert_eq!(elsewhere(at, &document), None);
     }
 }

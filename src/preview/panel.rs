@@ -154,14 +154,14 @@ fn editor(
 fn number(ui: &mut Ui, range: [f64; 2], now: f64, asked: &mut PanelRequest) -> Option<f64> {
     let [low, high] = range;
     let mut x = now;
-    // A slider over a very large range has no useful places; such numbers are dragged.
-    let response = if high - low <= 1000.0 {
+    // A slider over a large range of both signs has no useful places; such numbers are dragged.
+    let response = if low >= 0.0 || high - low <= 1000.0 {
         let slider = Slider::new(&mut x, low..=high);
         ui.spacing_mut().slider_width = 100.0;
         ui.add(
             slider
                 .logarithmic(is_wide(range))
-                .smallest_positive(low.max(1e-4 * high))
+                .smallest_positive(low.max(1e-4 * high.min(100.0)))
                 .update_while_editing(false)
                 .custom_formatter(short),
         )

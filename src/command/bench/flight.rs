@@ -80,6 +80,8 @@ struct Row {
     full_ms: f64,
     look_ms: f64,
     exposure_ms: f64,
+    /// So long does the device go on at most with a full picture that nobody wants any more.
+    stop_ms: f64,
 }
 
 /// Times the pictures of one preset.
@@ -121,6 +123,21 @@ impl FlightRun<'_> {
             // As the window does.
             sleep(Duration::from_micros(500));
         }
+    }
+
+    /// Milliseconds from the last turn of a picture, which is given up after so many, until the device
+    /// has nothing to do.
+    fn stop(&mut self, plan: &Plan, after_ms: f64) -> Result<f64> {
+        self.pictures.moving = false;
+        self.pictures.want(plan);
+        let began = Instant::now();
+        let mut turn = began;
+        while ms(began) < after_ms {
+            turn = Instant::now();
+            self.pictures.advance()?;
+        }
+        self.pictures.renderer.device.wait()?;
+        Ok(ms(turn))
     }
 
     /// Milliseconds of a render of the plan without a preview.
@@ -223,6 +240,12 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         renders.push(flown.render(plan)?);
     }
     let turn_p99_ms = at(&flown.turns, 0.99);
+    let full_ms = at(&full, 0.5);
+    let mut stop_ms = 0.0_f64;
+    for (i, plan) in plans.iter().step_by(plans.len().div_ceil(EYES)).enumerate() {
+        let after_ms = full_ms * (i as f64 + 0.5) / EYES as f64;
+        stop_ms = stop_ms.max(flown.stop(plan, after_ms)?);
+    }
     flown.time(&still, false)?;
     let look_ms = flown.median(&changed(&|plan, i| plan.look.key += 0.1 * i))?;
     flown.time(&still, false)?;
@@ -240,9 +263,10 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
         memory_mib,
         // The first one allocates.
         render_ms: at(&renders[1..], 0.5),
-        full_ms: at(&full, 0.5),
+        full_ms,
         look_ms,
         exposure_ms,
+        stop_ms,
     })
 }
 
@@ -290,6 +314,7 @@ pub fn run(args: &FlightBench) -> Result<()> {
                 ("full / render", &|r| ratio(r.full_ms / r.render_ms)),
                 ("look / render", &|r| ratio(r.look_ms / r.render_ms)),
                 ("exposure, ms", &|r| whole(r.exposure_ms)),
+                ("stop, ms", &|r| whole(r.stop_ms)),
             ],
         )
         .as_bytes(),
