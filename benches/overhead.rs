@@ -370,7 +370,7 @@ fn cancels() -> Result<String> {
         let mut plan = preset::load(name, &[])?.plan;
         let mut wanted = prepared_in(adapter, &plan)?;
         plan.size = [1280, 720];
-        let resolved = plan.resolved(Extras::default());
+        let resolved = plan.resolved(Extras::default(), &Assets::default());
         wanted.extend(resolved.passes(Extras::default()).iter().map(Pass::name));
         let mut times: [Vec<f64>; 2] = Default::default();
         let mut passes = BTreeSet::new();

@@ -29,10 +29,14 @@ fn main() -> anyhow::Result<()> {
     };
     let mut work = renderer.begin(&plan, &Assets::default(), extras)?;
     // Until the first frame begins, a thread makes maps and compiles programs.
-    while work.picture().is_none() {
+    while work.picture().is_none() && work.poll()?.is_none() {
         std::thread::sleep(Duration::from_millis(10));
         work.advance(0.0)?;
     }
+    anyhow::ensure!(
+        work.picture().is_some(),
+        "the image is larger than a texture of the device"
+    );
     for slice in 0.. {
         work.advance(20.0)?;
         // Waits for the device, as a file needs the picture here. A window would show it there.

@@ -29,7 +29,7 @@ use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
-use conemarch::scene::Scene;
+use conemarch::scene::{Assets, Scene};
 use glam::DVec3;
 
 /// Asserts that no cell of a render claims too much; says how near they bring rays.
@@ -409,12 +409,13 @@ fn passes_do_not_know_what_they_march() {
 }
 
 #[test]
-fn cones_are_left_out_where_a_ray_needs_few_steps() {
+fn cones_are_left_out_where_they_save_few_steps() {
     let levels = |name: &str, settings: &[&str]| {
         let mut settings = settings.to_vec();
         settings.push("march.coarsest=auto");
-        let plan = preset(name, &settings);
-        plan.resolved(Extras::default()).levels().len()
+        let (plan, assets) = (preset(name, &settings), Assets::default());
+        plan.scene.outline(&plan.viewpoint(), &assets).unwrap();
+        plan.resolved(Extras::default(), &assets).levels().len()
     };
     for size in ["image.size=[640, 360]", "image.size=[1280, 720]"] {
         for (name, cones) in [
@@ -422,11 +423,15 @@ fn cones_are_left_out_where_a_ray_needs_few_steps() {
             ("bench-inside", 0),
             ("bench-thin", 4),
             ("mandelbox-gate", 4),
+            ("bricks", 0),
+            ("spikes", 4),
+            ("stones", 4),
             ("terrain", 4),
+            ("valley-mist", 4),
         ] {
             assert_eq!(levels(name, &[size]), cones, "{name}, {size}");
         }
-        // Over heightfields the size alone decides.
+        // In a small picture of heights few rays share a cone.
         assert_eq!(levels("terrain", &["image.size=[160, 90]"]), 0);
         // A mode that is about cones keeps them.
         assert_eq!(levels("bench-far", &[size, "march.mode=proven"]), 0);
@@ -434,10 +439,21 @@ fn cones_are_left_out_where_a_ray_needs_few_steps() {
     }
     // What is asked for stays.
     let plan = preset("bench-far", &["march.coarsest=8"]);
-    assert_eq!(plan.resolved(Extras::default()).levels().len(), 3);
-    // Both executors leave them out.
-    let plan = preset("bench-far", &["march.coarsest=auto", "image.size=[40, 24]"]);
-    for frame in [render(&plan, LEVELS), on_cpu(&plan, LEVELS)] {
-        assert_eq!((frame.levels.len(), frame.passes.len()), (0, 1));
+    assert_eq!(
+        plan.resolved(Extras::default(), &Assets::default())
+            .levels()
+            .len(),
+        3
+    );
+    // Both executors leave them out, also where heights must be made to know.
+    for (name, size) in [
+        ("bench-far", "image.size=[40, 24]"),
+        ("bricks", "image.size=[320, 180]"),
+    ] {
+        let plan = preset(name, &["march.coarsest=auto", size]);
+        for frame in [render(&plan, LEVELS), on_cpu(&plan, LEVELS)] {
+            let marched = frame.passes.iter().filter(|p| p.pass.marches()).count();
+            assert_eq!((frame.levels.len(), marched), (0, 1), "{name}");
+        }
     }
 }

@@ -235,7 +235,12 @@ fn render(
     let loaded = stamps();
     let extras = Extras::default();
     let per_pixel = Format::Png.bytes_per_pixel(Layer::Color, &plan, extras);
-    memory::check(&plan.resolved(extras), per_pixel, assets, &args.device)?;
+    memory::check(
+        &plan.resolved(extras, assets),
+        per_pixel,
+        assets,
+        &args.device,
+    )?;
     // A folder that cannot be written is found before the first frame.
     Sink::prepare(&pattern.name(*first))?;
     let (mut executor, who) = Executor::open(&args.device)?;

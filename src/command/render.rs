@@ -184,7 +184,7 @@ pub fn run(args: &Render) -> Result<()> {
     spared(&outputs[1..], preset.as_slice())?;
     let extras = extras(args, format);
     let per_pixel = format.bytes_per_pixel(args.layer, &plan, extras);
-    let mut largest = plan.resolved(extras).into_owned();
+    let mut largest = plan.resolved(extras, &assets).into_owned();
     largest.window = plan.window.or(bands.map(|bands| bands.block(0)));
     memory::check(&largest, per_pixel, &assets, &args.device)?;
     for note in plan.scene.notes(&assets) {

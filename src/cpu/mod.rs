@@ -75,8 +75,10 @@ pub fn render(
     extras: Extras,
     watch: Watch<'_>,
 ) -> Result<Frame, FrameError> {
-    let plan = &*plan.resolved(extras);
+    let plan = &*plan.resolved(extras, assets);
     let prepared = prepare(plan, assets, &mut generate, clock, watch)?;
+    // Heights decide about cones.
+    let plan = &*plan.resolved(extras, assets);
     let solid = plan.scene.solid(&plan.viewpoint(), assets)?;
     let render = Render {
         plan,

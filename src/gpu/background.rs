@@ -23,11 +23,15 @@ pub fn all_at_once<T: Sync, A: Send>(items: &[T], work: impl Fn(&T) -> A + Sync)
 /// The threads of a renderer. Dropping it waits for them, as a driver may fail if a program ends
 /// while it compiles.
 #[derive(Default)]
-pub struct Threads(Vec<JoinHandle<()>>);
+pub struct Threads(Vec<(Arc<TaskStatus>, JoinHandle<()>)>);
 
 impl Drop for Threads {
     fn drop(&mut self) {
-        for thread in self.0.drain(..) {
+        // Works that are dropped later would tell them too late.
+        for (told, _) in &self.0 {
+            told.cancel();
+        }
+        for (_, thread) in self.0.drain(..) {
             // A panic was noticed by who waited for the answer.
             let _ = thread.join();
         }
@@ -50,11 +54,12 @@ impl<T: Send + 'static> Background<T> {
         let told = Arc::new(TaskStatus::new(first));
         let (send, answer) = channel();
         let own = told.clone();
-        threads.0.retain(|thread| !thread.is_finished());
-        threads.0.push(std::thread::spawn(move || {
+        threads.0.retain(|(_, thread)| !thread.is_finished());
+        let thread = std::thread::spawn(move || {
             // Nobody may wait any more.
             let _ = send.send(work(&own));
-        }));
+        });
+        threads.0.push((told.clone(), thread));
         Self { told, answer }
     }
 

@@ -55,3 +55,15 @@ pub enum KernelError {
         bytes: u64,
     },
 }
+
+impl KernelError {
+    /// The entry point of the program.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Shader(ShaderError::Text { entry, .. })
+            | Self::Refused { entry, .. }
+            | Self::Unbound { entry, .. }
+            | Self::Small { entry, .. } => entry,
+        }
+    }
+}

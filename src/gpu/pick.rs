@@ -16,6 +16,7 @@ use crate::gpu::staging::Staging;
 use crate::gpu::task_status::Panicked;
 use crate::gpu::work::{Shared, marched, most_steps};
 use crate::pass::pick::{self, At, PickAnswer, PickQuestion, Picked};
+use crate::pass::progress::Watch;
 use crate::plan::Plan;
 use crate::scene::Assets;
 
@@ -77,15 +78,23 @@ impl SubmittedPick {
     pub(super) fn new(
         shared: &Shared,
         sources: Option<&Sources>,
-        plan: &Plan,
-        assets: &Assets,
+        (plan, assets): (&Plan, &Assets),
         at: At,
+        tell: Watch<'_>,
     ) -> Result<Self, RenderError> {
         let gpu = &*shared.device;
+        if !plan.scene.has_assets(assets) {
+            let _turn = shared.wait_to_prepare(tell)?;
+            shared.make_maps(plan, assets, tell)?;
+        }
         let scene = plan.scene.solid(&plan.viewpoint(), assets)?;
-        let mut program = [pick::program(&plan.view(), &scene)];
-        shared.texts.put(sources, &mut program);
-        let kernel = shared.kernels.get(gpu, &program[0])?;
+        let mut program = vec![pick::program(&plan.view(), &scene)];
+        let texts = shared.texts.put(sources, &mut program);
+        let kernel = shared.kernels.get(gpu, &program[0]);
+        if let (Err(error), false) = (&kernel, texts.is_empty()) {
+            shared.texts.failed(&program, error);
+        }
+        let kernel = kernel?;
         let arrays = shared.arrays.lock();
         let arrays = arrays.unwrap_or_else(PoisonError::into_inner);
         let kernels = std::slice::from_ref(&kernel);

@@ -13,6 +13,7 @@ pub use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernels;
 use crate::gpu::pick::{Pick, SubmittedPick};
 use crate::gpu::target::Needs;
+use crate::gpu::task_status::TaskStatus;
 use crate::gpu::texts::TextHistory;
 use crate::gpu::work::{FrameRequest, Shared, Work};
 use crate::pass::pick::At;
@@ -63,7 +64,7 @@ pub struct Renderer {
     pub cutting: Cutting,
     /// Texts of shader files that take precedence, for live editing. If programs cannot be made of
     /// them, one frame fails and says why; until a text changes, those that follow take the last
-    /// texts that worked, or the program's own. The makers of maps do not ask for them.
+    /// texts that worked, or else the program's own. The makers of maps do not ask for them.
     pub sources: Option<Sources>,
     shared: Arc<Shared>,
     threads: Threads,
@@ -87,6 +88,7 @@ impl Renderer {
                 arrays: Mutex::default(),
                 reusable: Mutex::default(),
                 texts: TextHistory::default(),
+                preparing: Mutex::default(),
             }),
             threads: Threads::default(),
         }
@@ -142,27 +144,17 @@ impl Renderer {
         assets: &Assets,
         held: Option<Needs>,
     ) -> Result<(), RenderError> {
-        let extras = work.extras();
-        let mut resolved = plan.resolved(extras).into_owned();
-        // Frames that follow each other keep the stages of cones, or a move of the eye would make
-        // buffers and programs. The first picture is of cones too.
-        let rays_alone = (extras.sketched || extras.reuse)
-            && !extras.levels
-            && plan.march.may_drop_cones()
-            && !resolved.march.may_drop_cones();
-        if rays_alone {
-            resolved.march.coarsest = None;
-        }
-        let request = FrameRequest {
-            plan: resolved,
-            rays_alone,
+        let mut request = FrameRequest {
+            plan: plan.clone(),
+            rays_alone: false,
             assets: assets.clone(),
-            extras,
+            extras: work.extras(),
             cutting: self.cutting,
             sources: self.sources.clone(),
             held,
             shared: self.shared.clone(),
         };
+        request.resolve();
         if let Some(inputs) = request.at_once()? {
             return work.start(inputs);
         }
@@ -184,7 +176,10 @@ impl Renderer {
         self.reopen_if_lost()?;
         let (shared, sources) = (self.shared.clone(), self.sources.clone());
         let (plan, assets) = (plan.clone(), assets.clone());
-        let ask = move |_: &_| SubmittedPick::new(&shared, sources.as_ref(), &plan, &assets, at);
+        let ask = move |told: &TaskStatus| {
+            let tell = &mut |progress: &_| told.tell(progress);
+            SubmittedPick::new(&shared, sources.as_ref(), (&plan, &assets), at, tell)
+        };
         let asked = Background::start(&mut self.threads, "pick", ask);
         Ok(Pick::new(self.device.clone(), asked))
     }

@@ -93,14 +93,20 @@ pub struct Stagings {
 }
 
 impl Stagings {
-    /// A buffer of at least so many bytes: the smallest that is free, or a new one.
-    pub fn take(&mut self, device: &Device, bytes: u64) -> Staging {
+    /// How many buffers the submissions of discarded frames still fill.
+    pub fn behind(&mut self) -> usize {
         for staging in std::mem::take(&mut self.discarded) {
             match staging.is_mapped() {
                 true => self.put(staging),
                 false => self.discarded.push(staging),
             }
         }
+        self.discarded.len()
+    }
+
+    /// A buffer of at least so many bytes: the smallest that is free, or a new one.
+    pub fn take(&mut self, device: &Device, bytes: u64) -> Staging {
+        self.behind();
         let size = |i: &usize| self.free[*i].buffer.size();
         let fitting = (0..self.free.len()).filter(|i| size(i) >= bytes);
         match fitting.min_by_key(size) {

@@ -1,11 +1,12 @@
 //! Shader texts of a host, for live editing.
 //!
-//! A text that fails is told once, by the frame that met it. Until the host has another text, frames
-//! take the last one that worked, or else the program's own.
+//! An error of a text is told once. Until the host has another text, frames take the last texts that
+//! worked, or else the program's own.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::base::shader::{Program, Sources};
+use crate::gpu::kernel_error::KernelError;
 
 /// Texts by the paths of their files.
 pub type Texts = Vec<(&'static str, String)>;
@@ -16,47 +17,60 @@ pub struct TextHistory(Mutex<Known>);
 
 #[derive(Default)]
 struct Known {
-    /// The last ones that worked.
+    /// What the host said last of each file.
+    asked: Vec<(&'static str, Option<String>)>,
+    /// The last texts of frames that began.
     worked: Texts,
-    /// Those that failed, together.
-    failed: Texts,
+    /// Programs that cannot be, and the errors that were told of them, since a text changed.
+    failed: Vec<Program>,
+    told: Vec<String>,
 }
 
-fn find<'a>(texts: &'a Texts, path: &str) -> Option<&'a String> {
-    let found = texts.iter().find(|(of, _)| *of == path);
-    found.map(|(_, text)| text)
+fn find<'a, T>(all: &'a [(&str, T)], path: &str) -> Option<&'a T> {
+    let found = all.iter().find(|(of, _)| *of == path);
+    found.map(|(_, one)| one)
+}
+
+/// Programs with the texts of some files.
+fn with_texts(programs: &[Program], texts: &Texts) -> Vec<Program> {
+    let mut programs = programs.to_vec();
+    for module in programs.iter_mut().flat_map(|p| &mut p.modules) {
+        if let Some(text) = find(texts, module.path) {
+            module.source = text.clone().into();
+        }
+    }
+    programs
 }
 
 impl TextHistory {
     /// Puts the texts of a host into programs, and returns those that are used.
-    pub fn put(&self, sources: Option<&Sources>, programs: &mut [Program]) -> Texts {
-        let mut used = Texts::new();
+    pub fn put(&self, sources: Option<&Sources>, programs: &mut Vec<Program>) -> Texts {
         let Some(sources) = sources else {
-            return used;
+            return Texts::new();
         };
         let mut known = self.lock();
-        // They may have failed because of each other.
-        if known
-            .failed
+        let mut asked = Vec::new();
+        for module in programs.iter().flat_map(|p| &p.modules) {
+            if find(&asked, module.path).is_none() {
+                asked.push((module.path, sources(module.path)));
+            }
+        }
+        known.look(&asked);
+        let text = |(path, text): &(&'static str, Option<String>)| Some((*path, text.clone()?));
+        let now: Texts = asked.iter().filter_map(text).collect();
+        let worked = known
+            .worked
             .iter()
-            .any(|(path, text)| sources(path).as_ref() != Some(text))
-        {
-            known.failed.clear();
-        }
-        for module in programs.iter_mut().flat_map(|p| &mut p.modules) {
-            let path = module.path;
-            if find(&used, path).is_none() {
-                let text = match find(&known.failed, path) {
-                    Some(_) => find(&known.worked, path).cloned(),
-                    None => sources(path),
-                };
-                used.extend(text.map(|text| (path, text)));
-            }
-            if let Some(text) = find(&used, path) {
-                module.source = text.clone().into();
+            .filter(|(path, _)| find(&asked, path).is_some());
+        let worked: Texts = worked.cloned().collect();
+        for texts in [now, worked] {
+            let with = with_texts(programs, &texts);
+            if !with.iter().any(|program| known.failed.contains(program)) {
+                *programs = with;
+                return texts;
             }
         }
-        used
+        Texts::new()
     }
 
     /// A frame has begun with these texts.
@@ -68,17 +82,21 @@ impl TextHistory {
         known.worked.extend(texts);
     }
 
-    /// A frame could not begin with these texts.
-    pub fn failed(&self, texts: Texts) {
+    /// One of these programs with texts of a host cannot be. Its error is told now.
+    pub fn failed(&self, programs: &[Program], error: &KernelError) {
         let mut known = self.lock();
-        let new = texts
-            .iter()
-            .filter(|(path, text)| find(&known.worked, path) != Some(text));
-        let new: Texts = new.cloned().collect();
-        // They worked in the programs of another plan.
-        let failed = if new.is_empty() { texts } else { new };
-        known.worked.retain(|of| !failed.contains(of));
-        known.failed.extend(failed);
+        known.fail(programs, error);
+        known.told.push(error.to_string());
+    }
+
+    /// The same, if the error was told before.
+    pub fn skips(&self, programs: &[Program], error: &KernelError) -> bool {
+        let mut known = self.lock();
+        let was_told = known.told.contains(&error.to_string());
+        if was_told {
+            known.fail(programs, error);
+        }
+        was_told
     }
 
     fn lock(&self) -> MutexGuard<'_, Known> {
@@ -87,59 +105,121 @@ impl TextHistory {
     }
 }
 
+impl Known {
+    fn fail(&mut self, programs: &[Program], error: &KernelError) {
+        let wrong = programs.iter().filter(|p| p.entry == error.entry());
+        self.failed.extend(wrong.cloned());
+    }
+
+    /// Takes in what a host says of its files. Once it says something else, all is tried again.
+    fn look(&mut self, asked: &[(&'static str, Option<String>)]) {
+        for (path, text) in asked {
+            match self.asked.iter_mut().find(|(of, _)| of == path) {
+                Some((_, last)) if last == text => {}
+                Some((_, last)) => {
+                    last.clone_from(text);
+                    self.failed.clear();
+                    self.told.clear();
+                }
+                None => self.asked.push((path, text.clone())),
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use std::collections::HashMap;
     use std::sync::Arc;
 
     use super::*;
     use crate::base::shader::Module;
 
-    /// The texts that a program of two modules gets.
-    fn put(history: &TextHistory, texts: &[(&str, &str)]) -> (Texts, [String; 2]) {
-        let own = |(path, text): &(&str, &str)| (path.to_string(), text.to_string());
-        let texts: HashMap<String, String> = texts.iter().map(own).collect();
-        let sources: Sources = Arc::new(move |path: &str| texts.get(path).cloned());
-        let module = |path| Module {
+    /// A program of some files.
+    fn program(paths: &[&'static str]) -> Program {
+        let module = |path: &&'static str| Module {
             path,
             source: "own".into(),
             constants: Vec::new(),
             replaces: None,
         };
-        let mut program = [Program::new("main", ["a", "b"].map(module).into())];
-        let used = history.put(Some(&sources), &mut program);
-        (
-            used,
-            [0, 1].map(|n| program[0].modules[n].source.to_string()),
-        )
+        Program::new("main", paths.iter().map(module).collect())
+    }
+
+    /// A frame of one program, which cannot be with some texts: the texts that it takes, or why
+    /// there is none.
+    fn frame(
+        history: &TextHistory,
+        paths: &[&'static str],
+        host: &[(&'static str, &str)],
+        is_wrong: fn(&[String]) -> bool,
+    ) -> Result<Vec<String>, ()> {
+        let host: Texts = host
+            .iter()
+            .map(|(path, text)| (*path, text.to_string()))
+            .collect();
+        let sources: Sources = Arc::new(move |path: &str| find(&host, path).cloned());
+        loop {
+            let mut programs = vec![program(paths)];
+            let texts = history.put(Some(&sources), &mut programs);
+            let sources = programs[0].modules.iter().map(|m| m.source.to_string());
+            let sources: Vec<String> = sources.collect();
+            if !is_wrong(&sources) {
+                history.worked(texts);
+                return Ok(sources);
+            }
+            assert!(!texts.is_empty(), "the own texts are right");
+            let error = program(paths).fault((paths[0], 1), "wrong".into()).into();
+            if !history.skips(&programs, &error) {
+                history.failed(&programs, &error);
+                return Err(());
+            }
+        }
     }
 
     #[test]
-    fn a_text_that_fails_gives_way_to_the_last_that_worked_until_it_changes() {
-        let history = TextHistory::default();
-        let (used, texts) = put(&history, &[("a", "good")]);
-        assert_eq!(texts, ["good", "own"]);
-        history.worked(used);
+    fn an_error_is_told_once_and_the_last_texts_that_worked_stay() {
+        let (history, paths) = (TextHistory::default(), ["a", "b"]);
+        let next = |host: &[(&'static str, &str)]| {
+            frame(&history, &paths, host, |texts| {
+                texts.contains(&"bad".into())
+            })
+        };
+        let texts = |texts: [&str; 2]| Ok(texts.map(String::from).to_vec());
+        assert_eq!(next(&[("a", "good")]), texts(["good", "own"]));
         let both = [("a", "bad"), ("b", "new")];
-        let (used, texts) = put(&history, &both);
-        assert_eq!(texts, ["bad", "new"]);
-        history.failed(used);
-        assert_eq!(put(&history, &both).1, ["good", "own"]);
-        // The other was right.
-        assert_eq!(
-            put(&history, &[("a", "mended"), both[1]]).1,
-            ["mended", "new"]
-        );
-        // A text that comes again is tried again.
-        assert_eq!(put(&history, &both).1, ["bad", "new"]);
+        assert_eq!(next(&both), Err(()));
+        assert_eq!(next(&both), texts(["good", "own"]));
+        // The other file was right.
+        assert_eq!(next(&[("a", "mended"), both[1]]), texts(["mended", "new"]));
+        assert_eq!(next(&both), Err(()), "it is told again");
     }
 
     #[test]
-    fn a_text_that_works_in_one_program_alone_gives_way_to_the_own() {
+    fn a_text_may_fail_without_another_one_that_comes_later() {
+        let (history, paths) = (TextHistory::default(), ["a", "b"]);
+        let next = |host: &[(&'static str, &str)]| {
+            let lacks_helper = |texts: &[String]| texts[0] == "calls" && texts[1] != "helper";
+            frame(&history, &paths, host, lacks_helper).map(|texts| texts.join(" "))
+        };
+        assert_eq!(next(&[("a", "calls")]), Err(()));
+        assert_eq!(next(&[("a", "calls")]), Ok("own own".into()));
+        assert_eq!(
+            next(&[("a", "calls"), ("b", "helper")]),
+            Ok("calls helper".into())
+        );
+    }
+
+    #[test]
+    fn a_text_that_fails_in_one_plan_stays_in_another() {
         let history = TextHistory::default();
-        let texts = [("a", "for one plan")];
-        history.worked(put(&history, &texts).0);
-        history.failed(put(&history, &texts).0);
-        assert_eq!(put(&history, &texts).1, ["own", "own"]);
+        let host = [("a", "without f"), ("b", "new")];
+        let next = |paths: &[&'static str]| {
+            let needs_f = |texts: &[String]| texts.len() == 2 && texts[0] == "without f";
+            frame(&history, paths, &host, needs_f).map(|texts| texts.join(" "))
+        };
+        assert_eq!(next(&["a"]), Ok("without f".into()));
+        assert_eq!(next(&["a", "b"]), Err(()));
+        assert_eq!(next(&["a", "b"]), Ok("own own".into()));
+        assert_eq!(next(&["a"]), Ok("without f".into()));
     }
 }

@@ -13,7 +13,9 @@ use crate::scene::Assets;
 /// # Errors
 /// A file that the plan names cannot be read or does not fit.
 pub fn explain(plan: &Plan, assets: &Assets, extras: Extras) -> Result<String, PrepareError> {
-    let plan = &*plan.resolved(extras);
+    // Heights decide about cones.
+    plan.scene.outline(&plan.viewpoint(), assets)?;
+    let plan = &*plan.resolved(extras, assets);
     let solid = plan.scene.outline(&plan.viewpoint(), assets)?;
     let mut text = String::new();
     let [w, h] = plan.pixels().size;

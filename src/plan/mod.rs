@@ -29,7 +29,7 @@ use crate::base::named::named_enum;
 use crate::base::view::View;
 use crate::heightfield::assets::Preparation;
 use crate::keys;
-use crate::scene::{AnySolid, Scene, Viewpoint};
+use crate::scene::{AnySolid, Assets, Scene, Viewpoint};
 use crate::time::clock::Timing;
 use crate::time::track::Track;
 use camera::Camera;
@@ -284,8 +284,9 @@ impl Plan {
 
     /// The plan as it is rendered. It has no maps and textures that only colours need, and a single
     /// sample, if these extras ask for no colours. It has no cones where they do not pay, unless the
-    /// plan says how coarse they are.
-    pub fn resolved(&self, extras: Extras) -> Cow<'_, Self> {
+    /// plan says how coarse they are. Over heights that the assets do not have yet, that is decided by
+    /// the size of the picture alone.
+    pub fn resolved(&self, extras: Extras, assets: &Assets) -> Cow<'_, Self> {
         let mut plan = Cow::Borrowed(self);
         if let Some(scene) = self.scene.colorless()
             && extras.depth_only
@@ -298,22 +299,27 @@ impl Plan {
         if extras.depth_only && self.look.sky.path().is_some() {
             plan.to_mut().look.sky = self.look.sky.without();
         }
-        if self.march.may_drop_cones() && !self.cones_pay() {
+        if self.march.may_drop_cones() && !self.cones_pay(assets) {
             plan.to_mut().march.coarsest = Some(1);
         }
         plan
     }
 
     /// Whether cones save more time than they take.
-    fn cones_pay(&self) -> bool {
-        let Some(solid) = self.scene.without_assets(&self.viewpoint()) else {
-            return self.size.map(u64::from).iter().product::<u64>() >= self.scene.cone_pixels();
+    fn cones_pay(&self, assets: &Assets) -> bool {
+        if self.size.map(u64::from).iter().product::<u64>() < self.scene.cone_pixels() {
+            return false;
+        }
+        let Some(solid) = self.scene.probed(&self.viewpoint(), assets) else {
+            return true;
         };
         solid.run(Probe {
             view: self.view(),
             size: self.size,
             // A low limit does not make rays cheap: it leaves more of them unfinished.
             steps: self.march.ray_steps(None).max(march::STEPS),
+            levels: (!self.scene.tells_distance()).then(|| self.march.levels()),
+            has_samples: self.samples > 1,
         })
     }
 }

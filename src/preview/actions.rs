@@ -24,6 +24,7 @@ use crate::preview::play::{last_key, set_view, with_still};
 use crate::preview::probe;
 use crate::preview::still::Still;
 use crate::preview::views::ShownView;
+use crate::scene::Assets;
 
 /// Two clicks within this time are a double click.
 const DOUBLE_CLICK: Duration = Duration::from_millis(350);
@@ -39,9 +40,9 @@ pub const NO_PASSES: &str =
     "this picture has no cone passes: rays alone are faster here (march.coarsest)";
 
 /// The number of cone passes of a plan; 0 of one that does not fit.
-pub fn passes(plan: &Plan) -> usize {
+pub fn passes(plan: &Plan, assets: &Assets) -> usize {
     match plan.check() {
-        Ok(()) => plan.resolved(Extras::default()).levels().len(),
+        Ok(()) => plan.resolved(Extras::default(), assets).levels().len(),
         Err(_) => 0,
     }
 }
@@ -128,12 +129,14 @@ impl Live {
         };
         // Text is typed into a field of the panel. What is done with the whole document takes it in.
         if self.ctx.text_edit_focused() {
-            let whole = match action {
-                Some(Action::Save | Action::Quit) => true,
-                Some(Action::Help | Action::FullScreen | Action::Still) => true,
-                _ => false,
-            };
-            if !whole {
+            let whole = [
+                Action::Save,
+                Action::Quit,
+                Action::Help,
+                Action::FullScreen,
+                Action::Still,
+            ];
+            if !action.is_some_and(|action| whole.contains(&action)) {
                 return;
             }
             self.leave_field();
@@ -204,7 +207,7 @@ impl Live {
 
     /// Shows the passes one by one: the fronts of each cone level, and then the picture.
     fn next_pass(&mut self, by: i32) {
-        let levels = passes(&self.shown());
+        let levels = passes(&self.shown(), &self.pictures.assets);
         if levels == 0 {
             self.tell(NO_PASSES, false);
             return;

@@ -326,7 +326,7 @@ impl Live {
             return Ok(());
         }
         if let ShownView::Fronts(n) = self.shot
-            && n >= passes(&plan)
+            && n >= passes(&plan, &self.pictures.assets)
         {
             self.shot = ShownView::Layer(Layer::Color);
             self.tell(NO_PASSES, false);

@@ -109,7 +109,7 @@ impl SceneSettings for DistanceSettings {
         Some(sharpest.into())
     }
 
-    fn without_assets(&self, from: &Viewpoint) -> Option<AnySolid> {
+    fn probed(&self, from: &Viewpoint, _assets: &Assets) -> Option<AnySolid> {
         Some(AnySolid::Distance(self.seen(from)))
     }
 

@@ -10,9 +10,9 @@ use crate::heightfield::conemap::generate::generator::ShareWatch;
 use crate::heightfield::settings::HeightfieldSettings;
 use crate::heightfield::tracer::settings::{Make, PrepareError};
 
-/// Cones pay from so many pixels on. Over the built-in heightfields, rays alone are faster at
-/// 160 x 90, neither at 320 x 180, and cones at 640 x 360.
-const CONE_PIXELS: u64 = 50_000;
+/// Cones pay from so many pixels on. Over most built-in heightfields, rays alone are faster up to
+/// 320 x 180, and cones from 640 x 360 on.
+const CONE_PIXELS: u64 = 100_000;
 
 impl SceneSettings for HeightfieldSettings {
     fn kind(&self) -> &'static str {
@@ -39,6 +39,12 @@ impl SceneSettings for HeightfieldSettings {
     fn outline(&self, from: &Viewpoint, assets: &Assets) -> Result<AnySolid, PrepareError> {
         let ready = assets.heightfield.outline(self, from.growth())?;
         Ok(AnySolid::Heightfield(Heightfield::of(self, ready, from)))
+    }
+
+    fn probed(&self, from: &Viewpoint, assets: &Assets) -> Option<AnySolid> {
+        let bare = self.colorless().exact();
+        let made = assets.heightfield.has(&bare);
+        made.then(|| bare.solid(from, assets).ok()).flatten()
     }
 
     /// A tracer of the papers can run out of steps anywhere; a fractal's ray does so only next

@@ -69,8 +69,8 @@ pub trait SceneSettings {
         self.solid(from, assets)
     }
 
-    /// The scene, if it needs no assets: a few of its rays tell whether cones pay.
-    fn without_assets(&self, _from: &Viewpoint) -> Option<AnySolid> {
+    /// The scene for a few rays that tell whether cones pay; `None` if heights must be made for that.
+    fn probed(&self, _from: &Viewpoint, _assets: &Assets) -> Option<AnySolid> {
         None
     }
 

@@ -288,7 +288,7 @@ fn a_first_picture_comes_also_where_rays_have_no_cones() {
     for block in [1024, 64] {
         let mut plan = load("mandelbox", &[]).unwrap().plan.one_sample();
         plan.size = [320, 180];
-        assert!(plan.resolved(shown).levels().is_empty());
+        assert!(plan.resolved(shown, &Assets::default()).levels().is_empty());
         let mut renderer = adapter::open();
         renderer.cutting.block = block;
         let mut work = renderer.begin(&plan, &Assets::default(), shown).unwrap();
@@ -323,7 +323,7 @@ fn a_flight_makes_no_buffer_and_compiles_nothing() {
         plan.size = [320, 180];
         let mut choices = BTreeSet::new();
         for nth in 0..30 {
-            choices.insert(plan.resolved(live).levels().len());
+            choices.insert(plan.resolved(live, &Assets::default()).levels().len());
             let frame = renderer.render(&plan, &Assets::default(), live, &mut |_| true);
             let frame = frame.unwrap();
             let traffic = frame.traffic.unwrap();

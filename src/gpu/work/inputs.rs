@@ -13,22 +13,17 @@ use crate::base::array::SceneArray;
 use crate::base::shader::{Program, Sources};
 use crate::gpu::array::DeviceArray;
 use crate::gpu::background::all_at_once;
-#[cfg(feature = "cli")]
-use crate::gpu::conemap::generate::Maker;
-use crate::gpu::error::{RenderError, check_room};
+use crate::gpu::error::RenderError;
 use crate::gpu::kernel::Kernel;
 use crate::gpu::render::Cutting;
 use crate::gpu::target::{Needs, Parameters};
 use crate::gpu::task_status::TaskStatus;
 use crate::gpu::texts::Texts;
 use crate::heightfield::assets::Preparation;
-#[cfg(not(feature = "cli"))]
-use crate::heightfield::conemap::generate::cpu::generate;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::pass::layers;
 use crate::pass::layout::Layout;
 use crate::pass::look::Light;
-use crate::pass::prepare::prepare;
 use crate::pass::progress::{Progress, Watch};
 use crate::pass::tone::tone_steps;
 use crate::pass::tone_map::Tone;
@@ -90,22 +85,23 @@ pub struct FrameInputs {
     pub kernels: Vec<Arc<Kernel>>,
     pub arrange: Arc<Kernel>,
     pub arrays: Vec<DeviceArray>,
-    /// The shader texts of the host in the programs.
+    /// The shader texts of the host, and the programs if they have some.
     pub texts: Texts,
+    pub edited: Vec<Program>,
 }
 
 /// Why a frame cannot begin.
 pub struct PrepareFailure {
     pub error: RenderError,
-    /// The shader texts of the host in the programs.
-    pub texts: Texts,
+    /// The programs, if they have texts of the host.
+    pub programs: Vec<Program>,
 }
 
 impl<E: Into<RenderError>> From<E> for PrepareFailure {
     fn from(error: E) -> Self {
         Self {
             error: error.into(),
-            texts: Texts::new(),
+            programs: Vec::new(),
         }
     }
 }
@@ -118,6 +114,14 @@ struct Draft {
     needs: Needs,
     arrange: Program,
     texts: Texts,
+}
+
+/// The programs of a frame, if they have texts of a host.
+fn edited(texts: &Texts, needs: &Needs, arrange: &Program) -> Vec<Program> {
+    match texts.is_empty() {
+        true => Vec::new(),
+        false => needs.programs.iter().chain([arrange]).cloned().collect(),
+    }
 }
 
 impl FrameRequest {
@@ -149,47 +153,44 @@ impl FrameRequest {
             .map(Some)
     }
 
+    /// Resolves the plan, as far as its assets are there.
+    pub fn resolve(&mut self) {
+        let (plan, extras) = (&self.plan, self.extras);
+        let mut resolved = plan.resolved(extras, &self.assets).into_owned();
+        // Frames that follow each other keep the stages of cones, or a move of the eye would make
+        // buffers and programs. The first picture is of cones too.
+        self.rays_alone = (extras.sketched || extras.reuse)
+            && !extras.levels
+            && plan.march.may_drop_cones()
+            && !resolved.march.may_drop_cones();
+        if self.rays_alone {
+            resolved.march.coarsest = None;
+        }
+        self.plan = resolved;
+    }
+
     /// Loads and makes what is missing.
     ///
     /// # Errors
     /// The device fails, a named file cannot be read or does not fit, a cone map cannot be made, a
     /// shader text is wrong, or nobody waits any more. What was compiled and uploaded stays.
-    pub fn prepare(&self, told: &TaskStatus) -> Result<FrameInputs, PrepareFailure> {
-        let device = &self.shared.device;
-        // Large heights take seconds to make.
-        if let Some([w, h]) = self.plan.scene.pattern_size() {
-            let bytes = 4 * u64::from(w) * u64::from(h);
-            check_room(&device.info.name, "heights", bytes, device.most_bound())?;
-        }
+    pub fn prepare(mut self, told: &TaskStatus) -> Result<FrameInputs, PrepareFailure> {
         let mut tell = |progress: &Progress| told.tell(progress);
-        let maps = self.maps(&mut tell)?;
-        let draft = self.draft()?;
-        let texts = draft.texts.clone();
-        self.complete(draft, maps, None, &mut tell)
-            .map_err(|error| PrepareFailure { error, texts })
-    }
-
-    /// Makes the cone maps on the device. This waits for it.
-    #[cfg(feature = "cli")]
-    fn maps(&self, tell: Watch<'_>) -> Result<Vec<(Preparation, f64)>, PrepareError> {
-        let mut maker = Maker::new(&self.shared.device);
-        maker.kernels = self.shared.kernels.clone();
-        let make = &mut |generator,
-                         heights: &_,
-                         patches,
-                         options: &_,
-                         share: &mut dyn FnMut(f64) -> bool| {
-            maker.generate(generator, heights, patches, options, share)
-        };
-        let clock = self.shared.device.clock;
-        prepare(&self.plan, &self.assets, make, clock, tell)
-    }
-
-    /// Makes the cone maps where nobody may wait for the device.
-    #[cfg(not(feature = "cli"))]
-    fn maps(&self, tell: Watch<'_>) -> Result<Vec<(Preparation, f64)>, PrepareError> {
-        let clock = self.shared.device.clock;
-        prepare(&self.plan, &self.assets, &mut generate, clock, tell)
+        let shared = self.shared.clone();
+        let _turn = shared.wait_to_prepare(&mut tell)?;
+        let maps = shared.make_maps(&self.plan, &self.assets, &mut tell)?;
+        // Heights decide about cones.
+        self.resolve();
+        loop {
+            let draft = self.draft()?;
+            let programs = edited(&draft.texts, &draft.needs, &draft.arrange);
+            match self.complete(draft, maps.clone(), None, &mut tell) {
+                Err(RenderError::Kernel(error))
+                    if !programs.is_empty() && self.shared.texts.skips(&programs, &error) => {}
+                Err(error) => return Err(PrepareFailure { error, programs }),
+                Ok(inputs) => return Ok(inputs),
+            }
+        }
     }
 
     fn draft(&self) -> Result<Draft, RenderError> {
@@ -304,6 +305,7 @@ impl FrameRequest {
         let kernels = needs.programs.iter().map(compile);
         let kernels: Vec<_> = kernels.collect::<Result<_, _>>()?;
         let arrange = compile(&draft.arrange)?;
+        let edited = edited(&draft.texts, &needs, &draft.arrange);
         let lock = || self.shared.arrays.lock();
         let mut arrays = arrays.unwrap_or_else(|| lock().unwrap_or_else(PoisonError::into_inner));
         let uploads = &mut traffic.uploads;
@@ -357,6 +359,7 @@ impl FrameRequest {
             arrange,
             arrays,
             texts: draft.texts,
+            edited,
         })
     }
 }

@@ -8,12 +8,14 @@
 //! next. So neither the length of a submission nor a wrong estimate changes a bit.
 //!
 //! - `inputs`: assets, programs and arrays, before the first submission
+//! - `maps`: the heights and cone maps among them
 //! - `job`: what a run is made of, and what it leaves to the next
 //! - `run`: the submissions of a frame; `submit` encodes them, and `receive` takes in what comes
 //!   back
 
 mod inputs;
 mod job;
+mod maps;
 mod receive;
 mod run;
 mod submit;
@@ -48,6 +50,8 @@ pub(super) struct Shared {
     pub arrays: Mutex<Arrays>,
     pub reusable: Mutex<Reusable>,
     pub texts: TextHistory,
+    /// Locked by the thread that prepares a frame.
+    pub preparing: Mutex<()>,
 }
 
 /// A render under way on a device. Dropping it cancels it.
@@ -81,7 +85,10 @@ impl Work {
 
     /// Begins a run in place of the one under way. If it cannot begin, the other one goes on.
     pub(super) fn start(&mut self, mut inputs: FrameInputs) -> Result<(), RenderError> {
-        let texts = std::mem::take(&mut inputs.texts);
+        let (texts, programs) = (
+            std::mem::take(&mut inputs.texts),
+            std::mem::take(&mut inputs.edited),
+        );
         let shelf = self.shared.reusable.lock();
         let mut shelf = shelf.unwrap_or_else(PoisonError::into_inner);
         let reusable = match &mut self.run {
@@ -92,7 +99,7 @@ impl Work {
         drop(shelf);
         let mut run = match begun {
             Ok(run) => run,
-            Err(error) => return Err(self.failed(PrepareFailure { error, texts })),
+            Err(error) => return Err(self.failed(PrepareFailure { error, programs })),
         };
         self.shared.texts.worked(texts);
         if let Some(old) = self.run.as_mut().filter(|_| run.traffic().allocations == 0) {
@@ -112,15 +119,13 @@ impl Work {
         }
     }
 
-    /// Begins a run once it is prepared. If it fails, the plan before it goes on. Of those before that,
-    /// only the first is kept, which is ready soonest; the threads of the others stop.
+    /// Begins a run once it is prepared. If it fails, the plan before it goes on: the one that runs, or
+    /// else the first that is prepared, which is ready soonest. The threads of the others stop.
     pub(super) fn start_when_ready(
         &mut self,
         inputs: Background<Result<FrameInputs, PrepareFailure>>,
     ) {
-        if self.inputs.len() > 2 {
-            self.inputs.drain(1..self.inputs.len() - 1);
-        }
+        self.inputs.truncate(usize::from(self.run.is_none()));
         self.inputs.push(inputs);
     }
 
@@ -153,8 +158,8 @@ impl Work {
 
     /// Remembers the shader texts of a frame whose programs cannot be.
     fn failed(&self, failure: PrepareFailure) -> RenderError {
-        if let RenderError::Kernel(_) = failure.error {
-            self.shared.texts.failed(failure.texts);
+        if let RenderError::Kernel(error) = &failure.error {
+            self.shared.texts.failed(&failure.programs, error);
         }
         failure.error
     }
@@ -174,7 +179,7 @@ impl Work {
     }
 
     /// The picture as far as it is made: first the fronts of the coarse levels, then colours.
-    /// `None` without [`Extras::shown`], before the first run, or if the image is
+    /// `None` without [`Extras::shown`], before the first run, or if the image has a window or is
     /// larger than a texture can be. Its bytes are those of sRGB, as files hold them.
     pub fn picture(&self) -> Option<&wgpu::Texture> {
         self.run.as_ref()?.picture()
@@ -204,24 +209,36 @@ impl Work {
     /// or a shader text is wrong. The plan before goes on then, if there is one.
     pub fn advance(&mut self, budget_ms: f64) -> Result<(), RenderError> {
         self.receive()?;
-        match &mut self.run {
+        let advanced = match &mut self.run {
             Some(run) => run.advance(budget_ms),
             None => Ok(()),
-        }
+        };
+        self.seen(advanced)
     }
 
     /// The frame, once it is finished, and once only. It never waits.
     ///
     /// # Errors
-    /// Those of [`Work::advance`], or the device left cells unvisited. A work whose first plan has
-    /// failed is cancelled.
+    /// Those of [`Work::advance`], or the device left cells unvisited. A work that has failed and has no
+    /// plan to go back to is cancelled.
     pub fn poll(&mut self) -> Result<Option<Frame>, RenderError> {
         self.receive()?;
         match (&mut self.run, self.inputs.last()) {
             (_, Some(_)) => Ok(None),
-            (Some(run), None) => run.poll(),
+            (Some(run), None) => {
+                let polled = run.poll();
+                self.seen(polled)
+            }
             (None, None) => Err(RenderError::Cancelled),
         }
+    }
+
+    /// A frame whose cells were left out never comes.
+    fn seen<T>(&mut self, answer: Result<T, RenderError>) -> Result<T, RenderError> {
+        if let Err(RenderError::Unwritten { .. }) = answer {
+            self.run = None;
+        }
+        answer
     }
 
     /// Waits for the frame. `watch` is told of each pass that has ended, and of the progress in

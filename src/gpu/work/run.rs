@@ -3,6 +3,8 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::{Arc, PoisonError};
+#[cfg(feature = "cli")]
+use std::time::Duration;
 
 use crate::gpu::cost::LONGEST_MS;
 use crate::gpu::error::RenderError;
@@ -85,6 +87,7 @@ impl Run {
             arrange,
             arrays,
             texts: _,
+            edited: _,
         } = inputs;
         let device = &shared.device;
         let traffic = frame.traffic.get_or_insert_default();
@@ -272,8 +275,8 @@ impl Run {
     }
 
     /// The picture as far as it is made: first the fronts of the coarse levels, then colours.
-    /// `None` without [`Extras::shown`], or if the image is larger than a texture can be. Its
-    /// bytes are those of sRGB, as files hold them.
+    /// `None` without [`Extras::shown`], or if the image has a window or is larger than a texture can
+    /// be. Its bytes are those of sRGB, as files hold them.
     pub fn picture(&self) -> Option<&wgpu::Texture> {
         self.reusable.target.as_ref()?.shared.picture.as_ref()
     }
@@ -309,7 +312,9 @@ impl Run {
     /// Submits about so many milliseconds of work, if there is room.
     pub(super) fn fill(&mut self, budget_ms: f64) {
         let mut left = budget_ms;
-        while left > 0.0 && self.flights.len() < IN_FLIGHT && self.cursor < self.end() {
+        // What was submitted of another plan comes first.
+        let room = IN_FLIGHT.saturating_sub(self.reusable.stagings.behind());
+        while left > 0.0 && self.flights.len() < room && self.cursor < self.end() {
             left -= self.submit(left.min(SUBMISSION_MS));
         }
     }
@@ -368,6 +373,10 @@ impl Run {
     #[cfg(feature = "cli")]
     pub fn wait(&self) -> Result<(), RenderError> {
         let has_room = self.flights.len() < IN_FLIGHT && self.cursor < self.end();
+        if self.flights.is_empty() {
+            // The device runs what was submitted of another plan.
+            std::thread::sleep(Duration::from_millis(1));
+        }
         if let Some(flight) = self.flights.front().filter(|_| !has_room) {
             let device = &self.shared.device;
             device.wait_a_moment(flight.index.clone())?;
