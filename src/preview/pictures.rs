@@ -21,7 +21,7 @@ use crate::scene::Assets;
 /// begins, and a drawing of the window waits for it.
 const SLICE_MS: f64 = 5.0;
 /// The same of full pictures. Small slices cost them time.
-const FULL_SLICE_MS: f64 = 14.0;
+const FULL_SLICE_MS: f64 = 9.0;
 /// The time that a small picture should take, in milliseconds. Below the first it becomes larger,
 /// above the second smaller.
 const AIM_MS: [f64; 2] = [11.0, 36.0];

@@ -29,6 +29,7 @@ mod paths;
 mod samples;
 mod shafts;
 mod sky;
+mod slow_maps;
 mod tone;
 mod unhurried;
 mod until;

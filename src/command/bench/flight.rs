@@ -125,19 +125,17 @@ impl FlightRun<'_> {
         }
     }
 
-    /// Milliseconds from the last turn of a picture, which is given up after so many, until the device
-    /// has nothing to do.
+    /// Milliseconds from giving up a picture, after so many, until the device has nothing to do.
     fn stop(&mut self, plan: &Plan, after_ms: f64) -> Result<f64> {
         self.pictures.moving = false;
         self.pictures.want(plan);
         let began = Instant::now();
-        let mut turn = began;
         while ms(began) < after_ms {
-            turn = Instant::now();
             self.pictures.advance()?;
         }
+        let given_up = Instant::now();
         self.pictures.renderer.device.wait()?;
-        Ok(ms(turn))
+        Ok(ms(given_up))
     }
 
     /// Milliseconds of a render of the plan without a preview.
