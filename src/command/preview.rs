@@ -83,6 +83,14 @@ pub fn run(args: &Preview) -> Result<()> {
             "--wgsl `{folder}` is no folder; copy wgsl/ of the sources"
         )));
     }
+    if let Some(inner) = args.wgsl.as_ref().map(|folder| folder.join("wgsl"))
+        && inner.is_dir()
+    {
+        return Err(usage(format!(
+            "--wgsl names a folder like wgsl/ itself; try --wgsl {}",
+            inner.display()
+        )));
+    }
     let stats = args.stats.as_deref().map(Sink::prepare).transpose()?;
     let figures = window::run(Options {
         preset,

@@ -184,6 +184,12 @@ impl Renderer {
         Ok(Pick::new(self.device.clone(), asked))
     }
 
+    /// The last error of [`Renderer::sources`], as long as no text that was asked for has changed since.
+    /// Frames are made of other texts meanwhile.
+    pub fn shader_error(&self) -> Option<String> {
+        self.shared.texts.error()
+    }
+
     fn reopen_if_lost(&mut self) -> Result<(), RenderError> {
         #[cfg(feature = "cli")]
         if self.device.check_well().is_err() && self.device.is_opened_here() {

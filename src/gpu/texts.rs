@@ -99,6 +99,11 @@ impl TextHistory {
         was_told
     }
 
+    /// The last error that was told, if no text has changed since.
+    pub fn error(&self) -> Option<String> {
+        self.lock().told.last().cloned()
+    }
+
     fn lock(&self) -> MutexGuard<'_, Known> {
         // Nothing half-made is put there.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)

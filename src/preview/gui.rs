@@ -98,7 +98,7 @@ impl Live {
             asked.parts.push(line.response.rect);
         }
         // Without the panel only what is to be told lies over the picture.
-        if self.visible.panel || self.notice.is_some() {
+        if self.visible.panel || self.told().is_some() {
             let free = ui.available_rect_before_wrap();
             overlay::status(&ctx, free, &self.status());
         }
@@ -126,7 +126,7 @@ impl Live {
             shot: self.shot.name(),
             progress: progress.map(|p| (p.pass, p.done)).or(still),
             times: self.pictures.times(),
-            notice: self.notice.as_ref().map(|n| (n.text.clone(), n.is_error)),
+            notice: self.told(),
         }
     }
 

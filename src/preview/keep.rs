@@ -25,15 +25,24 @@ fn place(document: &Document) -> String {
     }
 }
 
-/// The file for a document, named after the place of its preset.
+/// The most letters of a place in the name of a file. File systems allow 255 bytes.
+const MOST_LETTERS: usize = 40;
+
+/// The file for a document, named after the place of its preset: by its end, and by a number for the
+/// whole of it if it is long or has other letters.
 fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
-    // Two places never have one name.
-    let plain = |c: char| match c {
-        '/' => "_".to_string(),
-        c if c.is_alphanumeric() => c.to_string(),
-        c => format!("%{:x}.", u32::from(c)),
-    };
-    let place: String = place(document).chars().map(plain).collect();
+    let whole = place(document);
+    let plain = |c: char| if c.is_alphanumeric() { c } else { '_' };
+    let letters: Vec<char> = whole.chars().map(plain).collect();
+    let end = letters.len().saturating_sub(MOST_LETTERS);
+    let mut place: String = letters[end..].iter().collect();
+    if end > 0 || !whole.chars().all(char::is_alphanumeric) {
+        // FNV-1a.
+        let hash = whole.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        });
+        place = format!("{place}-{hash:016x}");
+    }
     let number = match slot {
         0 => String::new(),
         n => format!("-{n}"),
@@ -129,7 +138,8 @@ pub fn find(folder: Option<&Path>, document: &Document) -> Option<(u32, Plan)> {
     })
 }
 
-/// The preset of the last work that was kept of another document by a window that is gone.
+/// What to open for the last work that was kept of another document by a window that is gone: its
+/// preset, or what was kept if that preset cannot be read.
 pub fn elsewhere(folder: Option<&Path>, document: &Document) -> Option<String> {
     let files = fs::read_dir(folder?)
         .ok()?
@@ -142,7 +152,13 @@ pub fn elsewhere(folder: Option<&Path>, document: &Document) -> Option<String> {
     files.into_iter().rev().find_map(|path| {
         let text = fs::read_to_string(&path).ok()?;
         let place = text.lines().next()?.strip_prefix(TITLE)?;
-        (place != here && Lock::beside(&path).is_some()).then(|| place.to_string())
+        if place == here || Lock::beside(&path).is_none() {
+            return None;
+        }
+        Some(match preset::load(Path::new(place), &[]).is_ok() {
+            true => place.to_string(),
+            false => path.display().to_string(),
+        })
     })
 }
 
@@ -217,7 +233,8 @@ mod tests {
         one.keep(at, &document).expect("kept");
         assert_eq!(elsewhere(at, &other), None, "its window is open");
         crash(&mut one);
-        assert_eq!(elsewhere(at, &other), Some("box".into()));
+        let file = path(folder.path(), &document, 0);
+        assert_eq!(elsewhere(at, &other), Some(file.display().to_string()));
         assert_eq!(elsewhere(at, &document), None);
     }
 }

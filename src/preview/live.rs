@@ -91,6 +91,7 @@ pub struct Live {
     /// Whether it closes when the still is written.
     pub closes: bool,
     pub notice: Option<Notice>,
+    pub shader_error: Option<String>,
     pub still: Option<Still>,
     pub question: Option<Question>,
     /// Unsaved work of an earlier session with its slot, until it is taken or dropped.
@@ -177,6 +178,7 @@ impl Live {
             closed: false,
             closes: false,
             notice: None,
+            shader_error: None,
             still: None,
             question: None,
             offered: None,
@@ -201,7 +203,7 @@ impl Live {
             && let Some(preset) = keep::elsewhere(live.options.kept.as_deref(), &live.document)
         {
             live.tell(
-                format!("there is unsaved work of {preset}; open it to take it"),
+                format!("there is unsaved work: open {preset} to take it"),
                 false,
             );
         }

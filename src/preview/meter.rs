@@ -64,6 +64,17 @@ pub struct Figures {
     compilations: usize,
 }
 
+/// The most times of a kind that are kept: the last half an hour of turns.
+const MOST: usize = 1 << 20;
+
+/// Keeps a time, and forgets old ones.
+fn keep(times: &mut Vec<f64>, ms: f64) {
+    if times.len() == MOST {
+        times.drain(..MOST / 2);
+    }
+    times.push(ms);
+}
+
 fn ms(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1e3
 }
@@ -83,7 +94,7 @@ impl Meter {
             if let Some((asked, since)) = open.take_if(|(asked, _)| wish >= *asked)
                 && asked > 1
             {
-                list.push(ms(since));
+                keep(list, ms(since));
             }
         };
         note(&mut self.asked, &mut self.answers);
@@ -95,14 +106,14 @@ impl Meter {
     /// Something is on the screen, while pictures change or not.
     pub fn show(&mut self, moving: bool) {
         if let Some(last) = self.shown.filter(|_| moving) {
-            self.frames.push(ms(last));
+            keep(&mut self.frames, ms(last));
         }
         self.shown = moving.then(Instant::now);
     }
 
     /// A turn of the loop is over.
     pub fn turn(&mut self, since: Instant) {
-        self.turns.push(ms(since));
+        keep(&mut self.turns, ms(since));
     }
 
     /// The figures.

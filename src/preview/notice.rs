@@ -17,8 +17,6 @@ pub enum Ends {
     WithPicture,
     /// The preset's file, when it can be read again.
     WithFile,
-    /// The shader files, when they are read again.
-    WithShaders,
 }
 
 /// A notice to the user.
@@ -54,8 +52,30 @@ impl Live {
         self.paint_now();
     }
 
+    /// Takes in whether a shader text is wrong, which is told until it is right. Returns whether that is
+    /// new.
+    pub fn look_at_shaders(&mut self) -> bool {
+        let now = self.pictures.renderer.shader_error();
+        let is_new = now != self.shader_error;
+        if is_new {
+            self.shader_error = now;
+            self.paint_now();
+        }
+        is_new
+    }
+
+    /// What is told now, and whether it is an error.
+    pub fn told(&self) -> Option<(String, bool)> {
+        let notice = self.notice.as_ref();
+        let lines = [self.shader_error.as_ref(), notice.map(|n| &n.text)];
+        let lines: Vec<&str> = lines.into_iter().flatten().map(String::as_str).collect();
+        let is_error = self.shader_error.is_some() || notice.is_some_and(|n| n.is_error);
+        (!lines.is_empty()).then(|| (lines.join("\n"), is_error))
+    }
+
     /// Ends a notice whose end has come.
     pub fn end_notice(&mut self, come: Ends) {
+        self.look_at_shaders();
         let ends = |n: &mut Notice| {
             let most = if n.is_error { ERROR } else { NOTICE };
             n.ends == come && (come != Ends::Later || n.since.elapsed() > most)

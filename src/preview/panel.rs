@@ -163,17 +163,31 @@ fn number(ui: &mut Ui, range: [f64; 2], now: f64, asked: &mut PanelRequest) -> O
                 .logarithmic(is_wide(range))
                 .smallest_positive(low.max(1e-4 * high.min(100.0)))
                 .update_while_editing(false)
-                .custom_formatter(short),
+                .custom_formatter(short)
+                .custom_parser(typed(now)),
         )
     } else {
         let drag = DragValue::new(&mut x).range(low..=high);
         ui.add(
             drag.speed(speed(now))
                 .update_while_editing(false)
-                .custom_formatter(short),
+                .custom_formatter(short)
+                .custom_parser(typed(now)),
         )
     };
     noted(&response, asked).then_some(x)
+}
+
+/// Reads what is typed in the place of a number. A field that is left as it was shown keeps all digits
+/// of its number.
+fn typed(now: f64) -> impl Fn(&str) -> Option<f64> {
+    move |text| {
+        let text: String = text.split_whitespace().collect();
+        match text == short(now, 0..=0) {
+            true => Some(now),
+            false => text.replace('\u{2212}', "-").parse().ok(),
+        }
+    }
 }
 
 /// A number in few letters. What is typed or dragged has all its digits.
@@ -232,9 +246,11 @@ fn triple(ui: &mut Ui, range: [f64; 2], now: &Value, asked: &mut PanelRequest) -
             let mut any = false;
             let largest = three.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             for x in &mut three {
+                let now = *x;
                 let drag = DragValue::new(x).range(range[0]..=range[1]);
                 let drag = drag.speed(speed(largest)).update_while_editing(false);
-                let response = ui.add(drag.custom_formatter(short));
+                let drag = drag.custom_formatter(short).custom_parser(typed(now));
+                let response = ui.add(drag);
                 any |= noted(&response, asked);
             }
             any
@@ -348,4 +364,19 @@ fn read(text: &str) -> Value {
     let table: Result<toml::Table, _> = format!("x = {text}").parse();
     let value = table.ok().and_then(|mut table| table.remove("x"));
     value.unwrap_or_else(|| Value::String(text.into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_field_that_is_left_as_it_was_keeps_all_digits() {
+        let now = -1.765_432_1;
+        let typed = typed(now);
+        assert_eq!(typed(&short(now, 0..=0)), Some(now));
+        assert_eq!(typed(" -1.77"), Some(-1.77));
+        assert_eq!(typed("\u{2212}2 "), Some(-2.0));
+        assert_eq!(typed("two"), None);
+    }
 }

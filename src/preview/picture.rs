@@ -1,11 +1,13 @@
 //! A picture that is made again and again.
 
 use crate::base::clock::clock;
+use crate::base::key::Redo;
 use crate::gpu::RenderError;
 use crate::gpu::render::Renderer;
 use crate::gpu::work::Work;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
+use crate::preview::pictures::redo;
 use crate::scene::Assets;
 
 /// The small, the full or the fine picture.
@@ -61,6 +63,20 @@ impl Picture {
         self.made = self.under_way.take();
         self.frame = Some(frame);
         Ok(true)
+    }
+
+    /// Gives up another wish whose heights or maps are still made, which may take minutes, if this one
+    /// needs others.
+    pub fn stop_preparing(&mut self, wish: u64, plan: &Plan) {
+        let Some((_, other)) = self.under_way.as_ref().filter(|(of, _)| *of != wish) else {
+            return;
+        };
+        let prepares = self.work.as_ref().is_some_and(Work::is_preparing);
+        if prepares && redo(other, plan) == Redo::Assets {
+            self.under_way = None;
+            // Without a picture to go back to, the first plan would come first.
+            self.work.take_if(|work| work.picture().is_none());
+        }
     }
 
     pub fn is_made(&self, wish: u64) -> bool {

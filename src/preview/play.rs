@@ -64,7 +64,8 @@ impl Play {
             false if frames > 0 => at.floor(),
             false => at.ceil(),
         };
-        self.beat = ((frame + f64::from(frames)) * each).clamp(0.0, plan.time.length);
+        let frame = (frame + f64::from(frames)).max(0.0);
+        self.beat = plan.time.beat_of(frame as u32).min(plan.time.length);
         self.playing = false;
     }
 

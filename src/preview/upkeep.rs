@@ -27,9 +27,7 @@ impl Live {
         let lost = match error {
             RenderError::Device(lost @ DeviceError::Lost { .. }) => lost,
             RenderError::Kernel(_) if self.options.wgsl.is_some() => {
-                let text = error.to_string();
-                if self.notice.as_ref().is_none_or(|n| n.text != text) {
-                    self.tell_until(text, true, Ends::WithShaders);
+                if self.look_at_shaders() {
                     // The last shaders that worked make the picture.
                     self.pictures.again();
                 }

@@ -26,9 +26,10 @@ impl Timing {
         ((frames - 1e-6).ceil() as u32).max(1)
     }
 
-    /// The beat at which a frame starts.
+    /// The beat at which a frame starts: the nearest number, so that it is that of a key which is
+    /// written in a file.
     pub fn beat_of(&self, frame: u32) -> f64 {
-        self.beats(f64::from(frame) / self.fps)
+        f64::from(frame) * self.bpm / (60.0 * self.fps)
     }
 
     /// A moment of play as one in the film: within its length, again and again if it loops. The end
@@ -60,6 +61,12 @@ mod tests {
         assert_eq!(timing(1e-3, 60.0, 0.1).frames(), 1);
         let film = timing(16.0, 120.0, 25.0);
         assert_eq!(film.beat_of(25), 2.0);
+        let film = Timing {
+            fps: 25.0,
+            bpm: 60.0,
+            ..film
+        };
+        assert_eq!([3, 6, 24].map(|n| film.beat_of(n)), [0.12, 0.24, 0.96]);
         assert!(film.beat_of(film.frames() - 1) < film.length);
     }
 

@@ -7,6 +7,8 @@ use conemarch::gpu::render::Renderer;
 use conemarch::gpu::work::Work;
 use conemarch::pass::pick::At;
 use conemarch::plan::{Extras, Plan};
+#[cfg(feature = "preview")]
+use conemarch::preview::pictures::Pictures;
 use conemarch::scene::Assets;
 
 use super::common::plans::{preset, sized};
@@ -85,4 +87,29 @@ fn a_pick_makes_the_maps_that_are_missing_and_stops_when_it_is_dropped() {
     );
     drop(renderer);
     assert!(began.elapsed() < SOON);
+}
+
+#[cfg(feature = "preview")]
+#[test]
+fn a_window_leaves_a_plan_whose_map_takes_long() {
+    let before = preset("terrain", &["image.size=[64, 36]"]);
+    for before in [Some(&before), None] {
+        let mut pictures = Pictures::new(adapter::open().device);
+        let began = Instant::now();
+        let mut show = |plan: &Plan, until: &dyn Fn(&Pictures) -> bool| {
+            pictures.want(plan);
+            while !until(&pictures) {
+                pictures.advance().unwrap();
+                assert!(began.elapsed() < SOON);
+            }
+        };
+        if let Some(plan) = before {
+            show(plan, &Pictures::is_full);
+        }
+        show(&slow(1), &|pictures| {
+            let progress = pictures.progress().unwrap_or_default();
+            progress.pass.starts_with("cone map")
+        });
+        show(&sized("mandelbox", [64, 36]), &Pictures::is_full);
+    }
 }

@@ -158,7 +158,9 @@ impl Work {
 
     /// Remembers the shader texts of a frame whose programs cannot be.
     fn failed(&self, failure: PrepareFailure) -> RenderError {
-        if let RenderError::Kernel(error) = &failure.error {
+        if let RenderError::Kernel(error) = &failure.error
+            && !failure.programs.is_empty()
+        {
             self.shared.texts.failed(&failure.programs, error);
         }
         failure.error
@@ -169,6 +171,11 @@ impl Work {
             Some(inputs) => self.answered(inputs.poll()),
             None => Ok(()),
         }
+    }
+
+    /// Whether a thread still prepares the last plan.
+    pub fn is_preparing(&self) -> bool {
+        !self.inputs.is_empty()
     }
 
     /// How far the render has come.
