@@ -83,18 +83,27 @@ impl SubmittedPick {
         tell: Watch<'_>,
     ) -> Result<Self, RenderError> {
         let gpu = &*shared.device;
-        if !plan.scene.has_assets(assets) {
-            let _turn = shared.wait_to_prepare(tell)?;
+        let turn = match plan.scene.has_assets(assets) {
+            true => None,
+            false => Some(shared.wait_to_prepare(tell)?),
+        };
+        if turn.is_some() {
             shared.make_maps(plan, assets, tell)?;
         }
         let scene = plan.scene.solid(&plan.viewpoint(), assets)?;
-        let mut program = vec![pick::program(&plan.view(), &scene)];
-        let texts = shared.texts.put(sources, &mut program);
-        let kernel = shared.kernels.get(gpu, &program[0]);
-        if let (Err(error), false) = (&kernel, texts.is_empty()) {
-            shared.texts.failed(&program, error);
-        }
-        let kernel = kernel?;
+        let kernel = loop {
+            let mut program = vec![pick::program(&plan.view(), &scene)];
+            let texts = shared.texts.put(sources, &mut program);
+            match shared.kernels.get(gpu, &program[0]) {
+                Ok(kernel) => break kernel,
+                Err(error) if texts.is_empty() => return Err(error.into()),
+                Err(error) if shared.texts.skips(&program, &error) => {}
+                Err(error) => {
+                    shared.texts.failed(&program, &error);
+                    return Err(error.into());
+                }
+            }
+        };
         let arrays = shared.arrays.lock();
         let arrays = arrays.unwrap_or_else(PoisonError::into_inner);
         let kernels = std::slice::from_ref(&kernel);

@@ -158,12 +158,10 @@ impl Renderer {
         if let Some(inputs) = request.at_once()? {
             return work.start(inputs);
         }
+        let scene = request.plan.scene.clone();
         let prepare = move |told: &_| request.prepare(told);
-        work.start_when_ready(Background::start(
-            &mut self.threads,
-            "heights, maps and programs",
-            prepare,
-        ));
+        let first = "heights, maps and programs";
+        work.start_when_ready(scene, Background::start(&mut self.threads, first, prepare));
         Ok(())
     }
 

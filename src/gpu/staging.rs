@@ -104,6 +104,14 @@ impl Stagings {
         self.discarded.len()
     }
 
+    /// Those alone that submissions of discarded frames still fill.
+    pub fn into_behind(self) -> Self {
+        Self {
+            discarded: self.discarded,
+            ..Self::default()
+        }
+    }
+
     /// A buffer of at least so many bytes: the smallest that is free, or a new one.
     pub fn take(&mut self, device: &Device, bytes: u64) -> Staging {
         self.behind();

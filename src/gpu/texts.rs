@@ -48,13 +48,16 @@ impl TextHistory {
         let Some(sources) = sources else {
             return Texts::new();
         };
-        let mut known = self.lock();
+        // A wrong text is mended even if no program of this frame has it.
+        let older: Vec<&str> = self.lock().asked.iter().map(|(path, _)| *path).collect();
+        let modules = programs.iter().flat_map(|p| &p.modules);
         let mut asked = Vec::new();
-        for module in programs.iter().flat_map(|p| &p.modules) {
-            if find(&asked, module.path).is_none() {
-                asked.push((module.path, sources(module.path)));
+        for path in modules.map(|module| module.path).chain(older) {
+            if find(&asked, path).is_none() {
+                asked.push((path, sources(path)));
             }
         }
+        let mut known = self.lock();
         known.look(&asked);
         let text = |(path, text): &(&'static str, Option<String>)| Some((*path, text.clone()?));
         let now: Texts = asked.iter().filter_map(text).collect();
@@ -76,9 +79,10 @@ impl TextHistory {
     /// A frame has begun with these texts.
     pub fn worked(&self, texts: Texts) {
         let mut known = self.lock();
-        known
-            .worked
-            .retain(|(path, _)| find(&texts, path).is_none());
+        let Known { asked, worked, .. } = &mut *known;
+        // A file that is gone does not come back.
+        let is_there = |path| matches!(find(asked, path), Some(Some(_)));
+        worked.retain(|(path, _)| find(&texts, path).is_none() && is_there(path));
         known.worked.extend(texts);
     }
 

@@ -299,7 +299,7 @@ impl Plan {
         if extras.depth_only && self.look.sky.path().is_some() {
             plan.to_mut().look.sky = self.look.sky.without();
         }
-        if self.march.may_drop_cones() && !self.cones_pay(assets) {
+        if plan.march.may_drop_cones() && !plan.cones_pay(assets) {
             plan.to_mut().march.coarsest = Some(1);
         }
         plan

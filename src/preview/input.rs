@@ -90,11 +90,12 @@ pub enum Action {
 /// What a key with Ctrl asks for. Layouts of other alphabets have the letters of a US keyboard.
 pub fn shortcut(place: KeyCode, key: &Key, shift: bool) -> Option<Action> {
     let of_layout = key.to_text().and_then(|text| text.chars().next());
-    let letter = of_layout.filter(char::is_ascii_alphabetic);
-    match letter
-        .or_else(|| of_us_keyboard(place))?
-        .to_ascii_lowercase()
-    {
+    let is_latin = |letter: &char| *letter < '\u{250}';
+    let letter = match of_layout.filter(is_latin) {
+        None => of_us_keyboard(place),
+        letter => letter,
+    };
+    match letter?.to_ascii_lowercase() {
         'z' if shift => Some(Action::Redo),
         'z' => Some(Action::Undo),
         'y' => Some(Action::Redo),
@@ -188,6 +189,8 @@ mod tests {
         // A French keyboard.
         assert_eq!(shortcut(KeyCode::KeyW, "Z"), Some(Action::Undo));
         assert_eq!(shortcut(KeyCode::KeyQ, "a"), None);
+        // A Dvorak one.
+        assert_eq!(shortcut(KeyCode::KeyQ, "'"), None);
         // A Russian one.
         assert_eq!(shortcut(KeyCode::KeyQ, "й"), Some(Action::Quit));
         assert_eq!(shortcut(KeyCode::KeyW, "ц"), None);

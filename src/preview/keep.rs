@@ -138,8 +138,8 @@ pub fn find(folder: Option<&Path>, document: &Document) -> Option<(u32, Plan)> {
     })
 }
 
-/// What to open for the last work that was kept of another document by a window that is gone: its
-/// preset, or what was kept if that preset cannot be read.
+/// Where to find the last work that was kept of another document by a window that is gone, and how to
+/// take it.
 pub fn elsewhere(folder: Option<&Path>, document: &Document) -> Option<String> {
     let files = fs::read_dir(folder?)
         .ok()?
@@ -152,13 +152,22 @@ pub fn elsewhere(folder: Option<&Path>, document: &Document) -> Option<String> {
     files.into_iter().rev().find_map(|path| {
         let text = fs::read_to_string(&path).ok()?;
         let place = text.lines().next()?.strip_prefix(TITLE)?;
+        let mut kept = preset::read(&text, "unsaved work").ok()?;
         if place == here || Lock::beside(&path).is_none() {
             return None;
         }
-        Some(match preset::load(Path::new(place), &[]).is_ok() {
-            true => place.to_string(),
-            false => path.display().to_string(),
-        })
+        let file = preset::file(Path::new(place));
+        if let Some(parent) = file.as_ref().and_then(|file| file.parent()) {
+            kept.set_folder(parent);
+        }
+        match preset::load(Path::new(place), &[]) {
+            Ok(preset) if preset.plan == kept => None,
+            Ok(_) => Some(format!("there is unsaved work: open {place} to take it")),
+            Err(_) => Some(format!(
+                "there is unsaved work of {place}, which cannot be read; copy {} there to take it",
+                path.display()
+            )),
+        }
     })
 }
 
@@ -234,7 +243,8 @@ mod tests {
         assert_eq!(elsewhere(at, &other), None, "its window is open");
         crash(&mut one);
         let file = path(folder.path(), &document, 0);
-        assert_eq!(elsewhere(at, &other), Some(file.display().to_string()));
+        let text = elsewhere(at, &other).expect("there is work");
+        assert!(text.contains(&file.display().to_string()), "{text}");
         assert_eq!(elsewhere(at, &document), None);
     }
 }

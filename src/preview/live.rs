@@ -17,7 +17,7 @@ use crate::preview::error::PreviewError;
 use crate::preview::flight::Flight;
 use crate::preview::gui;
 use crate::preview::input::{Drag, thrust};
-use crate::preview::keep::{self, Slot};
+use crate::preview::keep::Slot;
 use crate::preview::meter::{Figures, Meter};
 use crate::preview::notice::{Ends, Notice};
 use crate::preview::pictures::Pictures;
@@ -199,14 +199,6 @@ impl Live {
             options,
         };
         live.offer();
-        if live.offered.is_none()
-            && let Some(preset) = keep::elsewhere(live.options.kept.as_deref(), &live.document)
-        {
-            live.tell(
-                format!("there is unsaved work: open {preset} to take it"),
-                false,
-            );
-        }
         live.show_moment();
         live
     }

@@ -74,7 +74,10 @@ impl Picture {
         let prepares = self.work.as_ref().is_some_and(Work::is_preparing);
         if prepares && redo(other, plan) == Redo::Assets {
             self.under_way = None;
-            // Without a picture to go back to, the first plan would come first.
+            if let Some(work) = &mut self.work {
+                work.stop_preparing();
+            }
+            // Without a plan to go back to, the work is over.
             self.work.take_if(|work| work.picture().is_none());
         }
     }

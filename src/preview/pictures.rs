@@ -227,7 +227,9 @@ impl Pictures {
             // What is in flight ends by itself.
             picture.under_way.take_if(|(of, _)| *of != self.wish);
         }
-        self.small.stop_preparing(self.wish, &plan);
+        if !self.moving {
+            self.small.stop_preparing(self.wish, &plan);
+        }
         if self.small.under_way.is_some() {
             let finished = self.small.advance(SLICE_MS)?;
             if finished {

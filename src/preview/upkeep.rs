@@ -30,6 +30,8 @@ impl Live {
                 if self.look_at_shaders() {
                     // The last shaders that worked make the picture.
                     self.pictures.again();
+                } else if self.shader_error.is_none() {
+                    self.warn(error.to_string());
                 }
                 return Ok(());
             }
@@ -216,9 +218,14 @@ impl Live {
         }
     }
 
-    /// Offers unsaved work that was kept. New work is kept beside it.
+    /// Offers unsaved work that was kept, or says where there is other work. New work is kept beside it.
     pub fn offer(&mut self) {
-        self.offered = keep::find(self.options.kept.as_deref(), &self.document);
+        let folder = self.options.kept.as_deref();
+        self.offered = keep::find(folder, &self.document);
+        let elsewhere = keep::elsewhere(folder, &self.document);
+        if let Some(text) = elsewhere.filter(|_| self.offered.is_none()) {
+            self.tell(text, false);
+        }
     }
 
     /// Takes or discards the work that is offered. What was changed before is a step, and stays for

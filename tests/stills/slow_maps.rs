@@ -63,6 +63,18 @@ fn another_plan_need_not_wait_for_the_map_of_the_last() {
     assert!(bits(&frame) == bits(&adapter::render(&other, EVERYTHING)));
 }
 
+/// Before there is any picture too.
+#[test]
+fn the_first_plan_need_not_be_rendered() {
+    let (mut renderer, assets) = (adapter::open(), Assets::default());
+    let mut work = begun(&mut renderer, &assets);
+    let began = Instant::now();
+    let other = preset("terrain", &["image.size=[64, 36]"]);
+    renderer.set(&mut work, &other, &assets).unwrap();
+    finish(&mut work);
+    assert!(began.elapsed() < SOON);
+}
+
 #[test]
 fn a_pick_makes_the_maps_that_are_missing_and_stops_when_it_is_dropped() {
     let (mut renderer, assets) = (adapter::open(), Assets::default());
@@ -110,6 +122,10 @@ fn a_window_leaves_a_plan_whose_map_takes_long() {
             let progress = pictures.progress().unwrap_or_default();
             progress.pass.starts_with("cone map")
         });
-        show(&sized("mandelbox", [64, 36]), &Pictures::is_full);
+        // Ctrl+Z, or another preset.
+        let after = before
+            .cloned()
+            .unwrap_or_else(|| sized("mandelbox", [64, 36]));
+        show(&after, &Pictures::is_full);
     }
 }

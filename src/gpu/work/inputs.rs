@@ -177,7 +177,10 @@ impl FrameRequest {
     pub fn prepare(mut self, told: &TaskStatus) -> Result<FrameInputs, PrepareFailure> {
         let mut tell = |progress: &Progress| told.tell(progress);
         let shared = self.shared.clone();
-        let _turn = shared.wait_to_prepare(&mut tell)?;
+        let _turn = match self.assets.serve(&self.plan) {
+            true => None,
+            false => Some(shared.wait_to_prepare(&mut tell)?),
+        };
         let maps = shared.make_maps(&self.plan, &self.assets, &mut tell)?;
         // Heights decide about cones.
         self.resolve();

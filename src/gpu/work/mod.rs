@@ -37,6 +37,7 @@ use crate::pass::progress::Progress;
 use crate::pass::progress::Watch;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::Extras;
+use crate::scene::Scene;
 use inputs::PrepareFailure;
 pub(super) use inputs::{FrameInputs, FrameRequest, marched, most_steps};
 use job::Reusable;
@@ -54,13 +55,19 @@ pub(super) struct Shared {
     pub preparing: Mutex<()>,
 }
 
+/// What a thread prepares, and for which scene.
+struct Preparing {
+    scene: Scene,
+    inputs: Background<Result<FrameInputs, PrepareFailure>>,
+}
+
 /// A render under way on a device. Dropping it cancels it.
 pub struct Work {
     shared: Arc<Shared>,
     extras: Extras,
     /// What is prepared, until a run begins: for the last plan, and for plans before it, to go back
     /// to if the last one fails.
-    inputs: Vec<Background<Result<FrameInputs, PrepareFailure>>>,
+    inputs: Vec<Preparing>,
     /// The run of the last plan that was prepared.
     run: Option<Run>,
 }
@@ -102,7 +109,7 @@ impl Work {
             Err(error) => return Err(self.failed(PrepareFailure { error, programs })),
         };
         self.shared.texts.worked(texts);
-        if let Some(old) = self.run.as_mut().filter(|_| run.traffic().allocations == 0) {
+        if let Some(old) = &mut self.run {
             old.discard_flights(&mut run.reusable.stagings);
         }
         self.run = Some(run);
@@ -120,13 +127,19 @@ impl Work {
     }
 
     /// Begins a run once it is prepared. If it fails, the plan before it goes on: the one that runs, or
-    /// else the first that is prepared, which is ready soonest. The threads of the others stop.
+    /// else the first that is prepared. That one goes on too if it makes the same heights and maps, which
+    /// begin once only. The threads of all others stop.
     pub(super) fn start_when_ready(
         &mut self,
+        scene: Scene,
         inputs: Background<Result<FrameInputs, PrepareFailure>>,
     ) {
-        self.inputs.truncate(usize::from(self.run.is_none()));
-        self.inputs.push(inputs);
+        let goes_on = self
+            .inputs
+            .first()
+            .is_some_and(|first| first.scene == scene);
+        self.inputs.truncate(usize::from(goes_on));
+        self.inputs.push(Preparing { scene, inputs });
     }
 
     /// Takes in an answer of the thread that prepares the run.
@@ -168,7 +181,7 @@ impl Work {
 
     fn receive(&mut self) -> Result<(), RenderError> {
         match self.inputs.last() {
-            Some(inputs) => self.answered(inputs.poll()),
+            Some(last) => self.answered(last.inputs.poll()),
             None => Ok(()),
         }
     }
@@ -178,9 +191,14 @@ impl Work {
         !self.inputs.is_empty()
     }
 
+    /// Gives up what is prepared. The plan before goes on, if there is one.
+    pub fn stop_preparing(&mut self) {
+        self.inputs.clear();
+    }
+
     /// How far the render has come.
     pub fn progress(&self) -> Progress {
-        let inputs = self.inputs.last().map(Background::progress);
+        let inputs = self.inputs.last().map(|last| last.inputs.progress());
         let run = || self.run.as_ref().map(Run::progress);
         inputs.or_else(run).unwrap_or_default()
     }
@@ -266,10 +284,10 @@ impl Work {
     #[cfg(feature = "cli")]
     fn wait_for_frame(&mut self, watch: Watch<'_>) -> Result<Frame, RenderError> {
         while let Some(inputs) = self.inputs.last() {
-            if !watch(&inputs.progress()) {
+            if !watch(&inputs.inputs.progress()) {
                 return Err(RenderError::Cancelled);
             }
-            let answer = inputs.wait();
+            let answer = inputs.inputs.wait();
             self.answered(answer)?;
         }
         let (mut told, mut most) = (0, 0.0_f64);
@@ -289,7 +307,7 @@ impl Work {
                 run.fill(SUBMISSION_MS);
             }
             let frame = self.poll()?;
-            let Some(run) = &self.run else {
+            let Some(run) = &mut self.run else {
                 return Err(RenderError::Cancelled);
             };
             for progress in run.news(told) {

@@ -1,10 +1,11 @@
-//! What comes back of a submission.
+//! What comes back of a submission, and what is given back at the end.
 
 use std::ops::RangeInclusive;
+use std::sync::PoisonError;
 
 use crate::gpu::collect::Parts;
 use crate::gpu::error::RenderError;
-use crate::gpu::staging::Staging;
+use crate::gpu::staging::{Staging, Stagings};
 use crate::gpu::stamps::STAMPS;
 use crate::pass::layout::CellsHead;
 use crate::pass::turn::{MOST_STAGES, StageKind, Turn};
@@ -183,5 +184,35 @@ impl Run {
         )?;
         self.collected += 1;
         Ok(())
+    }
+}
+
+impl Run {
+    /// Gives up what was submitted. Its buffers serve again once the device has filled them.
+    pub(super) fn discard_flights(&mut self, stagings: &mut Stagings) {
+        for flight in self.flights.drain(..) {
+            stagings.discard(flight.report);
+            if let Some((_, staging)) = flight.reading {
+                stagings.discard(staging);
+            }
+        }
+    }
+
+    /// Leaves everything to the next render. The device may still run what was submitted; the
+    /// next render is behind it.
+    pub(super) fn lend(&mut self) {
+        let mut reusable = std::mem::take(&mut self.reusable);
+        self.discard_flights(&mut reusable.stagings);
+        let shelf = self.shared.reusable.lock();
+        *shelf.unwrap_or_else(PoisonError::into_inner) = reusable;
+    }
+}
+
+impl Drop for Run {
+    fn drop(&mut self) {
+        // Another render may have taken it already.
+        if self.reusable.target.is_some() {
+            self.lend();
+        }
     }
 }

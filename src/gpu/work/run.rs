@@ -2,13 +2,13 @@
 
 use std::collections::VecDeque;
 use std::ops::Range;
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 #[cfg(feature = "cli")]
 use std::time::Duration;
 
 use crate::gpu::cost::LONGEST_MS;
 use crate::gpu::error::RenderError;
-use crate::gpu::staging::{Staging, Stagings};
+use crate::gpu::staging::Staging;
 use crate::gpu::stamps::{STAMPS, Stamps};
 use crate::gpu::target::Target;
 use crate::gpu::work::job::{Job, Reusable};
@@ -114,6 +114,7 @@ impl Run {
                     costs: job.first_costs(),
                     aim_ms: LONGEST_MS,
                     stamps: Stamps::new(device),
+                    stagings: std::mem::take(&mut reusable.stagings).into_behind(),
                     ..Reusable::default()
                 };
             }
@@ -309,12 +310,17 @@ impl Run {
         Ok(())
     }
 
+    /// Whether there is something to submit, and the device has less than it may have at once. What was
+    /// submitted of another plan comes first.
+    fn has_room(&mut self) -> bool {
+        let submitted = self.flights.len() + self.reusable.stagings.behind();
+        submitted < IN_FLIGHT && self.cursor < self.end()
+    }
+
     /// Submits about so many milliseconds of work, if there is room.
     pub(super) fn fill(&mut self, budget_ms: f64) {
         let mut left = budget_ms;
-        // What was submitted of another plan comes first.
-        let room = IN_FLIGHT.saturating_sub(self.reusable.stagings.behind());
-        while left > 0.0 && self.flights.len() < room && self.cursor < self.end() {
+        while left > 0.0 && self.has_room() {
             left -= self.submit(left.min(SUBMISSION_MS));
         }
     }
@@ -371,13 +377,15 @@ impl Run {
     /// The device failed, or has not answered for two minutes: a dispatch has a bounded number of
     /// steps.
     #[cfg(feature = "cli")]
-    pub fn wait(&self) -> Result<(), RenderError> {
-        let has_room = self.flights.len() < IN_FLIGHT && self.cursor < self.end();
+    pub fn wait(&mut self) -> Result<(), RenderError> {
+        if self.has_room() {
+            return Ok(());
+        }
         if self.flights.is_empty() {
             // The device runs what was submitted of another plan.
             std::thread::sleep(Duration::from_millis(1));
         }
-        if let Some(flight) = self.flights.front().filter(|_| !has_room) {
+        if let Some(flight) = self.flights.front() {
             let device = &self.shared.device;
             device.wait_a_moment(flight.index.clone())?;
             if (device.clock)() - flight.submitted.max(self.ended) > 120e3 {
@@ -385,35 +393,5 @@ impl Run {
             }
         }
         Ok(())
-    }
-}
-
-impl Run {
-    /// Gives up what was submitted. Its buffers serve again once the device has filled them.
-    pub(super) fn discard_flights(&mut self, stagings: &mut Stagings) {
-        for flight in self.flights.drain(..) {
-            stagings.discard(flight.report);
-            if let Some((_, staging)) = flight.reading {
-                stagings.discard(staging);
-            }
-        }
-    }
-
-    /// Leaves everything to the next render. The device may still run what was submitted; the
-    /// next render is behind it.
-    pub(super) fn lend(&mut self) {
-        let mut reusable = std::mem::take(&mut self.reusable);
-        self.discard_flights(&mut reusable.stagings);
-        let shelf = self.shared.reusable.lock();
-        *shelf.unwrap_or_else(PoisonError::into_inner) = reusable;
-    }
-}
-
-impl Drop for Run {
-    fn drop(&mut self) {
-        // Another render may have taken it already.
-        if self.reusable.target.is_some() {
-            self.lend();
-        }
     }
 }
