@@ -2,7 +2,7 @@
 //!
 //! A [`Plan`] is everything that decides a picture, as one plain value. It can be printed,
 //! compared, written as a preset and tested without a GPU. It reads no file and makes no
-//! map: [`Assets`](crate::scene::Assets) do.
+//! map: [`Assets`] do.
 //!
 //! - [`camera`], [`march`], [`look`] with [`layers`], [`lamps`] and [`sky`]: the sections of a preset beside `[scene]`
 //! - [`film`]: the plan at a moment of its film; [`stereo`]: the plans of two eyes
