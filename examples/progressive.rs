@@ -16,7 +16,8 @@ fn main() -> anyhow::Result<()> {
     let name = arguments.next().unwrap_or_else(|| "mandelbox".into());
     let folder = PathBuf::from(arguments.next().unwrap_or_else(|| "slices".into()));
     std::fs::create_dir_all(&folder)?;
-    let plan = preset::load(&name, &[])?.plan;
+    // Each of many samples would have slices of its own.
+    let plan = preset::load(&name, &[])?.plan.one_sample();
     let adapters = Adapters::find();
     let (adapter, _) = adapters
         .choose(&Choice::Auto)?
@@ -41,6 +42,8 @@ fn main() -> anyhow::Result<()> {
         work.advance(20.0)?;
         // Waits for the device, as a file needs the picture here. A window would show it there.
         let pixels = work.pixels()?;
+        // Takes in what has ended. Later, the time for the file would count as that of the device.
+        work.advance(0.0)?;
         let [width, height] = plan.size;
         let path = folder.join(format!("{slice:03}.png"));
         image::save_buffer(&path, &pixels, width, height, image::ColorType::Rgba8)?;
