@@ -448,7 +448,7 @@ fn cones_are_left_out_where_they_save_few_steps() {
     // Both executors leave them out, also where heights must be made to know.
     for (name, size) in [
         ("bench-far", "image.size=[40, 24]"),
-        ("bricks", "image.size=[320, 180]"),
+        ("bricks", "image.size=[400, 300]"),
     ] {
         let plan = preset(name, &["march.coarsest=auto", size]);
         for frame in [render(&plan, LEVELS), on_cpu(&plan, LEVELS)] {
