@@ -1,9 +1,10 @@
 //! A cache of one value that takes long to make, kept until its key changes.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 /// The last value that was made, with its key. Clones share it.
-pub type OneValueCache<K, V> = Arc<Mutex<Option<(K, Arc<V>)>>>;
+pub type OneValueCache<K, V> = Arc<Mutex<Kept<K, V>>>;
+type Kept<K, V> = Option<(K, Arc<V>)>;
 
 /// The value of a key: the kept one, or a new one by `make`. A failure keeps the old one.
 ///
@@ -28,8 +29,22 @@ pub fn last_or_new<K: PartialEq, V, E>(
 
 /// Whether the value of a key is kept. It does not wait for one that is being made.
 pub fn is_last<K: PartialEq, V>(last: &OneValueCache<K, V>, key: &K) -> bool {
-    let last = last.try_lock();
-    last.is_ok_and(|last| last.as_ref().is_some_and(|(of, _)| of == key))
+    let kept = kept(last);
+    kept.is_some_and(|kept| kept.as_ref().is_some_and(|(of, _)| of == key))
+}
+
+/// A cache of its own with what is kept now; empty while another value is made.
+pub fn snapshot<K: Clone, V>(last: &OneValueCache<K, V>) -> OneValueCache<K, V> {
+    let kept = kept(last);
+    Arc::new(Mutex::new(kept.and_then(|kept| kept.clone())))
+}
+
+fn kept<K, V>(last: &OneValueCache<K, V>) -> Option<MutexGuard<'_, Kept<K, V>>> {
+    match last.try_lock() {
+        Ok(kept) => Some(kept),
+        Err(TryLockError::Poisoned(kept)) => Some(kept.into_inner()),
+        Err(TryLockError::WouldBlock) => None,
+    }
 }
 
 #[cfg(test)]
@@ -50,5 +65,17 @@ mod tests {
         }
         assert_eq!(last_or_new(&last, 3, |_| Err("no")), Err("no"));
         assert_eq!(last_or_new(&last, 1, |_| Err("no")), Ok(Arc::new(10)));
+    }
+
+    #[test]
+    fn a_snapshot_keeps_its_value_and_never_waits() {
+        let last = OneValueCache::<u32, u32>::default();
+        let make = |key| last_or_new(&last, key, |k| Ok::<_, ()>(10 * k));
+        make(1).expect("made");
+        let before = snapshot(&last);
+        make(2).expect("made");
+        assert!(is_last(&before, &1) && is_last(&last, &2));
+        let _made = last.lock();
+        assert!(!is_last(&last, &2) && !is_last(&snapshot(&last), &2));
     }
 }

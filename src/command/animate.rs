@@ -28,6 +28,9 @@ use crate::plan::{Extras, Plan};
 use crate::preset;
 use crate::scene::Assets;
 
+/// The most frames of one run: nine hours at 30 per second.
+const MOST_FRAMES: u32 = 1_000_000;
+
 /// What `animate` takes.
 #[derive(Args, Debug)]
 pub struct Animate {
@@ -168,6 +171,11 @@ pub fn run(args: &Animate) -> Result<()> {
         return Err(usage(format!(
             "--frames {first}..{last}: the film has the frames 0..{}",
             all - 1
+        )));
+    }
+    if last - first >= MOST_FRAMES {
+        return Err(usage(format!(
+            "the film has {all} frames, of which at most {MOST_FRAMES} can be made at once; --frames names some"
         )));
     }
     if let Some(video) = &args.video {

@@ -48,39 +48,50 @@ enum Kind {
 #[derive(Clone, Default)]
 pub struct Kernels(Arc<Mutex<Compiled>>);
 
-type Compiled = Vec<(Program, Arc<Kernel>)>;
+/// A program, and its kernel once a thread has compiled it.
+type Compiled = Vec<(Program, Arc<Mutex<Option<Arc<Kernel>>>>)>;
 
 impl Kernels {
-    /// The kernel of a program, compiled now if it is new.
+    /// The kernel of a program, compiled now if it is new. Other threads that ask for it wait.
     ///
     /// # Errors
     /// The text is wrong, or the driver refuses it.
     pub fn get(&self, device: &Device, program: &Program) -> Result<Arc<Kernel>, KernelError> {
-        if let Some(kernel) = self.known(program) {
-            return Ok(kernel);
-        }
-        // Other threads go on meanwhile.
-        let kernel = Arc::new(Kernel::new(device, program)?);
-        let mut all = self.lock();
-        // Another thread may have been quicker.
-        if let Some((_, kernel)) = all.iter().find(|(p, _)| p == program) {
+        let place = {
+            let mut all = lock(&self.0);
+            match all.iter().find(|(p, _)| p == program) {
+                Some((_, place)) => place.clone(),
+                None => {
+                    let place = Arc::default();
+                    all.push((program.clone(), Arc::clone(&place)));
+                    place
+                }
+            }
+        };
+        let mut kept = lock(&place);
+        if let Some(kernel) = &*kept {
             return Ok(kernel.clone());
         }
-        all.push((program.clone(), kernel.clone()));
-        Ok(kernel)
+        match Kernel::new(device, program) {
+            Ok(kernel) => Ok(kept.insert(Arc::new(kernel)).clone()),
+            Err(error) => {
+                lock(&self.0).retain(|(p, _)| p != program);
+                Err(error)
+            }
+        }
     }
 
-    /// The kernel of a program that was compiled before.
+    /// The kernel of a program that was compiled before. It never waits.
     pub fn known(&self, program: &Program) -> Option<Arc<Kernel>> {
-        let all = self.lock();
-        let found = all.iter().find(|(p, _)| p == program);
-        found.map(|(_, kernel)| kernel.clone())
+        let all = lock(&self.0);
+        let (_, place) = all.iter().find(|(p, _)| p == program)?;
+        place.try_lock().ok()?.clone()
     }
+}
 
-    fn lock(&self) -> MutexGuard<'_, Compiled> {
-        // Nothing half-made is put there.
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    // Nothing half-made is put there.
+    of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A compiled program.

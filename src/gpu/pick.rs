@@ -6,7 +6,7 @@ use bytemuck::{Zeroable, bytes_of};
 use glam::DVec3;
 use wgpu::{BindingResource, BufferUsages};
 
-use crate::base::shader::Sources;
+use crate::base::shader::{Program, Sources};
 use crate::gpu::array::Array;
 use crate::gpu::background::Background;
 use crate::gpu::buffer::{create, uniform};
@@ -15,6 +15,7 @@ use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
 use crate::gpu::task_status::Panicked;
 use crate::gpu::work::{Shared, marched, most_steps};
+use crate::heightfield::tracer::settings::PrepareError;
 use crate::pass::pick::{self, At, PickAnswer, PickQuestion, Picked};
 use crate::pass::progress::Watch;
 use crate::plan::Plan;
@@ -83,31 +84,14 @@ impl SubmittedPick {
         tell: Watch<'_>,
     ) -> Result<Self, RenderError> {
         let gpu = &*shared.device;
-        let turn = match plan.scene.has_assets(assets) {
-            true => None,
-            false => Some(shared.wait_to_prepare(tell)?),
-        };
-        if turn.is_some() {
+        let mut own = assets.snapshot();
+        if !plan.scene.has_assets(&own) {
+            let _turn = shared.wait_to_prepare(tell)?;
             shared.make_maps(plan, assets, tell)?;
+            plan.scene.load(assets).map_err(PrepareError::from)?;
+            own = assets.snapshot();
         }
-        let scene = plan.scene.solid(&plan.viewpoint(), assets)?;
-        let kernel = loop {
-            let mut program = vec![pick::program(&plan.view(), &scene)];
-            let texts = shared.texts.put(sources, &mut program);
-            match shared.kernels.get(gpu, &program[0]) {
-                Ok(kernel) => break kernel,
-                Err(error) if texts.is_empty() => return Err(error.into()),
-                Err(error) if shared.texts.skips(&program, &error) => {}
-                Err(error) => {
-                    shared.texts.failed(&program, &error);
-                    return Err(error.into());
-                }
-            }
-        };
-        let arrays = shared.arrays.lock();
-        let arrays = arrays.unwrap_or_else(PoisonError::into_inner);
-        let kernels = std::slice::from_ref(&kernel);
-        let arrays = arrays.find_or_make(gpu, kernels, scene.twin().arrays(), &mut 0)?;
+        let scene = plan.scene.solid(&plan.viewpoint(), &own)?;
         let steps = most_steps(&scene);
         let of_cones: u32 = plan.levels().iter().map(|level| level.steps).sum();
         let limit = plan.ray_steps(&scene).saturating_add(of_cones);
@@ -119,23 +103,44 @@ impl SubmittedPick {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         let bytes = size_of::<PickAnswer>() as u64;
         let answer = create(gpu, "pick_answer", bytes, usage);
-        let walk = u64::from(kernel.stride("walks").unwrap_or(16));
-        let buffers = [
-            ("pick_answer", answer.clone()),
-            ("walks", create(gpu, "walks", walk, usage)),
-        ];
         let question = PickQuestion::new(at, eye, [steps, limit]);
         let mut numbers = marched(plan, &scene);
         numbers.push(("pick_question", bytes_of(&question).to_vec()));
         let written = numbers.iter();
         let written = written.map(|(name, bytes)| (*name, uniform(gpu, name, bytes)));
-        let buffers: Vec<_> = written.chain(buffers).collect();
-        let groups = kernel.bind(gpu, |name| {
-            let buffer = buffers.iter().find(|b| b.0 == name);
-            let array = || arrays.iter().find(|a| a.name == name);
-            let buffer = buffer.map(|b| BindingResource::Buffer(b.1.as_entire_buffer_binding()));
-            buffer.or_else(|| array().map(|a| Array::binding(&a.array)))
-        })?;
+        let written: Vec<_> = written.collect();
+        let prepare = |program: &Program| -> Result<_, RenderError> {
+            let kernel = shared.kernels.get(gpu, program)?;
+            let walk = u64::from(kernel.stride("walks").unwrap_or(16));
+            let walks = create(gpu, "walks", walk, usage);
+            let more = [("pick_answer", answer.clone()), ("walks", walks)];
+            let buffers: Vec<_> = written.iter().cloned().chain(more).collect();
+            let arrays = shared.arrays.lock();
+            let arrays = arrays.unwrap_or_else(PoisonError::into_inner);
+            let kernels = std::slice::from_ref(&kernel);
+            let arrays = arrays.find_or_make(gpu, kernels, scene.twin().arrays(), &mut 0)?;
+            let groups = kernel.bind(gpu, |name| {
+                let buffer = buffers.iter().find(|b| b.0 == name);
+                let array = || arrays.iter().find(|a| a.name == name);
+                let buffer =
+                    buffer.map(|b| BindingResource::Buffer(b.1.as_entire_buffer_binding()));
+                buffer.or_else(|| array().map(|a| Array::binding(&a.array)))
+            })?;
+            Ok((kernel, groups))
+        };
+        let (kernel, groups) = loop {
+            let mut program = vec![pick::program(&plan.view(), &scene)];
+            let texts = shared.texts.put(sources, &mut program);
+            match (prepare(&program[0]), texts.edited(program.iter())) {
+                (Err(RenderError::Kernel(error)), Some(edited)) => {
+                    if !shared.texts.skips(&edited, &error) {
+                        shared.texts.failed(&edited, &error);
+                        return Err(error.into());
+                    }
+                }
+                (prepared, _) => break prepared?,
+            }
+        };
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         for _ in 0..rounds {

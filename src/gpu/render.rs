@@ -147,7 +147,8 @@ impl Renderer {
         let mut request = FrameRequest {
             plan: plan.clone(),
             rays_alone: false,
-            assets: assets.clone(),
+            assets: assets.snapshot(),
+            all_assets: assets.clone(),
             extras: work.extras(),
             cutting: self.cutting,
             sources: self.sources.clone(),
@@ -158,10 +159,10 @@ impl Renderer {
         if let Some(inputs) = request.at_once()? {
             return work.start(inputs);
         }
-        let scene = request.plan.scene.clone();
+        let keys = request.plan.scene.asset_keys();
         let prepare = move |told: &_| request.prepare(told);
         let first = "heights, maps and programs";
-        work.start_when_ready(scene, Background::start(&mut self.threads, first, prepare));
+        work.start_when_ready(keys, Background::start(&mut self.threads, first, prepare));
         Ok(())
     }
 

@@ -86,19 +86,22 @@ impl Staging {
 #[derive(Default)]
 pub struct Stagings {
     free: Vec<Staging>,
-    /// Those that submissions of a discarded frame still fill.
-    discarded: Vec<Staging>,
+    /// Those that submissions of discarded frames still fill: reports, and what is read of a block.
+    discarded: Vec<(Staging, Option<Staging>)>,
     /// How many were made.
     pub made: u32,
 }
 
 impl Stagings {
-    /// How many buffers the submissions of discarded frames still fill.
+    /// How many submissions of discarded frames have not ended.
     pub fn behind(&mut self) -> usize {
-        for staging in std::mem::take(&mut self.discarded) {
-            match staging.is_mapped() {
-                true => self.put(staging),
-                false => self.discarded.push(staging),
+        for (report, reading) in std::mem::take(&mut self.discarded) {
+            let all = [&report].into_iter().chain(&reading);
+            if all.into_iter().all(Staging::is_mapped) {
+                self.put(report);
+                reading.into_iter().for_each(|staging| self.put(staging));
+            } else {
+                self.discarded.push((report, reading));
             }
         }
         self.discarded.len()
@@ -132,8 +135,8 @@ impl Stagings {
         self.free.push(staging);
     }
 
-    /// Takes back a buffer that nobody will read.
-    pub fn discard(&mut self, staging: Staging) {
-        self.discarded.push(staging);
+    /// Takes back the buffers of a submission that nobody will read.
+    pub fn discard(&mut self, report: Staging, reading: Option<Staging>) {
+        self.discarded.push((report, reading));
     }
 }

@@ -9,18 +9,47 @@ use crate::base::shader::{Program, Sources};
 use crate::gpu::kernel_error::KernelError;
 
 /// Texts by the paths of their files.
-pub type Texts = Vec<(&'static str, String)>;
+type Files = Vec<(&'static str, String)>;
+
+/// Texts of a host in the programs of a frame.
+#[derive(Default)]
+pub struct Texts {
+    files: Files,
+    version: u32,
+}
+
+/// Programs with texts of a host.
+#[derive(Default)]
+pub struct Edited {
+    programs: Vec<Program>,
+    version: u32,
+}
+
+impl Texts {
+    /// The programs, if texts of a host are in them.
+    pub fn edited<'a>(&self, programs: impl Iterator<Item = &'a Program>) -> Option<Edited> {
+        (!self.files.is_empty()).then(|| Edited {
+            programs: programs.cloned().collect(),
+            version: self.version,
+        })
+    }
+}
 
 /// What is known of the texts of a host.
 #[derive(Default)]
-pub struct TextHistory(Mutex<Known>);
+pub struct TextHistory {
+    known: Mutex<Known>,
+    /// Locked while a host is asked: the last answer is the newest.
+    asking: Mutex<()>,
+}
 
 #[derive(Default)]
 struct Known {
-    /// What the host said last of each file.
+    /// What the host said last of each file, and how often it has changed.
     asked: Vec<(&'static str, Option<String>)>,
+    version: u32,
     /// The last texts of frames that began.
-    worked: Texts,
+    worked: Files,
     /// Programs that cannot be, and the errors that were told of them, since a text changed.
     failed: Vec<Program>,
     told: Vec<String>,
@@ -32,85 +61,105 @@ fn find<'a, T>(all: &'a [(&str, T)], path: &str) -> Option<&'a T> {
 }
 
 /// Programs with the texts of some files.
-fn with_texts(programs: &[Program], texts: &Texts) -> Vec<Program> {
+fn with_texts(programs: &[Program], files: &Files) -> Vec<Program> {
     let mut programs = programs.to_vec();
     for module in programs.iter_mut().flat_map(|p| &mut p.modules) {
-        if let Some(text) = find(texts, module.path) {
+        if let Some(text) = find(files, module.path) {
             module.source = text.clone().into();
         }
     }
     programs
 }
 
+fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    // Nothing half-made is put there.
+    of.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl TextHistory {
     /// Puts the texts of a host into programs, and returns those that are used.
     pub fn put(&self, sources: Option<&Sources>, programs: &mut Vec<Program>) -> Texts {
         let Some(sources) = sources else {
-            return Texts::new();
+            return Texts::default();
         };
-        // A wrong text is mended even if no program of this frame has it.
-        let older: Vec<&str> = self.lock().asked.iter().map(|(path, _)| *path).collect();
-        let modules = programs.iter().flat_map(|p| &p.modules);
-        let mut asked = Vec::new();
-        for path in modules.map(|module| module.path).chain(older) {
-            if find(&asked, path).is_none() {
-                asked.push((path, sources(path)));
+        let mut own: Vec<&'static str> = Vec::new();
+        for module in programs.iter().flat_map(|p| &p.modules) {
+            if !own.contains(&module.path) {
+                own.push(module.path);
             }
         }
-        let mut known = self.lock();
-        known.look(&asked);
-        let text = |(path, text): &(&'static str, Option<String>)| Some((*path, text.clone()?));
-        let now: Texts = asked.iter().filter_map(text).collect();
-        let worked = known
-            .worked
+        let asking = lock(&self.asking);
+        // A wrong text is mended even if no program of this frame has it.
+        let known: Vec<_> = lock(&self.known)
+            .asked
             .iter()
-            .filter(|(path, _)| find(&asked, path).is_some());
-        let worked: Texts = worked.cloned().collect();
-        for texts in [now, worked] {
-            let with = with_texts(programs, &texts);
+            .map(|(path, _)| *path)
+            .collect();
+        let older = known.into_iter().filter(|path| !own.contains(path));
+        let paths = own.iter().copied().chain(older);
+        let asked: Vec<_> = paths.map(|path| (path, sources(path))).collect();
+        let mut known = lock(&self.known);
+        known.look(&asked);
+        drop(asking);
+        let of_frame = &asked[..own.len()];
+        let text = |(path, text): &(&'static str, Option<String>)| Some((*path, text.clone()?));
+        let now: Files = of_frame.iter().filter_map(text).collect();
+        let worked = known.worked.iter();
+        let worked: Files = worked
+            .filter(|(path, _)| find(of_frame, path).is_some())
+            .cloned()
+            .collect();
+        for files in [now, worked] {
+            let with = with_texts(programs, &files);
             if !with.iter().any(|program| known.failed.contains(program)) {
                 *programs = with;
-                return texts;
+                let version = known.version;
+                return Texts { files, version };
             }
         }
-        Texts::new()
+        Texts::default()
     }
 
     /// A frame has begun with these texts.
     pub fn worked(&self, texts: Texts) {
-        let mut known = self.lock();
+        let mut known = lock(&self.known);
         let Known { asked, worked, .. } = &mut *known;
         // A file that is gone does not come back.
         let is_there = |path| matches!(find(asked, path), Some(Some(_)));
-        worked.retain(|(path, _)| find(&texts, path).is_none() && is_there(path));
-        known.worked.extend(texts);
+        worked.retain(|(path, _)| find(&texts.files, path).is_none() && is_there(path));
+        known.worked.extend(texts.files);
     }
 
-    /// One of these programs with texts of a host cannot be. Its error is told now.
-    pub fn failed(&self, programs: &[Program], error: &KernelError) {
-        let mut known = self.lock();
-        known.fail(programs, error);
-        known.told.push(error.to_string());
+    /// One of these programs cannot be. Its error is told now, unless the host has other texts by now.
+    pub fn failed(&self, edited: &Edited, error: &KernelError) {
+        let mut known = lock(&self.known);
+        if known.version == edited.version {
+            known.fail(&edited.programs, error);
+            known.told.push(error.to_string());
+        }
     }
 
-    /// The same, if the error was told before.
-    pub fn skips(&self, programs: &[Program], error: &KernelError) -> bool {
-        let mut known = self.lock();
+    /// The same, if it need not be told: it was told before, or the host has other texts by now.
+    pub fn skips(&self, edited: &Edited, error: &KernelError) -> bool {
+        let mut known = lock(&self.known);
+        if known.version != edited.version {
+            return true;
+        }
         let was_told = known.told.contains(&error.to_string());
         if was_told {
-            known.fail(programs, error);
+            known.fail(&edited.programs, error);
         }
         was_told
     }
 
-    /// The last error that was told, if no text has changed since.
-    pub fn error(&self) -> Option<String> {
-        self.lock().told.last().cloned()
+    /// Whether the host has other texts by now.
+    pub fn is_old(&self, edited: &Edited) -> bool {
+        lock(&self.known).version != edited.version
     }
 
-    fn lock(&self) -> MutexGuard<'_, Known> {
-        // Nothing half-made is put there.
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    /// The last error that was told, if no text has changed since.
+    pub fn error(&self) -> Option<String> {
+        lock(&self.known).told.last().cloned()
     }
 }
 
@@ -127,6 +176,7 @@ impl Known {
                 Some((_, last)) if last == text => {}
                 Some((_, last)) => {
                     last.clone_from(text);
+                    self.version += 1;
                     self.failed.clear();
                     self.told.clear();
                 }
@@ -162,7 +212,7 @@ mod tests {
         host: &[(&'static str, &str)],
         is_wrong: fn(&[String]) -> bool,
     ) -> Result<Vec<String>, ()> {
-        let host: Texts = host
+        let host: Files = host
             .iter()
             .map(|(path, text)| (*path, text.to_string()))
             .collect();
@@ -176,10 +226,11 @@ mod tests {
                 history.worked(texts);
                 return Ok(sources);
             }
-            assert!(!texts.is_empty(), "the own texts are right");
+            let edited = texts.edited(programs.iter());
+            let edited = edited.expect("the own texts are right");
             let error = program(paths).fault((paths[0], 1), "wrong".into()).into();
-            if !history.skips(&programs, &error) {
-                history.failed(&programs, &error);
+            if !history.skips(&edited, &error) {
+                history.failed(&edited, &error);
                 return Err(());
             }
         }
@@ -230,5 +281,36 @@ mod tests {
         assert_eq!(next(&["a", "b"]), Err(()));
         assert_eq!(next(&["a", "b"]), Ok("own own".into()));
         assert_eq!(next(&["a"]), Ok("without f".into()));
+    }
+
+    #[test]
+    fn a_frame_without_a_wrong_text_keeps_the_good_one_for_others() {
+        let history = TextHistory::default();
+        let next = |paths: &[&'static str], host: &[(&'static str, &str)]| {
+            let is_bad = |texts: &[String]| texts.contains(&"bad".into());
+            frame(&history, paths, host, is_bad).map(|texts| texts.join(" "))
+        };
+        let good = [("a", "new"), ("b", "good")];
+        assert_eq!(next(&["a", "b"], &good), Ok("new good".into()));
+        let bad = [("a", "new"), ("b", "bad")];
+        assert_eq!(next(&["a"], &bad), Ok("new".into()));
+        assert_eq!(next(&["a", "b"], &bad), Err(()));
+        assert_eq!(next(&["a", "b"], &bad), Ok("new good".into()));
+    }
+
+    #[test]
+    fn an_error_of_texts_that_are_gone_is_not_told() {
+        let history = TextHistory::default();
+        let sources =
+            |text: &'static str| -> Sources { Arc::new(move |_: &str| Some(text.into())) };
+        let mut old = vec![program(&["a"])];
+        let texts = history.put(Some(&sources("bad")), &mut old);
+        let edited = texts.edited(old.iter()).expect("texts of a host");
+        assert!(!history.is_old(&edited));
+        history.put(Some(&sources("mended")), &mut vec![program(&["a"])]);
+        let error = program(&["a"]).fault(("a", 1), "wrong".into()).into();
+        assert!(history.is_old(&edited) && history.skips(&edited, &error));
+        history.failed(&edited, &error);
+        assert_eq!(history.error(), None);
     }
 }

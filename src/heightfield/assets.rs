@@ -10,7 +10,7 @@ use bytemuck::cast_slice;
 use glam::DVec2;
 
 use crate::base::key::Fault;
-use crate::base::one_value_cache::{OneValueCache, is_last, last_or_new};
+use crate::base::one_value_cache::{OneValueCache, is_last, last_or_new, snapshot};
 use crate::heightfield::conemap::generate::generator::{GenerateError, Generator, ShareWatch};
 use crate::heightfield::load::PatternSpec;
 use crate::heightfield::paint::{Colors, Paint};
@@ -29,6 +29,29 @@ type SurfaceKey = (Source, Patches, [u32; 2]);
 type ConesKey = (SurfaceKey, TracerKind, String, f64);
 /// What decides a paint: surface, generator and offset.
 type PaintKey = (SurfaceKey, Generator, f64);
+
+/// What decides all that a heightfield loads and makes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssetKeys {
+    surface: SurfaceKey,
+    cones: Option<ConesKey>,
+    paint: Option<PaintKey>,
+    texture: Option<PathBuf>,
+}
+
+impl AssetKeys {
+    /// Those of a heightfield.
+    pub fn of(settings: &HeightfieldSettings) -> Self {
+        let needs_map = settings.tracer_settings.tracer.needs_map();
+        let texture = || settings.source.folder.join(&settings.texture);
+        Self {
+            surface: surface_key(settings),
+            cones: needs_map.then(|| cones_key(settings)),
+            paint: settings.paint.map(|by| paint_key(settings, by)),
+            texture: settings.is_textured().then(texture),
+        }
+    }
+}
 
 /// Loaded heights, made cone maps and read textures.
 #[derive(Clone, Debug, Default)]
@@ -73,6 +96,17 @@ pub struct Ready {
 }
 
 impl Assets {
+    /// What is there now. What others make and drop does not change it.
+    #[must_use]
+    pub fn snapshot(&self) -> Self {
+        Self {
+            surfaces: snapshot(&self.surfaces),
+            cones: snapshot(&self.cones),
+            paints: snapshot(&self.paints),
+            textures: snapshot(&self.textures),
+        }
+    }
+
     /// Reads the named files and checks that they fit together. Patterns are made later, as
     /// they cannot fail.
     ///
@@ -135,14 +169,11 @@ impl Assets {
 
     /// Whether everything is loaded and made. It never waits for a thread that does it.
     pub fn has(&self, settings: &HeightfieldSettings) -> bool {
-        let surface = surface_key(settings);
-        let path = settings.source.folder.join(&settings.texture);
-        let paint = settings.paint;
-        is_last(&self.surfaces, &surface)
-            && (!settings.tracer_settings.tracer.needs_map()
-                || is_last(&self.cones, &cones_key(settings)))
-            && paint.is_none_or(|by| is_last(&self.paints, &paint_key(settings, by)))
-            && (!settings.is_textured() || is_last(&self.textures, &path))
+        let keys = AssetKeys::of(settings);
+        is_last(&self.surfaces, &keys.surface)
+            && keys.cones.is_none_or(|key| is_last(&self.cones, &key))
+            && keys.paint.is_none_or(|key| is_last(&self.paints, &key))
+            && keys.texture.is_none_or(|key| is_last(&self.textures, &key))
     }
 
     /// All assets of a heightfield. Cone maps that were not prepared are made on the CPU.

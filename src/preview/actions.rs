@@ -18,7 +18,7 @@ use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
 use crate::preview::flight::{focus, look, orbit};
 use crate::preview::gui::is_in;
-use crate::preview::input::{Action, Drag, action, shortcut};
+use crate::preview::input::{Action, Drag, action, is_latin, letter, shortcut};
 use crate::preview::live::Live;
 use crate::preview::play::{last_key, set_view, with_still};
 use crate::preview::probe;
@@ -123,8 +123,12 @@ impl Live {
         }
         let keys = self.modifiers.state();
         let ctrl = keys.control_key() || keys.super_key();
+        let key = &event.logical_key;
+        if let Some(letter) = letter(key).filter(|letter| letter.is_alphabetic()) {
+            self.of_latin = is_latin(letter);
+        }
         let action = match ctrl {
-            true => shortcut(place, &event.logical_key, keys.shift_key()),
+            true => shortcut(place, key, keys.shift_key(), self.of_latin),
             false => action(place),
         };
         // Text is typed into a field of the panel. What is done with the whole document takes it in.

@@ -1,7 +1,7 @@
 //! What is edited: a plan with its history and its file.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, absolute};
 
 use crate::picture::{OutputError, Place, commit};
 use crate::plan::Plan;
@@ -18,6 +18,9 @@ pub struct Document {
     pub name: String,
     /// The file that it is saved to; `None` for a built-in preset.
     pub path: Option<PathBuf>,
+    /// The same place whatever becomes of the file, or the name of a built-in preset. Unsaved work is
+    /// kept under it.
+    pub place: String,
     /// The plan as it is now.
     pub plan: Plan,
     /// The beat of its film that is shown.
@@ -37,6 +40,7 @@ impl Document {
     /// Opens a plan as it was read.
     pub fn new(name: String, path: Option<PathBuf>, plan: Plan) -> Self {
         Self {
+            place: place(&name, path.as_deref()),
             name,
             path,
             saved: plan.clone(),
@@ -166,8 +170,20 @@ impl Document {
             preset::move_beside(plan, &path);
         }
         self.saved_at = self.past.len();
+        if self.path.as_ref() != Some(&path) {
+            self.place = place(&self.name, Some(&path));
+        }
         self.path = Some(path.clone());
         Ok(path)
+    }
+}
+
+fn place(name: &str, path: Option<&Path>) -> String {
+    // The file may be gone.
+    let whole = |path| fs::canonicalize(path).or_else(|_| absolute(path)).ok();
+    match path.and_then(whole) {
+        Some(path) => path.to_string_lossy().into_owned(),
+        None => name.into(),
     }
 }
 

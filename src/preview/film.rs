@@ -25,6 +25,8 @@ impl Live {
             return;
         };
         let plan = &self.document.plan;
+        // The film may be shorter than before.
+        self.play.fit(plan.time.length);
         if beat != self.play.beat && (tracks != plan.tracks || shows_film(plan, beat)) {
             // A view that comes back with other tracks stays a step.
             self.document.beat = beat;

@@ -87,13 +87,23 @@ pub enum Action {
     Quit,
 }
 
-/// What a key with Ctrl asks for. Layouts of other alphabets have the letters of a US keyboard.
-pub fn shortcut(place: KeyCode, key: &Key, shift: bool) -> Option<Action> {
-    let of_layout = key.to_text().and_then(|text| text.chars().next());
-    let is_latin = |letter: &char| *letter < '\u{250}';
-    let letter = match of_layout.filter(is_latin) {
-        None => of_us_keyboard(place),
-        letter => letter,
+/// The first letter or sign of a key.
+pub fn letter(key: &Key) -> Option<char> {
+    key.to_text().and_then(|text| text.chars().next())
+}
+
+/// Whether a letter is of a Latin alphabet.
+pub fn is_latin(letter: char) -> bool {
+    letter < '\u{250}'
+}
+
+/// What a key with Ctrl asks for. Layouts of other alphabets, which have signs too, have the letters of a
+/// US keyboard. `of_latin` is whether the last letter was Latin.
+pub fn shortcut(place: KeyCode, key: &Key, shift: bool, of_latin: bool) -> Option<Action> {
+    let letter = match letter(key) {
+        Some(letter) if letter.is_ascii_alphabetic() => Some(letter),
+        Some(letter) if of_latin && is_latin(letter) => None,
+        _ => of_us_keyboard(place),
     };
     match letter?.to_ascii_lowercase() {
         'z' if shift => Some(Action::Redo),
@@ -184,15 +194,20 @@ mod tests {
 
     #[test]
     fn shortcuts_are_letters_and_else_places() {
-        let shortcut = |place, text: &str| shortcut(place, &Key::Character(text.into()), false);
-        assert_eq!(shortcut(KeyCode::KeyZ, "z"), Some(Action::Undo));
-        // A French keyboard.
-        assert_eq!(shortcut(KeyCode::KeyW, "Z"), Some(Action::Undo));
-        assert_eq!(shortcut(KeyCode::KeyQ, "a"), None);
-        // A Dvorak one.
-        assert_eq!(shortcut(KeyCode::KeyQ, "'"), None);
-        // A Russian one.
-        assert_eq!(shortcut(KeyCode::KeyQ, "й"), Some(Action::Quit));
-        assert_eq!(shortcut(KeyCode::KeyW, "ц"), None);
+        let of = |place, text: &str, of_latin| {
+            shortcut(place, &Key::Character(text.into()), false, of_latin)
+        };
+        for of_latin in [false, true] {
+            assert_eq!(of(KeyCode::KeyZ, "z", of_latin), Some(Action::Undo));
+            // A French keyboard.
+            assert_eq!(of(KeyCode::KeyW, "Z", of_latin), Some(Action::Undo));
+            assert_eq!(of(KeyCode::KeyQ, "a", of_latin), None);
+            // A Russian one.
+            assert_eq!(of(KeyCode::KeyQ, "й", of_latin), Some(Action::Quit));
+            assert_eq!(of(KeyCode::KeyW, "ц", of_latin), None);
+        }
+        // A Dvorak one, and a Greek one.
+        assert_eq!(of(KeyCode::KeyQ, "'", true), None);
+        assert_eq!(of(KeyCode::KeyQ, ";", false), Some(Action::Quit));
     }
 }

@@ -1,7 +1,7 @@
 //! Unsaved work, kept outside the preset's file until it is saved.
 
 use std::fs::{self, File};
-use std::path::{Path, PathBuf, absolute};
+use std::path::{Path, PathBuf};
 
 use crate::picture::OutputError;
 use crate::plan::Plan;
@@ -15,23 +15,13 @@ const SLOTS: u32 = 1000;
 /// The first line of kept work, before the place of its preset.
 const TITLE: &str = "# unsaved work of ";
 
-/// The place of a document's preset: its file, or the name of a built-in one.
-fn place(document: &Document) -> String {
-    // The file may have vanished.
-    let whole = |path: &PathBuf| fs::canonicalize(path).or_else(|_| absolute(path)).ok();
-    match document.path.as_ref().and_then(whole) {
-        Some(path) => path.to_string_lossy().into_owned(),
-        None => document.name.clone(),
-    }
-}
-
 /// The most letters of a place in the name of a file. File systems allow 255 bytes.
 const MOST_LETTERS: usize = 40;
 
 /// The file for a document, named after the place of its preset: by its end, and by a number for the
 /// whole of it if it is long or has other letters.
 fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
-    let whole = place(document);
+    let whole = &document.place;
     let plain = |c: char| if c.is_alphanumeric() { c } else { '_' };
     let letters: Vec<char> = whole.chars().map(plain).collect();
     let end = letters.len().saturating_sub(MOST_LETTERS);
@@ -92,12 +82,18 @@ impl Slot {
         is_there.then(|| Self(Some((slot, lock))))
     }
 
-    /// Keeps the document's plan as it would be saved.
+    /// Keeps the document's plan as it would be saved. Returns whether there is a place for it.
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub fn keep(&mut self, folder: Option<&Path>, document: &Document) -> Result<(), OutputError> {
-        let Some(folder) = folder else { return Ok(()) };
+    pub fn keep(
+        &mut self,
+        folder: Option<&Path>,
+        document: &Document,
+    ) -> Result<bool, OutputError> {
+        let Some(folder) = folder else {
+            return Ok(false);
+        };
         let _ = fs::create_dir_all(folder);
         let plan = with_still(&document.plan, document.saved(), document.beat);
         // Work that nobody has taken yet is not written over.
@@ -106,12 +102,10 @@ impl Slot {
             self.0 = free.find_map(|slot| Some((slot, Lock::take(folder, document, slot)?)));
         }
         let Some((slot, _)) = self.0 else {
-            return Ok(());
+            return Ok(false);
         };
-        write(
-            &path(folder, document, slot),
-            format!("{TITLE}{}\n{}", place(document), preset::write(&plan)).as_bytes(),
-        )
+        let text = format!("{TITLE}{}\n{}", document.place, preset::write(&plan));
+        write(&path(folder, document, slot), text.as_bytes()).map(|()| true)
     }
 
     /// Forgets what was kept.
@@ -148,12 +142,11 @@ pub fn elsewhere(folder: Option<&Path>, document: &Document) -> Option<String> {
     let is_work = |path: &PathBuf| path.extension().is_some_and(|e| e == "toml");
     let mut files: Vec<_> = files.filter(is_work).collect();
     files.sort_by_cached_key(|path| fs::metadata(path).and_then(|file| file.modified()).ok());
-    let here = place(document);
     files.into_iter().rev().find_map(|path| {
         let text = fs::read_to_string(&path).ok()?;
         let place = text.lines().next()?.strip_prefix(TITLE)?;
         let mut kept = preset::read(&text, "unsaved work").ok()?;
-        if place == here || Lock::beside(&path).is_none() {
+        if place == document.place || Lock::beside(&path).is_none() {
             return None;
         }
         let file = preset::file(Path::new(place));
@@ -235,6 +228,7 @@ mod tests {
             .drop(at, &document);
         assert_eq!(find(at, &document), None);
         assert_eq!(find(None, &document), None);
+        assert!(!two.keep(None, &document).expect("no error"), "nowhere");
         // Who opens another preset hears of it.
         let scene = document.plan.scene.clone();
         let other = Document::new("other".into(), None, Plan::new(scene));

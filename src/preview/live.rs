@@ -88,9 +88,15 @@ pub struct Live {
     pub redraw: bool,
     pub hidden: bool,
     pub closed: bool,
-    /// Whether it closes when the still is written.
+    /// Whether it was asked to close, or to open another preset, and said what that would drop.
     pub closes: bool,
+    /// Whether unsaved work could be kept so far.
+    pub keeps: bool,
+    /// Whether the last letter that was typed is Latin.
+    pub of_latin: bool,
+    /// What is told for a while, and errors that last.
     pub notice: Option<Notice>,
+    pub standing: Vec<Notice>,
     pub shader_error: Option<String>,
     pub still: Option<Still>,
     pub question: Option<Question>,
@@ -177,7 +183,10 @@ impl Live {
             hidden: false,
             closed: false,
             closes: false,
+            keeps: true,
+            of_latin: false,
             notice: None,
+            standing: Vec::new(),
             shader_error: None,
             still: None,
             question: None,

@@ -35,20 +35,26 @@ impl Live {
 
     /// Tells what is wrong with the picture, unless that is told already.
     pub fn warn(&mut self, text: String) {
-        let told = |n: &Notice| n.text.ends_with(&text);
-        if !self.notice.as_ref().is_some_and(told) {
+        if !self.standing.iter().any(|n| n.text == text) {
             self.tell_until(text, true, Ends::WithPicture);
         }
     }
 
-    /// Tells the user something.
+    /// Tells the user something. What ends with time stands beside what does not.
     pub fn tell_until(&mut self, text: String, is_error: bool, ends: Ends) {
-        self.notice = Some(Notice {
+        let notice = Notice {
             text,
             is_error,
             ends,
             since: Instant::now(),
-        });
+        };
+        match ends {
+            Ends::Later => self.notice = Some(notice),
+            _ => {
+                self.standing.retain(|n| n.ends != ends);
+                self.standing.push(notice);
+            }
+        }
         self.paint_now();
     }
 
@@ -66,21 +72,28 @@ impl Live {
 
     /// What is told now, and whether it is an error.
     pub fn told(&self) -> Option<(String, bool)> {
-        let notice = self.notice.as_ref();
-        let lines = [self.shader_error.as_ref(), notice.map(|n| &n.text)];
-        let lines: Vec<&str> = lines.into_iter().flatten().map(String::as_str).collect();
-        let is_error = self.shader_error.is_some() || notice.is_some_and(|n| n.is_error);
+        let notices = self.standing.iter().chain(&self.notice);
+        let lines = notices.clone().map(|n| &n.text);
+        let lines: Vec<&str> = self
+            .shader_error
+            .iter()
+            .chain(lines)
+            .map(String::as_str)
+            .collect();
+        let is_error = self.shader_error.is_some() || notices.clone().any(|n| n.is_error);
         (!lines.is_empty()).then(|| (lines.join("\n"), is_error))
     }
 
-    /// Ends a notice whose end has come.
+    /// Ends the notices whose end has come.
     pub fn end_notice(&mut self, come: Ends) {
         self.look_at_shaders();
-        let ends = |n: &mut Notice| {
+        let stand = self.standing.len();
+        self.standing.retain(|n| n.ends != come);
+        let is_over = |n: &mut Notice| {
             let most = if n.is_error { ERROR } else { NOTICE };
-            n.ends == come && (come != Ends::Later || n.since.elapsed() > most)
+            n.since.elapsed() > most
         };
-        if self.notice.take_if(ends).is_some() {
+        if self.notice.take_if(is_over).is_some() || self.standing.len() < stand {
             self.paint_now();
         }
     }

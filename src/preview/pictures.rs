@@ -224,10 +224,12 @@ impl Pictures {
             return Ok(false);
         }
         for picture in [&mut self.full, &mut self.fine] {
+            picture.stop_preparing(self.wish, &plan);
             // What is in flight ends by itself.
             picture.under_way.take_if(|(of, _)| *of != self.wish);
         }
-        if !self.moving {
+        // A flight over heights that are still made would have no end of them.
+        if !self.moving || self.assets.serve(&plan) {
             self.small.stop_preparing(self.wish, &plan);
         }
         if self.small.under_way.is_some() {

@@ -92,7 +92,7 @@ impl Live {
         match said {
             Ok(path) => {
                 self.tell(format!("wrote {}", path.display()), false);
-                self.closed |= self.closes;
+                self.closed |= self.closes && self.keep_now();
             }
             Err(why) => {
                 self.closes = false;
@@ -101,17 +101,20 @@ impl Live {
         }
     }
 
-    /// Closes the window, or first says that a still is not written yet. Unsaved work is offered at
-    /// the next start.
+    /// Closes the window, or first says that a still is not written yet or that work would be lost.
+    /// Unsaved work is offered at the next start.
     pub fn close(&mut self) {
         self.leave_field();
-        self.keep_now();
+        let is_kept = self.keep_now();
         // Without the film, the still is written sooner.
         self.play.playing = false;
-        self.closed = self.still.is_none() || self.closes;
+        self.closed = self.closes || (self.still.is_none() && is_kept);
         self.closes = true;
         if !self.closed {
-            let text = "the window closes when the still is written; Ctrl+Q again drops the still";
+            let text = match is_kept {
+                true => "the window closes when the still is written; Ctrl+Q again drops the still",
+                false => "changes are not saved; Ctrl+S saves them, Ctrl+Q again drops them",
+            };
             self.tell(text, false);
         }
     }
@@ -179,6 +182,10 @@ impl Live {
 
     /// Opens another preset in the place of this one.
     pub fn open(&mut self, name: &str) {
+        if !self.keep_now() && !std::mem::replace(&mut self.closes, true) {
+            let text = "changes are not saved; Ctrl+S saves them, the same choice again drops them";
+            return self.tell(text, false);
+        }
         match preset::load(Path::new(name), &[]) {
             Ok(preset) => {
                 let path: Option<PathBuf> = preset::file(Path::new(name));
@@ -187,9 +194,8 @@ impl Live {
                     .set_title(&format!("{} - conemarch", preset.name));
                 self.visible.timeline = !preset.plan.tracks.is_empty();
                 self.play = Default::default();
-                self.keep_now();
                 self.slot = Slot::default();
-                self.unread = false;
+                (self.unread, self.closes) = (false, false);
                 self.end_notice(Ends::WithFile);
                 self.document = Document::new(preset.name, path, preset.plan);
                 self.options.sets.clear();
@@ -214,7 +220,16 @@ impl Live {
         } else if is_kept {
             self.unkept = None;
         } else if self.unkept.get_or_insert_with(Instant::now).elapsed() > KEEP {
-            self.keep_now();
+            // New work is not given up yet.
+            self.closes &= self.still.is_some();
+            let could_keep = self.keeps;
+            self.keeps = self.keep_now();
+            if could_keep && !self.keeps {
+                self.tell(
+                    "changes cannot be kept for the next start; Ctrl+S saves them",
+                    true,
+                );
+            }
         }
     }
 
@@ -242,6 +257,7 @@ impl Live {
         if restore {
             self.keep_now();
             self.document.change(|now| *now = plan);
+            self.play.fit(self.document.plan.time.length);
             self.slot = slot;
             self.kept = None;
             self.keep_now();
@@ -260,12 +276,15 @@ impl Live {
         (self.unkept, self.kept) = (None, None);
     }
 
-    /// Keeps unsaved work. What cannot be read again takes the place of nothing.
-    pub fn keep_now(&mut self) {
-        if self.document.is_changed() && self.document.plan.check().is_ok() {
-            // A cache that cannot be written is no reason to disturb.
-            let _ = self.slot.keep(self.options.kept.as_deref(), &self.document);
-            (self.unkept, self.kept) = (None, Some(self.document.plan.clone()));
+    /// Keeps unsaved work, and returns whether all of it is kept. What cannot be read again takes the
+    /// place of nothing.
+    pub fn keep_now(&mut self) -> bool {
+        if !self.document.is_changed() {
+            return true;
         }
+        (self.unkept, self.kept) = (None, Some(self.document.plan.clone()));
+        let folder = self.options.kept.as_deref();
+        let is_right = self.document.plan.check().is_ok();
+        is_right && self.slot.keep(folder, &self.document).unwrap_or(false)
     }
 }

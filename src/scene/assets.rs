@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::base::one_value_cache::{OneValueCache, is_last, last_or_new};
+use crate::base::one_value_cache::{OneValueCache, is_last, last_or_new, snapshot};
 use crate::heightfield::assets::Assets as HeightfieldAssets;
 use crate::scene::sky::Sky;
 
@@ -16,6 +16,15 @@ pub struct Assets {
 }
 
 impl Assets {
+    /// What is there now. What others make and drop does not change it.
+    #[must_use]
+    pub fn snapshot(&self) -> Self {
+        Self {
+            heightfield: self.heightfield.snapshot(),
+            skies: snapshot(&self.skies),
+        }
+    }
+
     /// The sky in a file.
     ///
     /// # Errors

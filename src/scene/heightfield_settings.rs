@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::heightfield::Heightfield;
 use super::{AnySolid, Assets, Scene, SceneSettings, Viewpoint};
 use crate::base::key::{Fault, Key};
-use crate::heightfield::assets::Preparation;
+use crate::heightfield::assets::{AssetKeys, Preparation};
 use crate::heightfield::conemap::generate::generator::ShareWatch;
 use crate::heightfield::settings::HeightfieldSettings;
 use crate::heightfield::tracer::settings::{Make, PrepareError};
@@ -103,6 +103,10 @@ impl SceneSettings for HeightfieldSettings {
 
     fn has_assets(&self, assets: &Assets) -> bool {
         assets.heightfield.has(self)
+    }
+
+    fn asset_keys(&self) -> Option<AssetKeys> {
+        Some(AssetKeys::of(self))
     }
 
     fn make_heights(&self, assets: &Assets, watch: ShareWatch<'_>) -> Result<(), PrepareError> {

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::stepping::Stepping;
 use super::{AnySolid, Assets, Scene};
 use crate::base::key::{Fault, Key};
-use crate::heightfield::assets::Preparation;
+use crate::heightfield::assets::{AssetKeys, Preparation};
 use crate::heightfield::conemap::generate::generator::ShareWatch;
 use crate::heightfield::tracer::settings::{Make, PrepareError};
 
@@ -163,6 +163,11 @@ pub trait SceneSettings {
     /// Whether all assets are loaded and made. It never waits for a thread that does it.
     fn has_assets(&self, _assets: &Assets) -> bool {
         true
+    }
+
+    /// What decides the assets; `None` for a scene without.
+    fn asset_keys(&self) -> Option<AssetKeys> {
+        None
     }
 
     /// Makes the heights, if a pattern describes them.

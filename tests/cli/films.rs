@@ -241,7 +241,10 @@ fn frames_are_those_of_their_moments_and_are_rendered_once() {
 fn wrong_films_are_refused_before_the_first_frame() {
     let folder = Folder::new();
     folder.write("film.toml", FILM);
+    let long = FILM.replace("length = 4", "length = 1000000");
+    folder.write("long.toml", long.replace("bpm = 120", "bpm = 1"));
     for (line, says) in [
+        ("long.toml -o f-%03d.png", "--frames names some"),
         ("film.toml -o f.png", "%05d"),
         ("film.toml -o f-%5d.png", "%05d"),
         ("film.toml -o f-%03d.jpg", ".png files"),

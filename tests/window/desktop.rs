@@ -333,6 +333,11 @@ impl<'a> Preview<'a> {
         kib.expect("a figure") / 1024.0
     }
 
+    /// Whether the program runs.
+    pub fn is_open(&mut self) -> bool {
+        self.process.try_wait().expect("a process").is_none()
+    }
+
     /// Closes the window. The program must end well.
     pub fn close(mut self) {
         self.key("ctrl+q");

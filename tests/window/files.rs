@@ -113,6 +113,14 @@ fn what_is_wrong_with_a_file_is_told_over_the_last_good_picture() {
         folder.write("film.toml", FILM);
         view.wait_for("the mended film", is_good);
     }
+    // What is told for a while does not take the place of an error that lasts.
+    folder.write("film.toml", heights);
+    view.wait_for("an error", is_told);
+    view.key("ctrl+c");
+    sleep(Duration::from_secs(7));
+    assert!(view.shot().is_some_and(|shot| is_told(&shot)));
+    folder.write("film.toml", FILM);
+    view.wait_for("the mended film", is_good);
     // The same file goes and comes back.
     let [file, aside] = ["film.toml", "aside.toml"].map(|name| folder.0.join(name));
     std::fs::rename(&file, &aside).unwrap();
@@ -149,6 +157,20 @@ fn a_file_that_is_read_again_keeps_what_was_set_over_it() {
     view.key("ctrl+z");
     sleep(Duration::from_millis(2000));
     assert_eq!(kept().len(), 0);
+}
+
+#[test]
+fn work_that_cannot_be_kept_is_not_dropped_at_once() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    // No folder can be made there.
+    folder.write("cache", "");
+    let mut view = Preview::open(&desktop, &folder.0, &format!("mandelbox {SIZE}"));
+    view.hold("w", 400);
+    view.at_rest();
+    view.key("ctrl+q");
+    sleep(Duration::from_millis(1500));
+    assert!(view.is_open());
+    view.close();
 }
 
 #[test]

@@ -79,6 +79,32 @@ fn the_timeline_shows_the_frames_of_the_film() {
 }
 
 #[test]
+fn a_key_lies_in_a_film_that_became_shorter_again() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let still = FILM.split("[[track]]").next().unwrap();
+    folder.write("film.toml", still);
+    let view = Preview::open(&desktop, &folder.0, &format!("film.toml {SIZE}"));
+    folder.write("film.toml", still.replace("length = 2", "length = 20"));
+    sleep(Duration::from_millis(1500));
+    for _ in 0..30 {
+        view.key("period");
+    }
+    view.key("ctrl+z");
+    view.key("k");
+    view.key("ctrl+s");
+    sleep(Duration::from_millis(500));
+    let saved = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+    assert_eq!(saved.time.length, 2.0);
+    let times = saved.tracks.iter().flat_map(|track| &track.keys);
+    let times: Vec<f64> = times.map(|key| key.time).collect();
+    assert!(
+        !times.is_empty() && times.iter().all(|time| *time == 2.0),
+        "{times:?}"
+    );
+    view.close();
+}
+
+#[test]
 fn playing_drops_pictures_and_never_time() {
     let (desktop, folder) = (Desktop::new(), Folder::new());
     // No machine that these tests run on shows so many pictures.

@@ -18,7 +18,7 @@ use crate::gpu::kernel::Kernel;
 use crate::gpu::render::Cutting;
 use crate::gpu::target::{Needs, Parameters};
 use crate::gpu::task_status::TaskStatus;
-use crate::gpu::texts::Texts;
+use crate::gpu::texts::{Edited, Texts};
 use crate::heightfield::assets::Preparation;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::pass::layers;
@@ -67,7 +67,10 @@ pub struct FrameRequest {
     pub plan: Plan,
     /// Whether rays start without cones although the plan has cone levels.
     pub rays_alone: bool,
+    /// A copy of what is there, which no other thread changes.
     pub assets: Assets,
+    /// Where new assets go.
+    pub all_assets: Assets,
     pub extras: Extras,
     pub cutting: Cutting,
     pub sources: Option<Sources>,
@@ -87,21 +90,21 @@ pub struct FrameInputs {
     pub arrays: Vec<DeviceArray>,
     /// The shader texts of the host, and the programs if they have some.
     pub texts: Texts,
-    pub edited: Vec<Program>,
+    pub edited: Option<Edited>,
 }
 
 /// Why a frame cannot begin.
 pub struct PrepareFailure {
     pub error: RenderError,
     /// The programs, if they have texts of the host.
-    pub programs: Vec<Program>,
+    pub edited: Option<Edited>,
 }
 
 impl<E: Into<RenderError>> From<E> for PrepareFailure {
     fn from(error: E) -> Self {
         Self {
             error: error.into(),
-            programs: Vec::new(),
+            edited: None,
         }
     }
 }
@@ -114,14 +117,6 @@ struct Draft {
     needs: Needs,
     arrange: Program,
     texts: Texts,
-}
-
-/// The programs of a frame, if they have texts of a host.
-fn edited(texts: &Texts, needs: &Needs, arrange: &Program) -> Vec<Program> {
-    match texts.is_empty() {
-        true => Vec::new(),
-        false => needs.programs.iter().chain([arrange]).cloned().collect(),
-    }
 }
 
 impl FrameRequest {
@@ -177,21 +172,36 @@ impl FrameRequest {
     pub fn prepare(mut self, told: &TaskStatus) -> Result<FrameInputs, PrepareFailure> {
         let mut tell = |progress: &Progress| told.tell(progress);
         let shared = self.shared.clone();
-        let _turn = match self.assets.serve(&self.plan) {
-            true => None,
-            false => Some(shared.wait_to_prepare(&mut tell)?),
+        let maps = match self.assets.serve(&self.plan) {
+            true => shared.make_maps(&self.plan, &self.assets, &mut tell)?,
+            false => {
+                // Only who has the turn changes what others share.
+                let _turn = shared.wait_to_prepare(&mut tell)?;
+                let maps = shared.make_maps(&self.plan, &self.all_assets, &mut tell)?;
+                self.all_assets
+                    .load(&self.plan)
+                    .map_err(PrepareError::from)?;
+                self.assets = self.all_assets.snapshot();
+                maps
+            }
         };
-        let maps = shared.make_maps(&self.plan, &self.assets, &mut tell)?;
         // Heights decide about cones.
         self.resolve();
         loop {
             let draft = self.draft()?;
-            let programs = edited(&draft.texts, &draft.needs, &draft.arrange);
-            match self.complete(draft, maps.clone(), None, &mut tell) {
-                Err(RenderError::Kernel(error))
-                    if !programs.is_empty() && self.shared.texts.skips(&programs, &error) => {}
-                Err(error) => return Err(PrepareFailure { error, programs }),
-                Ok(inputs) => return Ok(inputs),
+            let all = draft.needs.programs.iter().chain([&draft.arrange]);
+            let edited = draft.texts.edited(all);
+            let made = self.complete(draft, maps.clone(), None, &mut tell);
+            let (error, edited) = match (made, edited) {
+                (Ok(inputs), _) => return Ok(inputs),
+                (Err(RenderError::Kernel(error)), Some(edited)) => (error, edited),
+                (Err(error), edited) => return Err(PrepareFailure { error, edited }),
+            };
+            if !shared.texts.skips(&edited, &error) {
+                // Other threads know at once.
+                shared.texts.failed(&edited, &error);
+                let (error, edited) = (error.into(), Some(edited));
+                return Err(PrepareFailure { error, edited });
             }
         }
     }
@@ -308,7 +318,12 @@ impl FrameRequest {
         let kernels = needs.programs.iter().map(compile);
         let kernels: Vec<_> = kernels.collect::<Result<_, _>>()?;
         let arrange = compile(&draft.arrange)?;
-        let edited = edited(&draft.texts, &needs, &draft.arrange);
+        let all = needs.programs.iter().chain([&draft.arrange]);
+        let edited = draft.texts.edited(all);
+        // What was given up leaves the arrays as they are.
+        if !tell(&compile_first) {
+            return Err(RenderError::Cancelled);
+        }
         let lock = || self.shared.arrays.lock();
         let mut arrays = arrays.unwrap_or_else(|| lock().unwrap_or_else(PoisonError::into_inner));
         let uploads = &mut traffic.uploads;

@@ -32,12 +32,12 @@ use crate::gpu::task_status::Panicked;
 use crate::gpu::texts::TextHistory;
 #[cfg(feature = "cli")]
 use crate::gpu::wait::read_picture;
+use crate::heightfield::assets::AssetKeys;
 use crate::pass::progress::Progress;
 #[cfg(feature = "cli")]
 use crate::pass::progress::Watch;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::Extras;
-use crate::scene::Scene;
 use inputs::PrepareFailure;
 pub(super) use inputs::{FrameInputs, FrameRequest, marched, most_steps};
 use job::Reusable;
@@ -51,14 +51,14 @@ pub(super) struct Shared {
     pub arrays: Mutex<Arrays>,
     pub reusable: Mutex<Reusable>,
     pub texts: TextHistory,
-    /// Locked by the thread that prepares a frame.
+    /// Locked by the thread that loads and makes assets.
     pub preparing: Mutex<()>,
 }
 
-/// What a thread prepares, and for which scene.
+/// What a thread prepares, and what decides the assets of its scene.
 struct Preparing {
-    scene: Scene,
-    inputs: Background<Result<FrameInputs, PrepareFailure>>,
+    assets: Option<AssetKeys>,
+    task: Background<Result<FrameInputs, PrepareFailure>>,
 }
 
 /// A render under way on a device. Dropping it cancels it.
@@ -67,7 +67,7 @@ pub struct Work {
     extras: Extras,
     /// What is prepared, until a run begins: for the last plan, and for plans before it, to go back
     /// to if the last one fails.
-    inputs: Vec<Preparing>,
+    preparing: Vec<Preparing>,
     /// The run of the last plan that was prepared.
     run: Option<Run>,
 }
@@ -85,17 +85,15 @@ impl Work {
         Self {
             shared,
             extras,
-            inputs: Vec::new(),
+            preparing: Vec::new(),
             run: None,
         }
     }
 
     /// Begins a run in place of the one under way. If it cannot begin, the other one goes on.
     pub(super) fn start(&mut self, mut inputs: FrameInputs) -> Result<(), RenderError> {
-        let (texts, programs) = (
-            std::mem::take(&mut inputs.texts),
-            std::mem::take(&mut inputs.edited),
-        );
+        let texts = std::mem::take(&mut inputs.texts);
+        let edited = inputs.edited.take();
         let shelf = self.shared.reusable.lock();
         let mut shelf = shelf.unwrap_or_else(PoisonError::into_inner);
         let reusable = match &mut self.run {
@@ -106,14 +104,19 @@ impl Work {
         drop(shelf);
         let mut run = match begun {
             Ok(run) => run,
-            Err(error) => return Err(self.failed(PrepareFailure { error, programs })),
+            Err(error) => {
+                if let (RenderError::Kernel(error), Some(edited)) = (&error, &edited) {
+                    self.shared.texts.failed(edited, error);
+                }
+                return Err(error);
+            }
         };
         self.shared.texts.worked(texts);
         if let Some(old) = &mut self.run {
             old.discard_flights(&mut run.reusable.stagings);
         }
         self.run = Some(run);
-        self.inputs.clear();
+        self.preparing.clear();
         Ok(())
     }
 
@@ -122,24 +125,22 @@ impl Work {
         if !Arc::ptr_eq(&self.shared, shared) {
             self.shared = shared.clone();
             self.run = None;
-            self.inputs.clear();
+            self.preparing.clear();
         }
     }
 
     /// Begins a run once it is prepared. If it fails, the plan before it goes on: the one that runs, or
-    /// else the first that is prepared. That one goes on too if it makes the same heights and maps, which
-    /// begin once only. The threads of all others stop.
+    /// else the first that is prepared, if its assets are the same: heights and maps take long, and are
+    /// not made for a plan that is gone. The threads of all others stop.
     pub(super) fn start_when_ready(
         &mut self,
-        scene: Scene,
-        inputs: Background<Result<FrameInputs, PrepareFailure>>,
+        assets: Option<AssetKeys>,
+        task: Background<Result<FrameInputs, PrepareFailure>>,
     ) {
-        let goes_on = self
-            .inputs
-            .first()
-            .is_some_and(|first| first.scene == scene);
-        self.inputs.truncate(usize::from(goes_on));
-        self.inputs.push(Preparing { scene, inputs });
+        let first = self.preparing.first();
+        let goes_on = first.is_some_and(|first| first.assets == assets);
+        self.preparing.truncate(usize::from(goes_on));
+        self.preparing.push(Preparing { assets, task });
     }
 
     /// Takes in an answer of the thread that prepares the run.
@@ -152,55 +153,51 @@ impl Work {
             Ok(Some(Ok(inputs))) => {
                 let begun = self.start(inputs);
                 if begun.is_err() {
-                    self.inputs.pop();
+                    self.preparing.pop();
                 }
                 begun
             }
             Ok(Some(Err(failure))) => {
-                self.inputs.pop();
+                self.preparing.pop();
                 // On a lost device, programs fail too.
                 self.shared.device.check()?;
-                Err(self.failed(failure))
+                match failure.edited {
+                    // The run goes on, and the next plan has the texts of now.
+                    Some(edited) if self.run.is_some() && self.shared.texts.is_old(&edited) => {
+                        Ok(())
+                    }
+                    _ => Err(failure.error),
+                }
             }
             Err(Panicked) => {
-                self.inputs.pop();
+                self.preparing.pop();
                 Err(RenderError::Panicked)
             }
         }
     }
 
-    /// Remembers the shader texts of a frame whose programs cannot be.
-    fn failed(&self, failure: PrepareFailure) -> RenderError {
-        if let RenderError::Kernel(error) = &failure.error
-            && !failure.programs.is_empty()
-        {
-            self.shared.texts.failed(&failure.programs, error);
-        }
-        failure.error
-    }
-
     fn receive(&mut self) -> Result<(), RenderError> {
-        match self.inputs.last() {
-            Some(last) => self.answered(last.inputs.poll()),
+        match self.preparing.last() {
+            Some(last) => self.answered(last.task.poll()),
             None => Ok(()),
         }
     }
 
     /// Whether a thread still prepares the last plan.
     pub fn is_preparing(&self) -> bool {
-        !self.inputs.is_empty()
+        !self.preparing.is_empty()
     }
 
     /// Gives up what is prepared. The plan before goes on, if there is one.
     pub fn stop_preparing(&mut self) {
-        self.inputs.clear();
+        self.preparing.clear();
     }
 
     /// How far the render has come.
     pub fn progress(&self) -> Progress {
-        let inputs = self.inputs.last().map(|last| last.inputs.progress());
+        let prepared = self.preparing.last().map(|last| last.task.progress());
         let run = || self.run.as_ref().map(Run::progress);
-        inputs.or_else(run).unwrap_or_default()
+        prepared.or_else(run).unwrap_or_default()
     }
 
     /// The picture as far as it is made: first the fronts of the coarse levels, then colours.
@@ -248,7 +245,7 @@ impl Work {
     /// plan to go back to is cancelled.
     pub fn poll(&mut self) -> Result<Option<Frame>, RenderError> {
         self.receive()?;
-        match (&mut self.run, self.inputs.last()) {
+        match (&mut self.run, self.preparing.last()) {
             (_, Some(_)) => Ok(None),
             (Some(run), None) => {
                 let polled = run.poll();
@@ -283,11 +280,11 @@ impl Work {
 
     #[cfg(feature = "cli")]
     fn wait_for_frame(&mut self, watch: Watch<'_>) -> Result<Frame, RenderError> {
-        while let Some(inputs) = self.inputs.last() {
-            if !watch(&inputs.inputs.progress()) {
+        while let Some(last) = self.preparing.last() {
+            if !watch(&last.task.progress()) {
                 return Err(RenderError::Cancelled);
             }
-            let answer = inputs.inputs.wait();
+            let answer = last.task.wait();
             self.answered(answer)?;
         }
         let (mut told, mut most) = (0, 0.0_f64);

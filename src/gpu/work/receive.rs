@@ -191,10 +191,8 @@ impl Run {
     /// Gives up what was submitted. Its buffers serve again once the device has filled them.
     pub(super) fn discard_flights(&mut self, stagings: &mut Stagings) {
         for flight in self.flights.drain(..) {
-            stagings.discard(flight.report);
-            if let Some((_, staging)) = flight.reading {
-                stagings.discard(staging);
-            }
+            let reading = flight.reading.map(|(_, staging)| staging);
+            stagings.discard(flight.report, reading);
         }
     }
 

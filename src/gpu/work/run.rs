@@ -381,16 +381,20 @@ impl Run {
         if self.has_room() {
             return Ok(());
         }
-        if self.flights.is_empty() {
-            // The device runs what was submitted of another plan.
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        if let Some(flight) = self.flights.front() {
-            let device = &self.shared.device;
-            device.wait_a_moment(flight.index.clone())?;
-            if (device.clock)() - flight.submitted.max(self.ended) > 120e3 {
-                return Err(device.lost("it has not answered for two minutes").into());
+        let device = &self.shared.device;
+        let since = match self.flights.front() {
+            Some(flight) => {
+                device.wait_a_moment(flight.index.clone())?;
+                flight.submitted.max(self.ended)
             }
+            None => {
+                // The device runs what was submitted of another plan.
+                std::thread::sleep(Duration::from_millis(1));
+                self.ended
+            }
+        };
+        if (device.clock)() - since > 120e3 {
+            return Err(device.lost("it has not answered for two minutes").into());
         }
         Ok(())
     }
