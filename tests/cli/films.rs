@@ -283,7 +283,7 @@ fn wrong_films_are_refused_before_the_first_frame() {
         "{}",
         said(&without)
     );
-    assert_eq!(folder.files(), ["film.toml"]);
+    assert_eq!(folder.files(), ["film.toml", "long.toml"]);
 }
 
 /// A program stands in for ffmpeg: it writes its last argument, or waits.
