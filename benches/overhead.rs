@@ -48,8 +48,8 @@ const TODAY: [&str; 2] = ["march.coarsest=auto", "march.shell=0.2"];
 const STRIDE: f64 = 0.1;
 /// Presets whose second frame is looked at.
 const LIVE: [&str; 3] = ["mandelbox", "mandelbox-gate", "terrain"];
-/// Its sizes: one at which kernels take little, and one at which rays tell whether cones pay.
-const FRAMES: [[u32; 2]; 2] = [[64, 36], [1280, 720]];
+/// Its sizes: kernels take little at the first, and rays tell whether cones pay at the others.
+const FRAMES: [[u32; 2]; 3] = [[64, 36], [640, 360], [1280, 720]];
 
 fn main() -> Result<()> {
     // Cargo adds `--bench` to what it is given.

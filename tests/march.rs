@@ -17,20 +17,26 @@ mod common {
     pub mod solved;
 }
 
-use adapter::{COUNTED, EVERYTHING, HIT, LEVELS, SKY, UNCONVERGED, on_cpu, render, render_cut};
+use adapter::{
+    COUNTED, DEPTHS, EVERYTHING, HIT, LEVELS, NO_ADAPTER, SKY, UNCONVERGED, on_cpu, render,
+    render_cut,
+};
 use common::exact::first_hit;
 use common::overclaims::{brought_near, overclaims};
 use common::plans::{camera, compared, preset, sized};
 use common::solved::{balls, cameras, rays, slab, solids, solved};
 use conemarch::base::outcome::Counts;
 use conemarch::base::projection::Projection;
-use conemarch::gpu::render::Cutting;
+use conemarch::gpu::adapters::{Adapters, Choice};
+use conemarch::gpu::device::Device;
+use conemarch::gpu::render::{Cutting, Renderer};
 use conemarch::picture::frame::Frame;
 use conemarch::plan::camera::Camera;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::scene::{Assets, Scene};
 use glam::DVec3;
+use wgpu::DeviceType;
 
 /// Asserts that no cell of a render claims too much; says how near they bring rays.
 fn assert_sound(plan: &Plan, what: &str) -> f64 {
@@ -38,7 +44,7 @@ fn assert_sound(plan: &Plan, what: &str) -> f64 {
     let frame = render(plan, LEVELS);
     let divisors: Vec<u32> = frame.levels.iter().map(|l| l.divisor).collect();
     assert_eq!(divisors, [32, 16, 8, 4, 2]);
-    assert_eq!(overclaims(&frame, &t), 0, "{what}");
+    assert_eq!(overclaims(&frame, plan.camera.eye, &t), [], "{what}");
     let report = compared(&frame, &reference, plan);
     assert_eq!(report.start_violations, [0; 5], "{what}");
     // On a field of slope 1 neither can a ray pass what it meets.
@@ -165,7 +171,7 @@ fn the_rule_of_the_slides_is_caught() {
         plan.march.mode = Mode::SlidesDeep;
         let (reference, t) = solved(&plan);
         let frame = render(&plan, LEVELS);
-        assert!(overclaims(&frame, &t) > 100);
+        assert!(overclaims(&frame, plan.camera.eye, &t).len() > 100);
         let report = compared(&frame, &reference, &plan);
         let found: u64 = report.start_violations.iter().sum();
         assert!(found > 100, "{:?}", report.start_violations);
@@ -455,5 +461,26 @@ fn cones_are_left_out_where_they_save_few_steps() {
             let marched = frame.passes.iter().filter(|p| p.pass.marches()).count();
             assert_eq!((frame.levels.len(), marched), (0, 1), "{name}");
         }
+    }
+}
+
+/// The device only says that it is one.
+#[test]
+fn a_discrete_gpu_has_cones_only_to_look_at() {
+    let adapters = Adapters::find();
+    let (adapter, _) = adapters.choose(&Choice::Auto).unwrap().expect(NO_ADAPTER);
+    let mut device = Device::open(adapter).unwrap();
+    device.info.device_type = DeviceType::DiscreteGpu;
+    let mut renderer = Renderer::new(device);
+    let mut marched = |name: &str, settings: &str, extras: Extras| {
+        let plan = preset(name, &["image.size=[400, 300]", settings]);
+        let frame = renderer.render(&plan, &Assets::default(), extras, &mut |_| true);
+        let frame = frame.unwrap();
+        frame.passes.iter().filter(|p| p.pass.marches()).count()
+    };
+    for name in ["mandelbox-gate", "terrain"] {
+        assert_eq!(marched(name, "march.coarsest=auto", DEPTHS), 1, "{name}");
+        assert_eq!(marched(name, "march.coarsest=auto", LEVELS), 5, "{name}");
+        assert_eq!(marched(name, "march.coarsest=16", DEPTHS), 5, "{name}");
     }
 }

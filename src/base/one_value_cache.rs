@@ -33,9 +33,12 @@ pub fn is_last<K: PartialEq, V>(last: &OneValueCache<K, V>, key: &K) -> bool {
     kept.is_some_and(|kept| kept.as_ref().is_some_and(|(of, _)| of == key))
 }
 
-/// A cache of its own with what is kept now; empty while another value is made.
-pub fn snapshot<K: Clone, V>(last: &OneValueCache<K, V>) -> OneValueCache<K, V> {
-    let kept = kept(last);
+/// A cache of its own with what is kept now. While another value is made, it is empty, or this waits.
+pub fn snapshot<K: Clone, V>(last: &OneValueCache<K, V>, may_wait: bool) -> OneValueCache<K, V> {
+    let kept = match may_wait {
+        true => Some(last.lock().unwrap_or_else(PoisonError::into_inner)),
+        false => kept(last),
+    };
     Arc::new(Mutex::new(kept.and_then(|kept| kept.clone())))
 }
 
@@ -68,14 +71,19 @@ mod tests {
     }
 
     #[test]
-    fn a_snapshot_keeps_its_value_and_never_waits() {
+    fn a_snapshot_keeps_its_value() {
         let last = OneValueCache::<u32, u32>::default();
         let make = |key| last_or_new(&last, key, |k| Ok::<_, ()>(10 * k));
         make(1).expect("made");
-        let before = snapshot(&last);
+        let before = snapshot(&last, false);
         make(2).expect("made");
         assert!(is_last(&before, &1) && is_last(&last, &2));
-        let _made = last.lock();
-        assert!(!is_last(&last, &2) && !is_last(&snapshot(&last), &2));
+        let made = last.lock().expect("not poisoned");
+        assert!(!is_last(&last, &2) && !is_last(&snapshot(&last, false), &2));
+        std::thread::scope(|scope| {
+            let waits = scope.spawn(|| snapshot(&last, true));
+            drop(made);
+            assert!(is_last(&waits.join().expect("a snapshot"), &2));
+        });
     }
 }

@@ -173,9 +173,10 @@ pub fn run(args: &Animate) -> Result<()> {
             all - 1
         )));
     }
-    if last - first >= MOST_FRAMES {
+    let [part, parts] = args.shard.unwrap_or([1, 1]);
+    if (last - first) / parts >= MOST_FRAMES {
         return Err(usage(format!(
-            "the film has {all} frames, of which at most {MOST_FRAMES} can be made at once; --frames names some"
+            "the film has {all} frames, of which at most {MOST_FRAMES} can be made at once; --frames or --shard names some"
         )));
     }
     if let Some(video) = &args.video {
@@ -193,7 +194,6 @@ pub fn run(args: &Animate) -> Result<()> {
         find_ffmpeg()?;
         Sink::prepare(video)?;
     }
-    let [part, parts] = args.shard.unwrap_or([1, 1]);
     // A film that fails does so before its first frame.
     let frames: Vec<u32> = (first..=last).filter(|f| f % parts == part - 1).collect();
     // A frame must not take the place of what the film is made from.

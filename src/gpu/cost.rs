@@ -1,6 +1,8 @@
 //! What is known about the dispatches of a stage. It decides the size of dispatches, and never
 //! changes a pixel.
 
+use wgpu::DeviceType;
+
 use crate::pass::turn::Stage;
 
 /// The longest time in milliseconds that a dispatch is made for. At the end of each, some threads of
@@ -9,7 +11,7 @@ pub const LONGEST_MS: f64 = 30.0;
 /// The time that a dispatch of unknown cost is taken for.
 const FIRST_MS: f64 = 8.0;
 /// The product of workgroups and steps of a first dispatch. At 64 steps of a fractal with few
-/// iterations it takes about `FIRST_MS` on a slow device.
+/// iterations it takes about `FIRST_MS` on two cores.
 const FIRST_SLICE: u32 = 64 * 256;
 /// The same where light is followed by rays: such a dispatch takes much longer.
 const FIRST_SLICE_OF_PATHS: u32 = 64 * 16;
@@ -41,13 +43,25 @@ pub struct Cost {
     last: Option<u32>,
 }
 
+/// How many times as fast as two cores a device of a kind is at least taken to be. One that is a few
+/// times slower than that takes a tenth of a second for its first dispatch; a small dispatch would
+/// leave most of a large device idle.
+fn speed(device: DeviceType) -> u32 {
+    match device {
+        DeviceType::DiscreteGpu => 64,
+        DeviceType::IntegratedGpu | DeviceType::VirtualGpu => 8,
+        DeviceType::Cpu | DeviceType::Other => 1,
+    }
+}
+
 impl Cost {
     /// What is known of a stage that has not run yet.
-    pub fn first(follows_light: bool) -> Self {
+    pub fn first(follows_light: bool, device: DeviceType) -> Self {
         let slice = match follows_light {
             true => FIRST_SLICE_OF_PATHS,
             false => FIRST_SLICE,
         };
+        let slice = slice * speed(device);
         Self {
             slice,
             dispatch_ms: FIRST_MS,

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll, Waker};
 
 use thiserror::Error;
-use wgpu::{Adapter, AdapterInfo, Features};
+use wgpu::{Adapter, AdapterInfo, DeviceType, Features};
 
 use crate::base::clock::Clock;
 
@@ -73,6 +73,11 @@ pub struct Device {
 }
 
 impl Device {
+    /// Whether this is a graphics card of its own.
+    pub fn is_discrete(&self) -> bool {
+        self.info.device_type == DeviceType::DiscreteGpu
+    }
+
     /// Takes over a device that a host has opened, a window for example. Its callbacks for a
     /// loss and for errors are replaced.
     pub fn adopt(

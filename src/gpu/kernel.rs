@@ -73,9 +73,16 @@ impl Kernels {
             return Ok(kernel.clone());
         }
         match Kernel::new(device, program) {
-            Ok(kernel) => Ok(kept.insert(Arc::new(kernel)).clone()),
+            Ok(kernel) => {
+                let mut all = lock(&self.0);
+                // Who waited for a thread that failed comes back.
+                if !all.iter().any(|(p, _)| p == program) {
+                    all.push((program.clone(), Arc::clone(&place)));
+                }
+                Ok(kept.insert(Arc::new(kernel)).clone())
+            }
             Err(error) => {
-                lock(&self.0).retain(|(p, _)| p != program);
+                lock(&self.0).retain(|(_, p)| !Arc::ptr_eq(p, &place));
                 Err(error)
             }
         }

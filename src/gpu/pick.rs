@@ -84,12 +84,12 @@ impl SubmittedPick {
         tell: Watch<'_>,
     ) -> Result<Self, RenderError> {
         let gpu = &*shared.device;
-        let mut own = assets.snapshot();
+        let mut own = assets.snapshot(false);
         if !plan.scene.has_assets(&own) {
             let _turn = shared.wait_to_prepare(tell)?;
             shared.make_maps(plan, assets, tell)?;
             plan.scene.load(assets).map_err(PrepareError::from)?;
-            own = assets.snapshot();
+            own = assets.snapshot(true);
         }
         let scene = plan.scene.solid(&plan.viewpoint(), &own)?;
         let steps = most_steps(&scene);

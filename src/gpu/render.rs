@@ -6,6 +6,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::base::one_value_cache::OneValueCache;
 use crate::base::shader::Sources;
 use crate::gpu::background::{Background, Threads};
 use crate::gpu::device::Device;
@@ -87,6 +88,7 @@ impl Renderer {
                 kernels: Kernels::default(),
                 arrays: Mutex::default(),
                 reusable: Mutex::default(),
+                tone_steps: OneValueCache::default(),
                 texts: TextHistory::default(),
                 preparing: Mutex::default(),
             }),
@@ -147,7 +149,7 @@ impl Renderer {
         let mut request = FrameRequest {
             plan: plan.clone(),
             rays_alone: false,
-            assets: assets.snapshot(),
+            assets: assets.snapshot(false),
             all_assets: assets.clone(),
             extras: work.extras(),
             cutting: self.cutting,

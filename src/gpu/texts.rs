@@ -152,11 +152,6 @@ impl TextHistory {
         was_told
     }
 
-    /// Whether the host has other texts by now.
-    pub fn is_old(&self, edited: &Edited) -> bool {
-        lock(&self.known).version != edited.version
-    }
-
     /// The last error that was told, if no text has changed since.
     pub fn error(&self) -> Option<String> {
         lock(&self.known).told.last().cloned()
@@ -306,10 +301,9 @@ mod tests {
         let mut old = vec![program(&["a"])];
         let texts = history.put(Some(&sources("bad")), &mut old);
         let edited = texts.edited(old.iter()).expect("texts of a host");
-        assert!(!history.is_old(&edited));
         history.put(Some(&sources("mended")), &mut vec![program(&["a"])]);
         let error = program(&["a"]).fault(("a", 1), "wrong".into()).into();
-        assert!(history.is_old(&edited) && history.skips(&edited, &error));
+        assert!(history.skips(&edited, &error));
         history.failed(&edited, &error);
         assert_eq!(history.error(), None);
     }

@@ -96,14 +96,15 @@ pub struct Ready {
 }
 
 impl Assets {
-    /// What is there now. What others make and drop does not change it.
+    /// What is there now. What others make and drop does not change it. What others are making is
+    /// left out, unless this may wait for them.
     #[must_use]
-    pub fn snapshot(&self) -> Self {
+    pub fn snapshot(&self, may_wait: bool) -> Self {
         Self {
-            surfaces: snapshot(&self.surfaces),
-            cones: snapshot(&self.cones),
-            paints: snapshot(&self.paints),
-            textures: snapshot(&self.textures),
+            surfaces: snapshot(&self.surfaces, may_wait),
+            cones: snapshot(&self.cones, may_wait),
+            paints: snapshot(&self.paints, may_wait),
+            textures: snapshot(&self.textures, may_wait),
         }
     }
 

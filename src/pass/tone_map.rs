@@ -47,7 +47,7 @@ pub struct ToneUniform {
 }
 
 /// The way from light to display values.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tone {
     /// The curve.
     pub map: ToneMap,

@@ -305,7 +305,7 @@ impl Plan {
         plan
     }
 
-    /// Whether cones save more time than they take.
+    /// Whether cones save more time than they take on a few cores.
     fn cones_pay(&self, assets: &Assets) -> bool {
         if self.size.map(u64::from).iter().product::<u64>() < self.scene.cone_pixels() {
             return false;

@@ -1,6 +1,6 @@
 //! The panel, the timeline and what else lies over the picture, painted when something changed.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use egui::{Button, ComboBox, Context, Order, Panel, Rect, ScrollArea, Ui};
 
@@ -37,6 +37,18 @@ struct Requests {
 }
 
 impl Live {
+    /// Paints the panel as soon as it may be painted: the user waits for it.
+    pub fn paint_now(&mut self) {
+        self.paint_soon(Duration::ZERO);
+        self.urgent = true;
+    }
+
+    /// Paints the panel after a time, or earlier if that was asked for already.
+    pub fn paint_soon(&mut self, after: Duration) {
+        let at = Instant::now() + after;
+        self.panel_due = Some(self.panel_due.map_or(at, |due| due.min(at)));
+    }
+
     /// Runs the panel and paints it.
     pub fn paint(&mut self) {
         (self.panel_due, self.urgent) = (None, false);

@@ -18,6 +18,7 @@ use crate::preview::flight::Flight;
 use crate::preview::gui;
 use crate::preview::input::{Drag, thrust};
 use crate::preview::keep::Slot;
+use crate::preview::leaving::Leaving;
 use crate::preview::meter::{Figures, Meter};
 use crate::preview::notice::{Ends, Notice};
 use crate::preview::pictures::Pictures;
@@ -88,8 +89,8 @@ pub struct Live {
     pub redraw: bool,
     pub hidden: bool,
     pub closed: bool,
-    /// Whether it was asked to close, or to open another preset, and said what that would drop.
-    pub closes: bool,
+    /// What was asked for, and waits for a still or for the user to ask again.
+    pub leaving: Option<Leaving>,
     /// Whether unsaved work could be kept so far.
     pub keeps: bool,
     /// Whether the last letter that was typed is Latin.
@@ -97,7 +98,8 @@ pub struct Live {
     /// What is told for a while, and errors that last.
     pub notice: Option<Notice>,
     pub standing: Vec<Notice>,
-    pub shader_error: Option<String>,
+    /// What is wrong with a shader text, and whether its picture was tried again.
+    pub shader_error: Option<(String, bool)>,
     pub still: Option<Still>,
     pub question: Option<Question>,
     /// Unsaved work of an earlier session with its slot, until it is taken or dropped.
@@ -182,9 +184,9 @@ impl Live {
             redraw: true,
             hidden: false,
             closed: false,
-            closes: false,
+            leaving: None,
             keeps: true,
-            of_latin: false,
+            of_latin: true,
             notice: None,
             standing: Vec::new(),
             shader_error: None,
@@ -220,18 +222,6 @@ impl Live {
     /// How quickly the window answered.
     pub fn figures(&self) -> Figures {
         self.meter.figures(self.pictures.traffic())
-    }
-
-    /// Paints the panel as soon as it may be painted: the user waits for it.
-    pub fn paint_now(&mut self) {
-        self.paint_soon(Duration::ZERO);
-        self.urgent = true;
-    }
-
-    /// Paints the panel after a time, or earlier if that was asked for already.
-    pub fn paint_soon(&mut self, after: Duration) {
-        let at = Instant::now() + after;
-        self.panel_due = Some(self.panel_due.map_or(at, |due| due.min(at)));
     }
 
     /// The plan that is shown: that of the document, over the window.
@@ -355,6 +345,9 @@ impl Live {
             Ok(_) => self.take(),
             Err(e) => self.failed(e)?,
         }
+        if self.pictures.is_right() {
+            self.end_notice(Ends::WithPicture);
+        }
         self.answer_question();
         // A still takes what pictures leave, and its share of a film that plays.
         if self.play.playing || !self.pictures.is_busy() {
@@ -388,7 +381,6 @@ impl Live {
         self.taken = Some((wish, is_full));
         if is_full {
             self.losses = 0;
-            self.end_notice(Ends::WithPicture);
         }
         self.redraw = true;
     }

@@ -7,6 +7,7 @@
 //!   the picture; `upkeep`: files, unsaved work and lost devices
 //! - `input`: what keys and drags mean; `command`: the command line of a picture
 //! - [`document`]: the plan that is edited, its history and its file; `keep`: unsaved work;
+//!   `leaving`: what may be dropped;
 //!   `reload`: files that change
 //! - [`flight`]: how the camera moves; [`probe`]: what the CPU can tell about the scene at once;
 //!   `question`: what there is at a pixel
@@ -27,6 +28,7 @@ pub mod flight;
 mod gui;
 mod input;
 mod keep;
+mod leaving;
 mod live;
 pub mod meter;
 mod notice;

@@ -58,16 +58,13 @@ impl Live {
         self.paint_now();
     }
 
-    /// Takes in whether a shader text is wrong, which is told until it is right. Returns whether that is
-    /// new.
-    pub fn look_at_shaders(&mut self) -> bool {
+    /// Takes in whether a shader text is wrong, which is told until it is right.
+    pub fn look_at_shaders(&mut self) {
         let now = self.pictures.renderer.shader_error();
-        let is_new = now != self.shader_error;
-        if is_new {
-            self.shader_error = now;
+        if now.as_ref() != self.shader_error.as_ref().map(|(text, _)| text) {
+            self.shader_error = now.map(|text| (text, false));
             self.paint_now();
         }
-        is_new
     }
 
     /// What is told now, and whether it is an error.
@@ -77,6 +74,7 @@ impl Live {
         let lines: Vec<&str> = self
             .shader_error
             .iter()
+            .map(|(text, _)| text)
             .chain(lines)
             .map(String::as_str)
             .collect();

@@ -341,6 +341,11 @@ impl Pictures {
         })
     }
 
+    /// Whether the full picture of the plan is made, and nothing has failed since.
+    pub fn is_right(&self) -> bool {
+        self.full.is_made(self.wish) && self.failed != Some(self.wish)
+    }
+
     /// Whether there is something to do.
     pub fn is_busy(&self) -> bool {
         let wanted = self.plan.is_some() && self.failed != Some(self.wish);

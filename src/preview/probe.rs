@@ -35,7 +35,7 @@ impl Task for Ray<'_> {
 
 /// The radius of a ball about the eye that is proven empty; `None` while heights are missing.
 pub fn clearance(plan: &Plan, assets: &Assets) -> Option<f64> {
-    let assets = &assets.snapshot();
+    let assets = &assets.snapshot(false);
     if !plan.scene.has_assets(assets) {
         return None;
     }
@@ -58,7 +58,7 @@ pub struct Probed {
 
 /// What the ray of a pixel meets; `None` while heights are missing.
 pub fn pixel(plan: &Plan, assets: &Assets, pixel: [u32; 2]) -> Option<Probed> {
-    let assets = &assets.snapshot();
+    let assets = &assets.snapshot(false);
     if !plan.scene.has_assets(assets) {
         return None;
     }

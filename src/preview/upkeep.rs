@@ -27,11 +27,13 @@ impl Live {
         let lost = match error {
             RenderError::Device(lost @ DeviceError::Lost { .. }) => lost,
             RenderError::Kernel(_) if self.options.wgsl.is_some() => {
-                if self.look_at_shaders() {
+                self.look_at_shaders();
+                let tried = self.shader_error.as_mut().map(|(_, tried)| tried);
+                match tried.map(|tried| std::mem::replace(tried, true)) {
                     // The last shaders that worked make the picture.
-                    self.pictures.again();
-                } else if self.shader_error.is_none() {
-                    self.warn(error.to_string());
+                    Some(false) => self.pictures.again(),
+                    Some(true) => {}
+                    None => self.warn(error.to_string()),
                 }
                 return Ok(());
             }
@@ -92,30 +94,12 @@ impl Live {
         match said {
             Ok(path) => {
                 self.tell(format!("wrote {}", path.display()), false);
-                self.closed |= self.closes && self.keep_now();
+                self.leave_after_still();
             }
             Err(why) => {
-                self.closes = false;
+                self.leaving = None;
                 self.tell(why, true);
             }
-        }
-    }
-
-    /// Closes the window, or first says that a still is not written yet or that work would be lost.
-    /// Unsaved work is offered at the next start.
-    pub fn close(&mut self) {
-        self.leave_field();
-        let is_kept = self.keep_now();
-        // Without the film, the still is written sooner.
-        self.play.playing = false;
-        self.closed = self.closes || (self.still.is_none() && is_kept);
-        self.closes = true;
-        if !self.closed {
-            let text = match is_kept {
-                true => "the window closes when the still is written; Ctrl+Q again drops the still",
-                false => "changes are not saved; Ctrl+S saves them, Ctrl+Q again drops them",
-            };
-            self.tell(text, false);
         }
     }
 
@@ -175,6 +159,8 @@ impl Live {
     pub fn watch_file(&mut self) {
         self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
         self.unread = false;
+        self.end_notice(Ends::WithFile);
+        self.stay();
         // What was set from outside is in the file now.
         self.options.sets.clear();
         self.drop_kept();
@@ -182,10 +168,10 @@ impl Live {
 
     /// Opens another preset in the place of this one.
     pub fn open(&mut self, name: &str) {
-        if !self.keep_now() && !std::mem::replace(&mut self.closes, true) {
-            let text = "changes are not saved; Ctrl+S saves them, the same choice again drops them";
-            return self.tell(text, false);
+        if !self.may_leave(Some(name)) {
+            return;
         }
+        self.leaving = None;
         match preset::load(Path::new(name), &[]) {
             Ok(preset) => {
                 let path: Option<PathBuf> = preset::file(Path::new(name));
@@ -195,7 +181,7 @@ impl Live {
                 self.visible.timeline = !preset.plan.tracks.is_empty();
                 self.play = Default::default();
                 self.slot = Slot::default();
-                (self.unread, self.closes) = (false, false);
+                self.unread = false;
                 self.end_notice(Ends::WithFile);
                 self.document = Document::new(preset.name, path, preset.plan);
                 self.options.sets.clear();
@@ -221,7 +207,7 @@ impl Live {
             self.unkept = None;
         } else if self.unkept.get_or_insert_with(Instant::now).elapsed() > KEEP {
             // New work is not given up yet.
-            self.closes &= self.still.is_some();
+            self.stay();
             let could_keep = self.keeps;
             self.keeps = self.keep_now();
             if could_keep && !self.keeps {

@@ -16,12 +16,13 @@ pub struct Assets {
 }
 
 impl Assets {
-    /// What is there now. What others make and drop does not change it.
+    /// What is there now. What others make and drop does not change it. What others are making is
+    /// left out, unless this may wait for them.
     #[must_use]
-    pub fn snapshot(&self) -> Self {
+    pub fn snapshot(&self, may_wait: bool) -> Self {
         Self {
-            heightfield: self.heightfield.snapshot(),
-            skies: snapshot(&self.skies),
+            heightfield: self.heightfield.snapshot(may_wait),
+            skies: snapshot(&self.skies, may_wait),
         }
     }
 

@@ -244,7 +244,7 @@ fn wrong_films_are_refused_before_the_first_frame() {
     let long = FILM.replace("length = 4", "length = 1000000");
     folder.write("long.toml", long.replace("bpm = 120", "bpm = 1"));
     for (line, says) in [
-        ("long.toml -o f-%03d.png", "--frames names some"),
+        ("long.toml -o f-%03d.png", "--frames or --shard names some"),
         ("film.toml -o f.png", "%05d"),
         ("film.toml -o f-%5d.png", "%05d"),
         ("film.toml -o f-%03d.jpg", ".png files"),

@@ -169,9 +169,10 @@ fn inexact_shaders_agree_with_their_twins() {
                 let way = (s - hit.s).abs() * ray.axis.truncate().length();
                 apart += u32::from(code != *state || (code == 1 && way > 0.01));
             }
-            // Thresholds that f32 may take on either side; 75 at most were measured.
+            // Thresholds that f32 may take on either side. Software Vulkan had 75 at most, and an H200
+            // 102.
             println!("{}, {}: {apart} of 6000 apart", case.name, own.name);
-            assert!(apart < 90, "{}, {}: {apart} apart", case.name, own.name);
+            assert!(apart < 120, "{}, {}: {apart} apart", case.name, own.name);
         }
     }
 }

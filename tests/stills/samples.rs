@@ -94,7 +94,15 @@ fn depth_normal_and_state_are_those_of_the_centre() {
             let mut many = sampled(&plan, samples, 1);
             many.camera.aperture = aperture;
             let many = render(&many, EVERYTHING);
-            assert!(one.depth == many.depth && one.state == many.state);
+            assert!(one.state == many.state);
+            // The program of a lens may be rounded in other places.
+            let rounding = if aperture > 0.0 { 3e-7 } else { 0.0 };
+            let depths = one.depth.iter().zip(&many.depth);
+            let is_same = |(a, b): (&f32, &f32)| a == b || (a - b).abs() <= rounding * a;
+            assert!(
+                depths.into_iter().all(is_same),
+                "{name}, {samples}, {aperture}"
+            );
             assert!(one.radiance != many.radiance);
             // The step of a difference follows the farthest point, which a lens moves away by its
             // radius.

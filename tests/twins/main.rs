@@ -111,7 +111,7 @@ fn allowed(formula: &Formula) -> [Allowed; 3] {
     let (_, iterations) = formula.estimate(formula.bounds().centre, ITERATIONS);
     let [estimate, trap] = match iterations {
         0 | 1 => [Allowed(2e-7, 2e-6); 2],
-        _ => [Allowed(2e-6, 6e-5), Allowed(6e-7, 6e-4)],
+        _ => [Allowed(2e-6, 6e-5), Allowed(2e-6, 6e-4)],
     };
     [estimate, estimate, trap]
 }

@@ -167,9 +167,16 @@ fn work_that_cannot_be_kept_is_not_dropped_at_once() {
     let mut view = Preview::open(&desktop, &folder.0, &format!("mandelbox {SIZE}"));
     view.hold("w", 400);
     view.at_rest();
-    view.key("ctrl+q");
-    sleep(Duration::from_millis(1500));
-    assert!(view.is_open());
+    let stays = |view: &mut Preview| {
+        view.key("ctrl+q");
+        sleep(Duration::from_millis(1500));
+        assert!(view.is_open());
+    };
+    stays(&mut view);
+    // What was said holds no longer once the work is saved.
+    view.key("ctrl+s");
+    view.hold("w", 200);
+    stays(&mut view);
     view.close();
 }
 

@@ -4,6 +4,7 @@
 //! rests. What a screen adds is not in the times.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -21,6 +22,7 @@ use crate::command::sink::{Results, Sink};
 use crate::command::table::table;
 use crate::command::{completions, interrupt, memory};
 use crate::gpu::adapters::Choice;
+use crate::gpu::device::Device;
 use crate::plan::{Extras, Plan};
 use crate::preview::flight::orbit;
 use crate::preview::pictures::Pictures;
@@ -170,20 +172,19 @@ fn flight(plan: &Plan, frames: u32) -> Result<Vec<Plan>> {
     (0..frames).map(one).collect()
 }
 
-fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row> {
+fn row(
+    args: &FlightBench,
+    (device, name): (&Arc<Device>, &str),
+    preset: &Path,
+    progress: &mut Reporter,
+) -> Result<Row> {
     let (preset, assets) = loaded(preset, &[])?;
     let plan = Plan {
         size: args.size,
         ..preset.plan.one_sample()
     };
     let plans = flight(&plan, args.frames)?;
-    let (executor, _) = Executor::open(&args.device)?;
-    let device = executor.name();
-    let Executor::Gpu(renderer) = executor else {
-        return Err(usage("a preview needs a device; leave --device cpu out"));
-    };
-    let mut pictures = Pictures::new(renderer.device.clone());
-    drop(renderer);
+    let mut pictures = Pictures::new(device.clone());
     pictures.assets = assets;
     let colors = Extras {
         unread: true,
@@ -251,7 +252,7 @@ fn row(args: &FlightBench, preset: &Path, progress: &mut Reporter) -> Result<Row
     Ok(Row {
         preset: preset.name,
         size: args.size,
-        device,
+        device: name.into(),
         answer_ms: at(&answers, 0.5),
         answer_p95_ms: at(&answers, 0.95),
         frames_per_second,
@@ -280,10 +281,17 @@ pub fn run(args: &FlightBench) -> Result<()> {
         true => &usual[..],
         false => &args.presets,
     };
+    let (executor, who) = Executor::open(&args.device)?;
+    let name = executor.name();
+    let Executor::Gpu(renderer) = executor else {
+        return Err(usage(format!(
+            "a preview needs a device, and this would be {who}; `conemarch devices` lists devices"
+        )));
+    };
     let mut progress = Reporter::start("flying");
     let rows: Result<Vec<Row>> = presets
         .iter()
-        .map(|p| row(args, p, &mut progress))
+        .map(|p| row(args, (&renderer.device, &name), p, &mut progress))
         .collect();
     drop(progress);
     let rows = rows?;

@@ -10,6 +10,7 @@ use bytemuck::{bytes_of, cast_slice};
 use super::job::{Job, Made};
 use super::{Arrays, Shared};
 use crate::base::array::SceneArray;
+use crate::base::one_value_cache::last_or_new;
 use crate::base::shader::{Program, Sources};
 use crate::gpu::array::DeviceArray;
 use crate::gpu::background::all_at_once;
@@ -93,22 +94,6 @@ pub struct FrameInputs {
     pub edited: Option<Edited>,
 }
 
-/// Why a frame cannot begin.
-pub struct PrepareFailure {
-    pub error: RenderError,
-    /// The programs, if they have texts of the host.
-    pub edited: Option<Edited>,
-}
-
-impl<E: Into<RenderError>> From<E> for PrepareFailure {
-    fn from(error: E) -> Self {
-        Self {
-            error: error.into(),
-            edited: None,
-        }
-    }
-}
-
 /// The programs of a frame, and what follows from the plan besides.
 struct Draft {
     scene: AnySolid,
@@ -152,6 +137,11 @@ impl FrameRequest {
     pub fn resolve(&mut self) {
         let (plan, extras) = (&self.plan, self.extras);
         let mut resolved = plan.resolved(extras, &self.assets).into_owned();
+        // Cones have too few cells to keep a large device busy, and save its rays little.
+        let is_large = self.shared.device.is_discrete();
+        if is_large && resolved.march.may_drop_cones() && !extras.levels {
+            resolved.march.coarsest = Some(1);
+        }
         // Frames that follow each other keep the stages of cones, or a move of the eye would make
         // buffers and programs. The first picture is of cones too.
         self.rays_alone = (extras.sketched || extras.reuse)
@@ -169,9 +159,13 @@ impl FrameRequest {
     /// # Errors
     /// The device fails, a named file cannot be read or does not fit, a cone map cannot be made, a
     /// shader text is wrong, or nobody waits any more. What was compiled and uploaded stays.
-    pub fn prepare(mut self, told: &TaskStatus) -> Result<FrameInputs, PrepareFailure> {
+    pub fn prepare(mut self, told: &TaskStatus) -> Result<FrameInputs, RenderError> {
         let mut tell = |progress: &Progress| told.tell(progress);
         let shared = self.shared.clone();
+        let now = self.all_assets.snapshot(false);
+        if now.serve(&self.plan) {
+            self.assets = now;
+        }
         let maps = match self.assets.serve(&self.plan) {
             true => shared.make_maps(&self.plan, &self.assets, &mut tell)?,
             false => {
@@ -181,7 +175,7 @@ impl FrameRequest {
                 self.all_assets
                     .load(&self.plan)
                     .map_err(PrepareError::from)?;
-                self.assets = self.all_assets.snapshot();
+                self.assets = self.all_assets.snapshot(true);
                 maps
             }
         };
@@ -191,17 +185,18 @@ impl FrameRequest {
             let draft = self.draft()?;
             let all = draft.needs.programs.iter().chain([&draft.arrange]);
             let edited = draft.texts.edited(all);
-            let made = self.complete(draft, maps.clone(), None, &mut tell);
-            let (error, edited) = match (made, edited) {
-                (Ok(inputs), _) => return Ok(inputs),
-                (Err(RenderError::Kernel(error)), Some(edited)) => (error, edited),
-                (Err(error), edited) => return Err(PrepareFailure { error, edited }),
-            };
+            let (error, edited) =
+                match (self.complete(draft, maps.clone(), None, &mut tell), edited) {
+                    (Err(RenderError::Kernel(error)), Some(edited)) => (error, edited),
+                    (made, _) => return made,
+                };
             if !shared.texts.skips(&edited, &error) {
+                if !tell(&told.progress()) {
+                    return Err(RenderError::Cancelled);
+                }
                 // Other threads know at once.
                 shared.texts.failed(&edited, &error);
-                let (error, edited) = (error.into(), Some(edited));
-                return Err(PrepareFailure { error, edited });
+                return Err(error.into());
             }
         }
     }
@@ -279,7 +274,8 @@ impl FrameRequest {
         parameters.push(("layers_parameters", over));
         if needs.picture.is_some() || plan.is_adaptive() {
             let tone = Tone::of(&plan.look);
-            let steps = tone_steps(&tone);
+            let made = |tone: &Tone| Ok::<_, RenderError>(tone_steps(tone));
+            let steps = last_or_new(&self.shared.tone_steps, tone, made)?;
             parameters.push(("tone_steps", cast_slice(&steps).to_vec()));
             parameters.push(("tone_parameters", bytes_of(&tone.uniform()).to_vec()));
         }

@@ -1,5 +1,7 @@
 //! What a run is made of, and what one run leaves to the next.
 
+use wgpu::DeviceType;
+
 use crate::base::filter::{lens_share, offset};
 use crate::base::shader::Program;
 use crate::gpu::cost::Cost;
@@ -96,12 +98,12 @@ pub(in crate::gpu) struct Job {
 
 impl Job {
     /// The costs of the stages, where those of the last frame say nothing of them.
-    pub(super) fn first_costs(&self) -> Vec<Cost> {
+    pub(super) fn first_costs(&self, device: DeviceType) -> Vec<Cost> {
         let follows =
             |kind: &StageKind| self.follows_light && *kind == StageKind::Pass(Pass::Color);
         self.kinds
             .iter()
-            .map(|kind| Cost::first(follows(kind)))
+            .map(|kind| Cost::first(follows(kind), device))
             .collect()
     }
 

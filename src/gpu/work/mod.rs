@@ -22,6 +22,7 @@ mod submit;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::base::one_value_cache::OneValueCache;
 use crate::gpu::array::Arrays;
 use crate::gpu::background::Background;
 use crate::gpu::device::Device;
@@ -36,9 +37,9 @@ use crate::heightfield::assets::AssetKeys;
 use crate::pass::progress::Progress;
 #[cfg(feature = "cli")]
 use crate::pass::progress::Watch;
+use crate::pass::tone_map::Tone;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::Extras;
-use inputs::PrepareFailure;
 pub(super) use inputs::{FrameInputs, FrameRequest, marched, most_steps};
 use job::Reusable;
 use run::Run;
@@ -50,6 +51,8 @@ pub(super) struct Shared {
     pub kernels: Kernels,
     pub arrays: Mutex<Arrays>,
     pub reusable: Mutex<Reusable>,
+    /// The steps of the last tone: they take a millisecond.
+    pub tone_steps: OneValueCache<Tone, Vec<f32>>,
     pub texts: TextHistory,
     /// Locked by the thread that loads and makes assets.
     pub preparing: Mutex<()>,
@@ -58,7 +61,7 @@ pub(super) struct Shared {
 /// What a thread prepares, and what decides the assets of its scene.
 struct Preparing {
     assets: Option<AssetKeys>,
-    task: Background<Result<FrameInputs, PrepareFailure>>,
+    task: Background<Result<FrameInputs, RenderError>>,
 }
 
 /// A render under way on a device. Dropping it cancels it.
@@ -135,7 +138,7 @@ impl Work {
     pub(super) fn start_when_ready(
         &mut self,
         assets: Option<AssetKeys>,
-        task: Background<Result<FrameInputs, PrepareFailure>>,
+        task: Background<Result<FrameInputs, RenderError>>,
     ) {
         let first = self.preparing.first();
         let goes_on = first.is_some_and(|first| first.assets == assets);
@@ -146,7 +149,7 @@ impl Work {
     /// Takes in an answer of the thread that prepares the run.
     fn answered(
         &mut self,
-        answer: Result<Option<Result<FrameInputs, PrepareFailure>>, Panicked>,
+        answer: Result<Option<Result<FrameInputs, RenderError>>, Panicked>,
     ) -> Result<(), RenderError> {
         match answer {
             Ok(None) => Ok(()),
@@ -157,17 +160,11 @@ impl Work {
                 }
                 begun
             }
-            Ok(Some(Err(failure))) => {
+            Ok(Some(Err(error))) => {
                 self.preparing.pop();
                 // On a lost device, programs fail too.
                 self.shared.device.check()?;
-                match failure.edited {
-                    // The run goes on, and the next plan has the texts of now.
-                    Some(edited) if self.run.is_some() && self.shared.texts.is_old(&edited) => {
-                        Ok(())
-                    }
-                    _ => Err(failure.error),
-                }
+                Err(error)
             }
             Err(Panicked) => {
                 self.preparing.pop();

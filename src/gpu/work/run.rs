@@ -96,7 +96,7 @@ impl Run {
                 if target.serves(&needs, &arrange, job.colors_at, &parameters, &arrays) =>
             {
                 // Another program takes another time.
-                let first = job.first_costs();
+                let first = job.first_costs(device.info.device_type);
                 for (stage, (cost, first)) in reusable.costs.iter_mut().zip(first).enumerate() {
                     if target.needs.programs[stage] != needs.programs[stage] {
                         *cost = first;
@@ -111,7 +111,7 @@ impl Run {
                 let target = Target::new(device, kernels, arrange, needs, parameters, &arrays)?;
                 *reusable = Reusable {
                     target: Some(target),
-                    costs: job.first_costs(),
+                    costs: job.first_costs(device.info.device_type),
                     aim_ms: LONGEST_MS,
                     stamps: Stamps::new(device),
                     stagings: std::mem::take(&mut reusable.stagings).into_behind(),
