@@ -6,7 +6,7 @@
 
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::Choice;
 use conemarch::picture::frame::Frame;
@@ -20,6 +20,7 @@ mod markdown;
 #[path = "common/publish.rs"]
 mod publish;
 
+const SIZE: [u32; 2] = [1920, 1080];
 /// Warm runs that a median is taken of. A GPU takes some runs to reach its clock.
 const RUNS: usize = 31;
 const WARM: usize = 10;
@@ -107,7 +108,7 @@ fn table(rows: &[Row]) -> String {
 }
 
 fn main() -> Result<()> {
-    let mut size = [1920, 1080];
+    let mut size = SIZE;
     let mut names = Vec::new();
     let mut args = std::env::args().skip(1).filter(|a| a != "--bench");
     while let Some(arg) = args.next() {
@@ -122,13 +123,24 @@ fn main() -> Result<()> {
             _ => names.push(arg),
         }
     }
+    let is_usual = names.is_empty() && size == SIZE;
+    let writes = std::env::args().any(|a| a == "--write");
+    ensure!(
+        is_usual || !writes,
+        "--write needs all presets at the usual size"
+    );
     if names.is_empty() {
         names = preset::BUILTIN
             .iter()
             .map(|(name, _)| name.to_string())
             .collect();
     }
-    let (mut executor, who) = Executor::open(&Choice::Auto)?;
+    let device = if writes {
+        Choice::Hardware
+    } else {
+        Choice::Auto
+    };
+    let (mut executor, who) = Executor::open(&device)?;
     let mut rows = Vec::new();
     for name in &names {
         eprintln!("{name}");

@@ -466,7 +466,7 @@ fn cones_are_left_out_where_they_save_few_steps() {
 
 /// The device only says that it is one.
 #[test]
-fn a_discrete_gpu_has_cones_only_to_look_at() {
+fn a_discrete_gpu_has_cones_only_if_asked() {
     let adapters = Adapters::find();
     let (adapter, _) = adapters.choose(&Choice::Auto).unwrap().expect(NO_ADAPTER);
     let mut device = Device::open(adapter).unwrap();
@@ -480,7 +480,12 @@ fn a_discrete_gpu_has_cones_only_to_look_at() {
     };
     for name in ["mandelbox-gate", "terrain"] {
         assert_eq!(marched(name, "march.coarsest=auto", DEPTHS), 1, "{name}");
-        assert_eq!(marched(name, "march.coarsest=auto", LEVELS), 5, "{name}");
+        assert_eq!(marched(name, "march.coarsest=auto", LEVELS), 1, "{name}");
+        let reuse = Extras {
+            reuse: true,
+            ..DEPTHS
+        };
+        assert_eq!(marched(name, "march.coarsest=auto", reuse), 1, "{name}");
         assert_eq!(marched(name, "march.coarsest=16", DEPTHS), 5, "{name}");
     }
 }

@@ -81,7 +81,13 @@ mod tests {
         let made = last.lock().expect("not poisoned");
         assert!(!is_last(&last, &2) && !is_last(&snapshot(&last, false), &2));
         std::thread::scope(|scope| {
-            let waits = scope.spawn(|| snapshot(&last, true));
+            let ((ready, starts), last) = (std::sync::mpsc::channel(), &last);
+            let waits = scope.spawn(move || {
+                ready.send(()).expect("the test waits");
+                snapshot(last, true)
+            });
+            starts.recv().expect("a thread");
+            std::thread::sleep(std::time::Duration::from_millis(50));
             drop(made);
             assert!(is_last(&waits.join().expect("a snapshot"), &2));
         });

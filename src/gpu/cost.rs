@@ -15,6 +15,8 @@ const FIRST_MS: f64 = 8.0;
 const FIRST_SLICE: u32 = 64 * 256;
 /// The same where light is followed by rays: such a dispatch takes much longer.
 const FIRST_SLICE_OF_PATHS: u32 = 64 * 16;
+/// So many iterations are few. Most presets have up to twice as many.
+const FEW_ITERATIONS: u32 = 32;
 /// The largest change of a dispatch's size at once. The time of a small dispatch says little of a
 /// large one.
 const MOST_SHORTER: f64 = 1.0 / 16.0;
@@ -43,25 +45,25 @@ pub struct Cost {
     last: Option<u32>,
 }
 
-/// How many times as fast as two cores a device of a kind is at least taken to be. One that is a few
-/// times slower than that takes a tenth of a second for its first dispatch; a small dispatch would
-/// leave most of a large device idle.
-fn speed(device: DeviceType) -> u32 {
-    match device {
+/// How many times as large the first dispatch is on a device of a kind as on two cores: a small one
+/// would leave most of a large device idle. What goes through many iterations takes longer.
+pub fn faster(device: DeviceType, iterations: u32) -> u32 {
+    let times = match device {
         DeviceType::DiscreteGpu => 64,
         DeviceType::IntegratedGpu | DeviceType::VirtualGpu => 8,
         DeviceType::Cpu | DeviceType::Other => 1,
-    }
+    };
+    (times / iterations.div_ceil(FEW_ITERATIONS).max(1)).max(1)
 }
 
 impl Cost {
     /// What is known of a stage that has not run yet.
-    pub fn first(follows_light: bool, device: DeviceType) -> Self {
+    pub fn first(follows_light: bool, faster: u32) -> Self {
         let slice = match follows_light {
             true => FIRST_SLICE_OF_PATHS,
             false => FIRST_SLICE,
         };
-        let slice = slice * speed(device);
+        let slice = slice * faster;
         Self {
             slice,
             dispatch_ms: FIRST_MS,

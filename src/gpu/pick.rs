@@ -17,7 +17,7 @@ use crate::gpu::task_status::Panicked;
 use crate::gpu::work::{Shared, marched, most_steps};
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::pass::pick::{self, At, PickAnswer, PickQuestion, Picked};
-use crate::pass::progress::Watch;
+use crate::pass::progress::{Progress, Watch};
 use crate::plan::Plan;
 use crate::scene::Assets;
 
@@ -134,6 +134,9 @@ impl SubmittedPick {
             match (prepare(&program[0]), texts.edited(program.iter())) {
                 (Err(RenderError::Kernel(error)), Some(edited)) => {
                     if !shared.texts.skips(&edited, &error) {
+                        if !tell(&Progress::default()) {
+                            return Err(RenderError::Cancelled);
+                        }
                         shared.texts.failed(&edited, &error);
                         return Err(error.into());
                     }

@@ -39,8 +39,7 @@ pub fn explain(plan: &Plan, assets: &Assets, extras: Extras) -> Result<String, P
             programs.push(program);
         }
     }
-    let is_optional = plan.march.may_drop_cones() && !extras.levels;
-    if is_optional && !plan.levels().is_empty() {
+    if plan.march.may_drop_cones() && !plan.levels().is_empty() {
         text.push_str("  a discrete GPU has no march passes here (march.coarsest)\n");
     }
     text.push_str("programs\n");

@@ -286,6 +286,7 @@ impl Plan {
     /// sample, if these extras ask for no colours. It has no cones where they do not pay, unless the
     /// plan says how coarse they are. Over heights that the assets do not have yet, that is decided by
     /// the size of the picture alone.
+    /// On a discrete GPU, the executor leaves cones out everywhere else too.
     pub fn resolved(&self, extras: Extras, assets: &Assets) -> Cow<'_, Self> {
         let mut plan = Cow::Borrowed(self);
         if let Some(scene) = self.scene.colorless()

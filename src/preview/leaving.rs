@@ -1,14 +1,15 @@
 //! What leaving a scene drops, and how the user is asked first.
 
+use crate::plan::Plan;
 use crate::preview::live::Live;
 
 /// What was asked for and not done yet, because it drops something.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq)]
 pub struct Leaving {
     /// The preset to open; `None` to close the window.
     to: Option<String>,
-    /// Whether changes are lost that cannot be kept for the next start.
-    work: bool,
+    /// Changes that cannot be kept for the next start.
+    work: Option<Plan>,
     /// Whether a still is not written yet.
     still: bool,
 }
@@ -26,20 +27,20 @@ impl Live {
     pub fn may_leave(&mut self, to: Option<&str>) -> bool {
         let asked = Leaving {
             to: to.map(String::from),
-            work: !self.keep_now(),
+            work: (!self.keep_now()).then(|| self.document.plan.clone()),
             // A still goes on over another preset.
             still: to.is_none() && self.still.is_some(),
         };
-        if (!asked.work && !asked.still) || self.leaving.as_ref() == Some(&asked) {
+        if (asked.work.is_none() && !asked.still) || self.leaving.as_ref() == Some(&asked) {
             return true;
         }
         let again = match to {
             None => "Ctrl+Q again drops",
             Some(_) => "the same choice again drops",
         };
-        let text = match (asked.work, asked.still) {
+        let text = match (asked.work.is_some(), asked.still) {
             (true, true) => format!("changes and a still are not saved; {again} both"),
-            (true, false) => format!("changes are not saved; {again} them"),
+            (true, false) => format!("changes are not saved; Ctrl+S saves them, {again} them"),
             _ => format!("the window closes when the still is written; {again} the still"),
         };
         self.leaving = Some(asked);
@@ -47,14 +48,9 @@ impl Live {
         false
     }
 
-    /// After a change of the document or its file: what was said of it holds no longer.
-    pub fn stay(&mut self) {
-        self.leaving.take_if(|asked| asked.work);
-    }
-
-    /// After a still was written: closes the window that waits for it.
-    pub fn leave_after_still(&mut self) {
+    /// After a still was written, or could not be: closes the window that waits for it.
+    pub fn after_still(&mut self, is_written: bool) {
         let waits = self.leaving.take_if(|asked| asked.still);
-        self.closed |= waits.is_some() && self.keep_now();
+        self.closed |= is_written && waits.is_some() && self.keep_now();
     }
 }

@@ -10,7 +10,7 @@ use winit::event::Modifiers;
 use winit::keyboard::KeyCode;
 
 use crate::picture::Layer;
-use crate::plan::{Extras, Plan};
+use crate::plan::{Extras, Plan, march};
 use crate::preview::actions::{NO_PASSES, passes};
 use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
@@ -311,7 +311,12 @@ impl Live {
 
     /// Asks for the picture of the plan, and takes in what is finished.
     fn render(&mut self, moving: bool) -> Result<(), PreviewError> {
-        let plan = self.shown();
+        let mut plan = self.shown();
+        // A discrete GPU marches cones only for who looks at them.
+        let is_large = self.stage.screen.device().is_discrete();
+        if is_large && self.shot.extras().levels && plan.march.may_drop_cones() {
+            plan.march.coarsest = Some(march::COARSEST);
+        }
         self.pictures.moving = moving;
         if let Err(fault) = plan.check() {
             self.warn(format!("{}: {}", fault.key, fault.why));
@@ -381,6 +386,9 @@ impl Live {
         self.taken = Some((wish, is_full));
         if is_full {
             self.losses = 0;
+        }
+        if let Some((_, tried)) = &mut self.shader_error {
+            *tried = false;
         }
         self.redraw = true;
     }

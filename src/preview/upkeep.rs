@@ -79,7 +79,10 @@ impl Live {
             let pictures = &mut self.pictures;
             match still.again(&mut pictures.renderer, &pictures.assets) {
                 Ok(still) => self.still = Some(still),
-                Err(why) => self.tell(why, true),
+                Err(why) => {
+                    self.after_still(false);
+                    self.tell(why, true);
+                }
             }
         }
         Ok(())
@@ -94,10 +97,10 @@ impl Live {
         match said {
             Ok(path) => {
                 self.tell(format!("wrote {}", path.display()), false);
-                self.leave_after_still();
+                self.after_still(true);
             }
             Err(why) => {
-                self.leaving = None;
+                self.after_still(false);
                 self.tell(why, true);
             }
         }
@@ -115,6 +118,7 @@ impl Live {
             // After a loss they were set aside.
             self.pictures.renderer.sources = self.options.wgsl.clone().map(sources);
             self.pictures.again();
+            self.shader_error = None;
             self.tell("shaders read again", false);
         }
         if let Some(gone) = self.preset_file.vanished() {
@@ -160,7 +164,6 @@ impl Live {
         self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
         self.unread = false;
         self.end_notice(Ends::WithFile);
-        self.stay();
         // What was set from outside is in the file now.
         self.options.sets.clear();
         self.drop_kept();
@@ -206,8 +209,6 @@ impl Live {
         } else if is_kept {
             self.unkept = None;
         } else if self.unkept.get_or_insert_with(Instant::now).elapsed() > KEEP {
-            // New work is not given up yet.
-            self.stay();
             let could_keep = self.keeps;
             self.keeps = self.keep_now();
             if could_keep && !self.keeps {

@@ -99,6 +99,10 @@ impl SceneSettings for DistanceSettings {
         self.formula.lipschitz()
     }
 
+    fn iterations(&self, from: &Viewpoint) -> u32 {
+        self.limit(from)
+    }
+
     fn most_shadow_steps(&self) -> u32 {
         MOST_SHADOW_STEPS
     }

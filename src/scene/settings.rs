@@ -99,6 +99,11 @@ pub trait SceneSettings {
         true
     }
 
+    /// The most iterations of an evaluation.
+    fn iterations(&self, _from: &Viewpoint) -> u32 {
+        1
+    }
+
     /// The fewest pixels of a picture in which cones pay, whatever the view.
     fn cone_pixels(&self) -> u64 {
         0

@@ -33,6 +33,15 @@ pub(crate) use probe;
 
 static DEVICE: LazyLock<Arc<Device>> = LazyLock::new(|| crate::adapter::open().device);
 
+/// Whether a processor answers.
+#[allow(
+    dead_code,
+    reason = "only some tests know it from measurements of other devices"
+)]
+pub fn is_software() -> bool {
+    DEVICE.info.device_type == wgpu::DeviceType::Cpu
+}
+
 /// Modules to ask, and the parameters that they read.
 #[derive(Clone, Default)]
 pub struct Probe {

@@ -28,7 +28,7 @@ mod looks;
 mod oversteps;
 
 use common::plans::{mandelbox, scene};
-use common::probe::{Numbers, Probe, probe};
+use common::probe::{Numbers, Probe, is_software, probe};
 use common::random::Random;
 use common::setups::{formula_probe, four, narrow, probe_of, seen_from};
 use compare::{Allowed, MOVED, Pairs, Twins, questions};
@@ -111,7 +111,9 @@ fn allowed(formula: &Formula) -> [Allowed; 3] {
     let (_, iterations) = formula.estimate(formula.bounds().centre, ITERATIONS);
     let [estimate, trap] = match iterations {
         0 | 1 => [Allowed(2e-7, 2e-6); 2],
-        _ => [Allowed(2e-6, 6e-5), Allowed(2e-6, 6e-4)],
+        // A median of 1e-6 was measured on an H200, at a fixed radius of 1.0001.
+        _ if !is_software() => [Allowed(2e-6, 6e-5), Allowed(2e-6, 6e-4)],
+        _ => [Allowed(2e-6, 6e-5), Allowed(6e-7, 6e-4)],
     };
     [estimate, estimate, trap]
 }

@@ -3,6 +3,7 @@
 //! If earlier frames have left everything that a [`FrameRequest`] needs, it becomes [`FrameInputs`]
 //! at once. Otherwise a thread prepares them.
 
+use std::borrow::Cow;
 use std::sync::{Arc, MutexGuard, PoisonError};
 
 use bytemuck::{bytes_of, cast_slice};
@@ -136,17 +137,18 @@ impl FrameRequest {
     /// Resolves the plan, as far as its assets are there.
     pub fn resolve(&mut self) {
         let (plan, extras) = (&self.plan, self.extras);
-        let mut resolved = plan.resolved(extras, &self.assets).into_owned();
         // Cones have too few cells to keep a large device busy, and save its rays little.
-        let is_large = self.shared.device.is_discrete();
-        if is_large && resolved.march.may_drop_cones() && !extras.levels {
-            resolved.march.coarsest = Some(1);
+        let is_large = self.shared.device.is_discrete() && plan.march.may_drop_cones();
+        let mut plan = Cow::Borrowed(plan);
+        if is_large {
+            plan.to_mut().march.coarsest = Some(1);
         }
-        // Frames that follow each other keep the stages of cones, or a move of the eye would make
-        // buffers and programs. The first picture is of cones too.
-        self.rays_alone = (extras.sketched || extras.reuse)
+        let mut resolved = plan.resolved(extras, &self.assets).into_owned();
+        // Frames that follow each other keep the stages of cones if these may come and go, or a move of
+        // the eye would make buffers and programs. The first picture is of cones too.
+        let may_come = extras.reuse && self.plan.march.may_drop_cones() && !is_large;
+        self.rays_alone = (extras.sketched && self.plan.march.may_drop_cones() || may_come)
             && !extras.levels
-            && plan.march.may_drop_cones()
             && !resolved.march.may_drop_cones();
         if self.rays_alone {
             resolved.march.coarsest = None;
@@ -348,6 +350,7 @@ impl FrameRequest {
                 firsts: firsts.len(),
                 first_stages,
                 follows_light: plan.look.mode == LightMode::Path,
+                iterations: plan.scene.iterations(&plan.viewpoint()),
                 samples: plan.samples,
                 visits: plan.visits(),
                 until: plan.until,

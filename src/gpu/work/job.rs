@@ -4,7 +4,7 @@ use wgpu::DeviceType;
 
 use crate::base::filter::{lens_share, offset};
 use crate::base::shader::Program;
-use crate::gpu::cost::Cost;
+use crate::gpu::cost::{Cost, faster};
 use crate::gpu::staging::Stagings;
 use crate::gpu::stamps::Stamps;
 use crate::gpu::target::{Needs, Parameters, Target};
@@ -85,6 +85,8 @@ pub(in crate::gpu) struct Job {
     pub first_stages: usize,
     /// Whether colours follow light by rays.
     pub follows_light: bool,
+    /// The most iterations of an evaluation.
+    pub iterations: u32,
     /// Samples of each pixel, and how often a block is visited for them.
     pub samples: u32,
     pub visits: u32,
@@ -99,11 +101,12 @@ pub(in crate::gpu) struct Job {
 impl Job {
     /// The costs of the stages, where those of the last frame say nothing of them.
     pub(super) fn first_costs(&self, device: DeviceType) -> Vec<Cost> {
+        let faster = faster(device, self.iterations);
         let follows =
             |kind: &StageKind| self.follows_light && *kind == StageKind::Pass(Pass::Color);
         self.kinds
             .iter()
-            .map(|kind| Cost::first(follows(kind), device))
+            .map(|kind| Cost::first(follows(kind), faster))
             .collect()
     }
 
