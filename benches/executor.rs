@@ -32,7 +32,7 @@ const SAME: [&str; 3] = [
     "march.shell=0.45",
 ];
 /// Today's settings of the march.
-const TODAY: [&str; 2] = ["march.coarsest=auto", "march.shell=0.2"];
+const TODAY: [&str; 2] = ["march.coarsest=auto", "march.shell=auto"];
 /// Ticks of the processor times that Linux tells, per second.
 const TICKS: f64 = 100.0;
 

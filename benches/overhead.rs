@@ -43,7 +43,7 @@ const RUNS: usize = 3;
 /// The same of the overhead at a small size, which is tenths of a millisecond.
 const SMALL_RUNS: usize = 15;
 /// Today's settings of the march.
-const TODAY: [&str; 2] = ["march.coarsest=auto", "march.shell=0.2"];
+const TODAY: [&str; 2] = ["march.coarsest=auto", "march.shell=auto"];
 /// The factor on the steps to the set.
 const STRIDE: f64 = 0.1;
 /// Presets whose second frame is looked at.

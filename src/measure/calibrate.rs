@@ -81,7 +81,7 @@ impl Calibration {
     pub fn apply(&self, plan: &Plan) -> Plan {
         let mut plan = plan.clone();
         plan.march.mode = Mode::Calibrated;
-        plan.march.shell = self.shell;
+        plan.march.shell = Some(self.shell);
         plan.march.fudge.clone_from(&self.fudge);
         plan
     }
@@ -136,7 +136,7 @@ pub fn calibrate(
     best.march.fudge = vec![1.0];
     // The shell may use half of the budget, narrower cones the rest.
     for shell in SHELLS {
-        best.march.shell = shell;
+        best.march.shell = Some(shell);
         if lost(&best, PROBING)? <= 0.5 * budget {
             break;
         }
@@ -163,7 +163,7 @@ pub fn calibrate(
         slack,
         // These rays may have missed a slope of 1.
         lipschitz: (100.0 * slope.max(1.0)).ceil() / 100.0,
-        shell: best.march.shell,
+        shell: best.march.shell(),
         fudge: best.march.fudge,
         lost,
         within: held && lost <= budget,

@@ -239,7 +239,7 @@ mod tests {
         ] {
             plan.march.mode = mode;
             plan.march.detail = detail;
-            plan.march.shell = shell;
+            plan.march.shell = Some(shell);
             let shell = if mode == Mode::Safe { shell } else { 0.0 };
             let mut reference = rendered(&plan);
             // The last two pixels are no hits.
@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn a_front_beyond_a_grazed_skin_is_right() {
         let mut plan = ball([240, 160]);
-        plan.march.shell = 0.45;
+        plan.march.shell = Some(0.45);
         // The pixel whose ray passes the ball at a distance of so many thresholds.
         let view = plan.view();
         let past = |share: f64| {

@@ -322,7 +322,7 @@ mod tests {
         assert_eq!(found.note, made.note);
         // The shell does not decide a truth, these settings do.
         let mut other = balls();
-        other.march.shell = 0.7;
+        other.march.shell = Some(0.7);
         assert!(finds(&cache, &other));
         let changes: [fn(&mut Plan); 4] = [
             |p| p.march.detail = 2.0,

@@ -120,6 +120,10 @@ pub const STEPS: u32 = 256;
 /// The divisor of the first cone level by default. More levels above it cost little and bring
 /// little.
 pub const COARSEST: u32 = 16;
+/// The shell with cones: rays that start behind them are wrong on as few pixels as rays alone.
+const SHELL: f64 = 0.2;
+/// The shell of rays alone: half as much keeps them within 3 % of the time of rays without a shell.
+const SHELL_ALONE: f64 = 0.1;
 
 settings! {
     /// How a picture is marched.
@@ -129,8 +133,8 @@ settings! {
             "side in pixels of the blocks of the first cone pass, 1 for no cones; auto is 16, or 1 in modes safe and proven where cones do not pay: over a formula where a ray alone needs less than 10 evaluations, over a heightfield where cones leave a ray 0.84 of its evaluations or more, 0.9 with several samples, or below 100000 pixels, and always on a discrete GPU";
         detail: f64 = 1.0, number(1e-3, 1e3),
             "hit threshold in footprints: a ray hits where the estimate is at most this";
-        shell: f64 = 0.2, number(0.0, 0.99),
-            "share of the hit threshold by which steps keep away from the surface; more costs time and lowers the error";
+        shell: Option<f64> = None, auto_number(0.0, 0.99),
+            "share of the hit threshold by which steps keep away from the surface; more costs time and lowers the error; auto is 0.2, and 0.1 without cones";
         relaxation: Relaxation = Relaxation::Auto, relaxation(), "factor on the steps of rays; auto follows the change of the estimate from step to step, and off is 1";
         fudge: Vec<f64> = vec![1.0], numbers(6, 0.01, 1.0),
             "factors on the width of the cones in mode calibrated, for each pass from coarse to fine; at most one for each pass, and the last one repeats";
@@ -224,6 +228,15 @@ impl Marching {
         }
     }
 
+    /// The share of the hit threshold by which steps keep away, in modes that have a shell.
+    pub fn shell(&self) -> f64 {
+        let auto = match self.levels().is_empty() {
+            true => SHELL_ALONE,
+            false => SHELL,
+        };
+        self.shell.unwrap_or(auto)
+    }
+
     /// The factor on ray steps.
     pub fn stride(&self) -> f64 {
         self.stride.unwrap_or(self.mode.facts().stride)
@@ -235,7 +248,7 @@ impl Marching {
         let relaxation = facts.relaxed.then_some(self.relaxation);
         Stepping {
             detail: self.detail,
-            shell: if facts.shell { self.shell } else { 0.0 },
+            shell: if facts.shell { self.shell() } else { 0.0 },
             relaxation: relaxation.unwrap_or(Relaxation::Off),
             stride: self.stride(),
             clip: self.clip.unwrap_or(facts.cones.is_some()),

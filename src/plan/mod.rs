@@ -303,6 +303,10 @@ impl Plan {
         if plan.march.may_drop_cones() && !plan.cones_pay(assets) {
             plan.to_mut().march.coarsest = Some(1);
         }
+        // What is left of it may get stages of cones that rays do without.
+        if plan.march.shell.is_none() {
+            plan.to_mut().march.shell = Some(plan.march.shell());
+        }
         plan
     }
 

@@ -51,14 +51,14 @@ pub fn from(m: Mandelbox, eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Pl
     plan.reference = None;
     plan.camera = camera(eye, target);
     plan.size = SIZE;
-    (plan.march.coarsest, plan.march.shell) = (Some(16), SHELL);
+    (plan.march.coarsest, plan.march.shell) = (Some(16), Some(SHELL));
     plan
 }
 
 /// A built-in preset, with the same shell.
 fn preset_with_shell(name: &str) -> Plan {
     let mut plan = sized(name, SIZE);
-    plan.march.shell = SHELL;
+    plan.march.shell = Some(SHELL);
     plan
 }
 
@@ -307,6 +307,6 @@ pub fn sloped(factor: f64) -> Vec<Case> {
 pub fn shelled(mut cases: Vec<Case>) -> Vec<Case> {
     cases
         .iter_mut()
-        .for_each(|(_, plan)| plan.march.shell = 0.9);
+        .for_each(|(_, plan)| plan.march.shell = Some(0.9));
     cases
 }

@@ -128,7 +128,7 @@ fn marching() -> impl Strategy<Value = Marching> {
             mode,
             coarsest: Some(1 << level),
             detail,
-            shell,
+            shell: Some(shell),
             relaxation,
             steps: Some(steps),
             clip,

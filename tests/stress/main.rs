@@ -80,7 +80,7 @@ fn nearest_to_rod(plan: &Plan, axis: DVec3, grain: f64, radius: f64) -> f64 {
 fn a_thin_rod_has_no_gaps_and_no_fringe() {
     for shell in [0.3, 0.9] {
         for (name, mut plan) in hard::rods() {
-            plan.march.shell = shell;
+            plan.march.shell = Some(shell);
             let radius: f64 = name.strip_prefix("radius ").unwrap().parse().unwrap();
             // The rod stands before the sky, and aslant: it crosses pixels at all places.
             plan.camera = camera([2.4, -7.0, 0.5], [0.4, -2.0, 0.2]);
@@ -137,7 +137,7 @@ fn normals_where_the_field_is_flat() {
 fn hits_are_where_the_estimate_is_within_the_threshold() {
     for (name, scale) in [("bench-inside", -1.5), ("bench-graze", 2.0)] {
         let mut plan = sized(name, SIZE);
-        plan.march.shell = 0.9;
+        plan.march.shell = Some(0.9);
         plan.march.steps = Some(2000);
         plan.march.relaxation = Relaxation::Off;
         let mut m = mandelbox(scale);

@@ -238,7 +238,12 @@ fn surfaces_agree(fog_height: f64) {
         let sun = light.sun(scene.bounds_far());
         let shaded = shadow::shadow((&scene, &light), place, &sun).open;
         let near = lamp_from(&light, 0, point);
-        let hidden = occlusion::occlusion(&scene, &light, place);
+        // Along the normal of the device.
+        let along = Place {
+            normal: three(a[0]),
+            ..place
+        };
+        let hidden = occlusion::occlusion(&scene, &light, along);
         let fogged = fog::fog(&light, DVec3::new(0.2, 0.5, 0.9), &ray, t);
         pairs.add_vector("normal", a[0], at.normal);
         pairs.add_vector("pigment", a[1], at.pigment);

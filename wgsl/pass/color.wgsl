@@ -61,11 +61,11 @@ fn color(
             hit.id = mark.id;
             hit.uv = vec2<f32>(mark.u, mark.v);
         }
-        let at = surface(ray, hit);
-        n = at.normal;
+        // An unconverged ray is lit where it stopped, mostly close to a surface.
+        let grain = footprint(ray, hit.t);
+        let at = surroundings(ray, hit, shade_nearest(grain));
+        n = at.surface.normal;
         if ended == 0.0 {
-            // An unconverged ray is lit where it stopped, mostly close to a surface.
-            let grain = footprint(ray, hit.t);
             let pixel = turn.stage.origin + cell;
             let shaded = shade(ray, ray.origin + hit.t * ray.axis, at, grain, pixel);
             let lit = shafts(fog(shaded.rgb, ray, hit.t), ray, hit.t, pixel);

@@ -49,9 +49,14 @@ fn path_toward(lamp: Lamp, pair: vec2<f32>) -> vec3<f32> {
     return normalize(material_frame(lamp.axis) * vec3<f32>(across, 1.0));
 }
 
+/// Rays find what is near a hit by themselves.
+fn shade_nearest(grain: f32) -> f32 {
+    return 0.0;
+}
+
 /// Radiance that leaves a hit towards the eye, and 0 if a ray reached its step limit, else 1. `q` is
 /// the hit relative to the eye, `grain` half a pixel's width there, also for later hits.
-fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2<u32>) -> vec4<f32> {
+fn shade(ray: Beam, q: vec3<f32>, seen: Surroundings, grain: f32, pixel: vec2<u32>) -> vec4<f32> {
     let seed = random_seed(pixel);
     let lift = shadow_lift(grain);
     // Without bounces, light of the sky is stopped by near surfaces only.
@@ -59,7 +64,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface_seen: Surface, grain: f32, pixel: vec2
     let reach = select(far, look.occlusion_reach, look.bounces == 0u);
     var light = vec3<f32>(0.0);
     var through = vec3<f32>(1.0);
-    var at = surface_seen;
+    var at = seen.surface;
     var point = q;
     var axis = ray.axis;
     var decided = 1.0;

@@ -4,9 +4,15 @@
 /// Whether pixels are flagged whose rays of light reached their step limit.
 const LIGHT_IS_FLAGGED = true;
 
+/// The distance from which on the free room about a hit is asked for.
+fn shade_nearest(grain: f32) -> f32 {
+    return occlusion_nearest(grain);
+}
+
 /// Radiance that leaves a hit towards the eye, and 0 if the shadow ray reached its step limit,
 /// else 1. `q` is the hit relative to the eye, `grain` half a pixel's width there.
-fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32, pixel: vec2<u32>) -> vec4<f32> {
+fn shade(ray: Beam, q: vec3<f32>, at: Surroundings, grain: f32, pixel: vec2<u32>) -> vec4<f32> {
+    let surface = at.surface;
     let n = surface.normal;
     let albedo = albedo_of(surface, q);
     let facing = dot(n, look.light);
@@ -16,7 +22,7 @@ fn shade(ray: Beam, q: vec3<f32>, surface: Surface, grain: f32, pixel: vec2<u32>
         light = shadow(q, n, grain, Lamp(look.light, 2.0 * bounds_far(), look.softness));
     }
     let lit = facing * light.open;
-    let open = occlusion(q, n, grain);
+    let open = occlusion(at.rooms, occlusion_nearest(grain));
     let up = 0.5 + 0.5 * dot(n, look.world_up);
     let ambient = sky_ambient(n);
     // Light from lit neighbours: warm, from below.

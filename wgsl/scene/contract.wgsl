@@ -8,3 +8,10 @@ struct Surface {
     /// Three numbers from 0 to 1 that pick a colour of the palette, or a linear colour.
     pigment: vec3<f32>,
 }
+
+/// A hit, and the free room at ROOMS distances along its normal, of which each is twice the one
+/// before.
+struct Surroundings {
+    surface: Surface,
+    rooms: array<f32, ROOMS>,
+}

@@ -315,30 +315,48 @@ fn room(q: vec3<f32>, enough: f32) -> f32 {
     return max(0.0, field_value(q));
 }
 
-/// The free room at ROOMS distances from a point, of which each is twice the one before.
-fn rooms(q: vec3<f32>, axis: vec3<f32>, nearest: f32) -> array<f32, ROOMS> {
-    let h = nearest * vec4<f32>(1.0, 2.0, 4.0, 8.0);
-    let near = max(field_values(q, h * axis.x, h * axis.y, h * axis.z), vec4<f32>(0.0));
-    let far = 16.0 * nearest;
-    return array<f32, ROOMS>(near.x, near.y, near.z, near.w, room(q + far * axis, far));
-}
-
-/// The normal is the gradient over the corners of a tetrahedron half a pixel wide, the pigment
-/// comes from the orbit.
-fn surface(ray: Beam, hit: Hit) -> Surface {
+/// A hit and, if `nearest` is not 0, the free room from this distance on. The normal is the gradient
+/// over the corners of a tetrahedron half a pixel wide, the pigment comes from the orbit.
+fn surroundings(ray: Beam, hit: Hit, nearest: f32) -> Surroundings {
+    const X = vec4<f32>(1.0, -1.0, -1.0, 1.0);
+    const Y = vec4<f32>(-1.0, -1.0, 1.0, 1.0);
+    const Z = vec4<f32>(-1.0, 1.0, -1.0, 1.0);
     let q = ray.origin + hit.t * ray.axis;
     let h = 0.5 * footprint(ray, hit.t) + distance_scene.far * 1e-7;
-    let x = vec4<f32>(1.0, -1.0, -1.0, 1.0);
-    let y = vec4<f32>(-1.0, -1.0, 1.0, 1.0);
-    let z = vec4<f32>(-1.0, 1.0, -1.0, 1.0);
-    let f = field_values(q, h * x, h * y, h * z);
-    let g = vec3<f32>(dot(f, x), dot(f, y), dot(f, z));
-    let n = length(g);
+    var x = h * X;
+    var y = h * Y;
+    var z = h * Z;
     // A point without a gradient faces the viewer.
     var normal = -ray.axis;
-    if n > 1e-20 {
-        normal = g / n;
+    var near = vec4<f32>(0.0);
+    // Drivers compile a copy of the orbits for each call: so there is only one.
+    let rounds = select(1u, 2u, nearest > 0.0);
+    for (var i = 0u; i < rounds; i++) {
+        near = field_values(q, x, y, z);
+        if i > 0u {
+            break;
+        }
+        let g = vec3<f32>(dot(near, X), dot(near, Y), dot(near, Z));
+        let n = length(g);
+        if n > 1e-20 {
+            normal = g / n;
+        }
+        let along = nearest * vec4<f32>(1.0, 2.0, 4.0, 8.0);
+        x = along * normal.x;
+        y = along * normal.y;
+        z = along * normal.z;
+    }
+    var rooms: array<f32, ROOMS>;
+    if nearest > 0.0 {
+        near = max(near, vec4<f32>(0.0));
+        let far = 16.0 * nearest;
+        rooms = array<f32, ROOMS>(near.x, near.y, near.z, near.w, room(q + far * normal, far));
     }
     let pigment = trap(scene_point(q), distance_scene.iterations);
-    return Surface(normal, pigment);
+    return Surroundings(Surface(normal, pigment), rooms);
+}
+
+/// A hit alone.
+fn surface(ray: Beam, hit: Hit) -> Surface {
+    return surroundings(ray, hit, 0.0).surface;
 }

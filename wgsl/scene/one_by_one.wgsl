@@ -17,13 +17,17 @@ fn steps_opened(walk: Walk) -> u32 {
     return 0u;
 }
 
-/// The free room at ROOMS distances from a point, of which each is twice the one before.
-fn rooms(q: vec3<f32>, axis: vec3<f32>, nearest: f32) -> array<f32, ROOMS> {
-    var all: array<f32, ROOMS>;
-    var h = nearest;
-    for (var i = 0u; i < ROOMS; i++) {
-        all[i] = room(q + h * axis, h);
-        h *= 2.0;
+/// A hit and, if `nearest` is not 0, the free room from this distance on.
+fn surroundings(ray: Beam, hit: Hit, nearest: f32) -> Surroundings {
+    let found = surface(ray, hit);
+    let q = ray.origin + hit.t * ray.axis;
+    var rooms: array<f32, ROOMS>;
+    if nearest > 0.0 {
+        var h = nearest;
+        for (var i = 0u; i < ROOMS; i++) {
+            rooms[i] = room(q + h * found.normal, h);
+            h *= 2.0;
+        }
     }
-    return all;
+    return Surroundings(found, rooms);
 }
