@@ -66,8 +66,9 @@ impl MaxMip {
     /// The places `low..=high` of the grid under a node.
     pub fn places(&self, level: usize, node: [u32; 2]) -> Places {
         let grid = self.levels[0].size;
-        let low = node.map(|i| i << level);
-        let high = [0, 1].map(|a| (low[a] + (1 << level) - 1).min(grid[a] - 1));
+        let low = [node[0] << level, node[1] << level];
+        let end = |a: usize| (low[a] + (1 << level) - 1).min(grid[a] - 1);
+        let high = [end(0), end(1)];
         Places { low, high }
     }
 

@@ -23,6 +23,9 @@ const MARGIN: f64 = 1.0 / 262_144.0;
 /// square, 2^-80, is no denormal, which devices may take for 0.
 const LEAST_RISE: f64 = 1.0 / (1_u64 << 40) as f64;
 
+/// A factor beyond 1 that outweighs the rounding of a few operations in f64.
+const SURELY: f64 = 1.0 + 1e-12;
+
 /// What a place costs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cost {
@@ -43,6 +46,19 @@ impl Cost {
         match self {
             Self::Cone => squared / (rise * rise),
             Self::Walk { offset } => (squared.sqrt() + offset) / rise,
+        }
+    }
+
+    /// Whether a cost is surely no less than `best`. It takes neither the root nor the quotient,
+    /// which most places of a search do not need.
+    pub fn exceeds(self, squared: u32, rise: f64, best: f64) -> bool {
+        let squared = f64::from(squared);
+        match self {
+            Self::Cone => squared >= best * (rise * rise) * SURELY,
+            Self::Walk { offset } => {
+                let steps = best * rise * SURELY - offset;
+                steps < 0.0 || squared >= steps * steps * SURELY
+            }
         }
     }
 

@@ -69,7 +69,7 @@ pub struct GridDistance {
 impl Places {
     /// The lowest and the highest along an axis.
     fn along(self, axis: usize) -> Interval {
-        [self.low[axis], self.high[axis]].map(i64::from)
+        [i64::from(self.low[axis]), i64::from(self.high[axis])]
     }
 }
 
@@ -105,14 +105,18 @@ impl GridDistance {
     /// count: exact for a single place, not too far for more. `None` if none counts.
     pub fn squared(&self, from: [u32; 2], to: Places) -> Option<u32> {
         let [x, y] = match self.sector {
-            Sector::All => [0, 1].map(|a| self.axes[a].gap(from[a], to.along(a))),
+            Sector::All => {
+                let gap = |a: usize| self.axes[a].gap(from[a], to.along(a));
+                [gap(0), gap(1)]
+            }
             Sector::Quadrant(up) => {
                 let gap = |a: usize| ahead(self.axes[a], up[a], from[a], to.low[a], to.high[a]);
                 [gap(0)?, gap(1)?]
             }
             Sector::Side { axis, up } => self.beside(axis, up, from, to)?,
         };
-        let [x, y] = [x, y].map(|n| n.saturating_sub(u32::from(self.cells)));
+        let clear = |n: u32| n.saturating_sub(u32::from(self.cells));
+        let (x, y) = (clear(x), clear(y));
         // At most 3 * 8191 along an axis: far from the end of 32 bits.
         Some(x * x + y * y)
     }

@@ -73,22 +73,20 @@ impl Planes {
         best: f64,
     ) -> bool {
         let plane = self.get(level, at);
-        let both = [0, 1].map(|a| steps(distance, a, from.place[a], to));
-        let [Some(x), Some(y)] = both else {
+        let axis = |a: usize| steps(distance, a, from.place[a], to);
+        let (Some(x), Some(y)) = (axis(0), axis(1)) else {
             return false;
         };
-        let steps = [x, y];
-        let middle = [0, 1].map(|a| 0.5 * (steps[a].low + steps[a].high));
-        let length = middle[0].hypot(middle[1]);
+        let middle = [&x, &y].map(|s| 0.5 * (s.low + s.high));
+        let length = (middle[0] * middle[0] + middle[1] * middle[1]).sqrt();
         if length == 0.0 {
             return false;
         }
         let ratio = cost.ratio(best);
         let n = middle.map(|m| m / (length * ratio));
         let mut most = plane.at(from.place) - from.height;
-        for a in 0..2 {
+        for (a, Steps { low, high, turn }) in [x, y].into_iter().enumerate() {
             let slope = plane.g[a] - n[a];
-            let Steps { low, high, turn } = steps[a];
             most += (slope * low).max(slope * high) + plane.g[a] * turn;
         }
         if let Cost::Walk { offset } = cost {

@@ -149,6 +149,9 @@ impl Search<'_> {
         }
         let to = self.mip.places(level, at);
         let squared = self.distance.squared(self.from.place, to)?;
+        if self.cost.exceeds(squared, rise, best.cost) {
+            return None;
+        }
         let cost = self.cost.of(squared, rise);
         if cost >= best.cost {
             return None;
@@ -173,7 +176,8 @@ impl Search<'_> {
     fn children(&self, level: usize, parent: [u32; 2], without: Option<[u32; 2]>, best: &mut Best) {
         let size = self.mip.levels[level].size;
         let mut list: [Child; 4] = [(f64::INFINITY, [0; 2]); 4];
-        for (i, child) in (0..4).zip(&mut list) {
+        let mut count = 0;
+        for i in 0..4 {
             let at = [2 * parent[0] + i % 2, 2 * parent[1] + i / 2];
             if at[0] >= size[0] || at[1] >= size[1] || without == Some(at) {
                 continue;
@@ -181,11 +185,14 @@ impl Search<'_> {
             if level == 0 {
                 self.consider(at, best);
             } else if let Some(cost) = self.bound(level, at, best) {
-                *child = (cost, at);
+                // Insertion of a few is much quicker than a general sort.
+                let place = list[..count].iter().take_while(|c| c.0 <= cost).count();
+                list.copy_within(place..count, place + 1);
+                list[place] = (cost, at);
+                count += 1;
             }
         }
-        list.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (cost, at) in list {
+        for &(cost, at) in &list[..count] {
             // What was found since may have ruled it out.
             if cost < best.cost {
                 self.children(level - 1, at, None, best);
