@@ -101,7 +101,9 @@ fn nodes() -> Result<Vec<NodesRow>> {
                 let heights = field(f, size)?;
                 let (patches, options) = (Patches::default(), Options::default());
                 let task = MapTask::new(generator, &heights, patches, &options)?;
-                let nodes = collect(0..task.values.len(), 64, |place| task.find(place).nodes);
+                let nodes = collect(0..task.values.len(), 64, |place| {
+                    task.find(place, &mut [None; 4]).nodes
+                });
                 let total: u64 = nodes.iter().map(|n| u64::from(*n)).sum();
                 let mean = total as f64 / (nodes.len() * generator.channels()) as f64;
                 let worst = nodes.into_iter().max().unwrap_or(0);

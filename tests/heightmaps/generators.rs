@@ -189,7 +189,9 @@ fn nodes(pattern: Pattern) -> (f64, u32) {
     let heights = field(pattern, [256, 256], [false, false]);
     let (patches, options) = (Patches::default(), Options::default());
     let task = MapTask::new(Generator::Exact, &heights, patches, &options).unwrap();
-    let nodes = collect(0..task.values.len(), 64, |place| task.find(place).nodes);
+    let nodes = collect(0..task.values.len(), 64, |place| {
+        task.find(place, &mut [None; 4]).nodes
+    });
     let total: u64 = nodes.iter().map(|n| u64::from(*n)).sum();
     let (mean, most) = (total as f64 / 65_536.0, nodes.into_iter().max().unwrap());
     println!("{pattern:?}: {mean:.1} nodes, at most {most}");
@@ -250,7 +252,7 @@ fn a_task_finds_the_cones_of_one_place() {
         let map = plain(generator, &heights);
         let channels = generator.channels();
         let last = task.values.len() - 1;
-        let found = task.find(last).ratios;
+        let found = task.find(last, &mut [None; 4]).ratios;
         assert_eq!(map.ratios[last * channels..], found[..channels]);
     }
 }

@@ -36,9 +36,16 @@ pub fn generate(
     let (mut start, mut length) = (0, BAND);
     while start < places {
         let band = start..places.min(start + length);
-        let band: Vec<Found> = collect(band, TAKEN, |index| task.find(index));
+        let runs = band.len().div_ceil(TAKEN);
+        let found: Vec<Vec<Found>> = collect(0..runs, 1, |run| {
+            let mut likely = [None; 4];
+            let first = band.start + run * TAKEN;
+            (first..band.end.min(first + TAKEN))
+                .map(|index| task.find(index, &mut likely))
+                .collect()
+        });
         let mut nodes = 0;
-        for found in &band {
+        for found in found.iter().flatten() {
             ratios.extend_from_slice(&found.ratios[..channels]);
             nodes += u64::from(found.nodes);
         }

@@ -69,7 +69,7 @@ pub struct GridDistance {
 impl Places {
     /// The lowest and the highest along an axis.
     fn along(self, axis: usize) -> Interval {
-        [i64::from(self.low[axis]), i64::from(self.high[axis])]
+        [self.low[axis], self.high[axis]].map(i64::from)
     }
 }
 
@@ -103,22 +103,39 @@ impl GridDistance {
 
     /// The squared distance in texels from a place to the nearest of some places that
     /// count: exact for a single place, not too far for more. `None` if none counts.
+    // Inlined where all places count, which saves a third of a search. Other sectors are quicker as
+    // a call.
+    #[inline(always)]
     pub fn squared(&self, from: [u32; 2], to: Places) -> Option<u32> {
-        let [x, y] = match self.sector {
-            Sector::All => {
-                let gap = |a: usize| self.axes[a].gap(from[a], to.along(a));
-                [gap(0), gap(1)]
-            }
+        match self.sector {
+            Sector::All => Some(self.square(self.around(from, to))),
+            _ => self.squared_in_sector(from, to),
+        }
+    }
+
+    #[inline(never)]
+    fn squared_in_sector(&self, from: [u32; 2], to: Places) -> Option<u32> {
+        Some(self.square(match self.sector {
+            Sector::All => self.around(from, to),
             Sector::Quadrant(up) => {
                 let gap = |a: usize| ahead(self.axes[a], up[a], from[a], to.low[a], to.high[a]);
                 [gap(0)?, gap(1)?]
             }
             Sector::Side { axis, up } => self.beside(axis, up, from, to)?,
-        };
-        let clear = |n: u32| n.saturating_sub(u32::from(self.cells));
-        let (x, y) = (clear(x), clear(y));
+        }))
+    }
+
+    /// The squared distance of so many steps along both axes.
+    fn square(&self, steps: [u32; 2]) -> u32 {
+        let [x, y] = steps.map(|n| n.saturating_sub(u32::from(self.cells)));
         // At most 3 * 8191 along an axis: far from the end of 32 bits.
-        Some(x * x + y * y)
+        x * x + y * y
+    }
+
+    /// Steps along both axes in any direction.
+    fn around(&self, from: [u32; 2], to: Places) -> [u32; 2] {
+        let gap = |a: usize| self.axes[a].gap(from[a], to.along(a));
+        [gap(0), gap(1)]
     }
 
     /// Steps along and across a side's direction.

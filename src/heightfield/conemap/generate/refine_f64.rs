@@ -15,7 +15,7 @@ pub fn is_ambiguous(task: &MapTask<'_>, found: &[SearchState]) -> bool {
 /// The ratios of a place in f64, from what the device has found for each cone.
 pub fn refined(task: &MapTask<'_>, index: usize, found: &[SearchState]) -> [f64; 4] {
     if is_ambiguous(task, found) {
-        return task.find(index).ratios;
+        return task.find(index, &mut [None; 4]).ratios;
     }
     let height = f64::from(task.values[index]);
     let cost = task.cost();

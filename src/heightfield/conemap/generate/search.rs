@@ -93,6 +93,8 @@ pub struct Best {
     pub cost: f64,
     /// Nodes looked at.
     pub nodes: u32,
+    /// The place of that cost; before a search, one that may cost little.
+    pub at: [u32; 2],
 }
 
 /// A search over one pyramid.
@@ -116,6 +118,9 @@ impl Search<'_> {
         if most <= 0.0 {
             return;
         }
+        if best.at != self.from.place {
+            self.consider(best.at, best);
+        }
         for neighbour in neighbours(self.distance.axes, 0, self.from.place) {
             self.consider(neighbour.at, best);
         }
@@ -136,7 +141,7 @@ impl Search<'_> {
     /// Takes one place into account.
     fn consider(&self, at: [u32; 2], best: &mut Best) {
         if let Some(cost) = self.bound(0, at, best) {
-            best.cost = cost;
+            (best.cost, best.at) = (cost, at);
         }
     }
 
@@ -176,8 +181,7 @@ impl Search<'_> {
     fn children(&self, level: usize, parent: [u32; 2], without: Option<[u32; 2]>, best: &mut Best) {
         let size = self.mip.levels[level].size;
         let mut list: [Child; 4] = [(f64::INFINITY, [0; 2]); 4];
-        let mut count = 0;
-        for i in 0..4 {
+        for (i, child) in (0..4).zip(&mut list) {
             let at = [2 * parent[0] + i % 2, 2 * parent[1] + i / 2];
             if at[0] >= size[0] || at[1] >= size[1] || without == Some(at) {
                 continue;
@@ -185,14 +189,16 @@ impl Search<'_> {
             if level == 0 {
                 self.consider(at, best);
             } else if let Some(cost) = self.bound(level, at, best) {
-                // Insertion of a few is much quicker than a general sort.
-                let place = list[..count].iter().take_while(|c| c.0 <= cost).count();
-                list.copy_within(place..count, place + 1);
-                list[place] = (cost, at);
-                count += 1;
+                *child = (cost, at);
             }
         }
-        for &(cost, at) in &list[..count] {
+        // A network that sorts four is quicker than a general sort.
+        for (i, k) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+            if list[k].0 < list[i].0 {
+                list.swap(i, k);
+            }
+        }
+        for (cost, at) in list {
             // What was found since may have ruled it out.
             if cost < best.cost {
                 self.children(level - 1, at, None, best);

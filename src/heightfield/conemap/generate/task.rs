@@ -30,6 +30,10 @@ pub struct MapTask<'a> {
     top: f32,
 }
 
+/// For each search, a place that may cost little: the one that bounded the cone next to this. With
+/// it a search rules out most others at once.
+pub type Likely = [Option<[u32; 2]>; 4];
+
 /// The cones of one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
@@ -106,8 +110,9 @@ impl<'a> MapTask<'a> {
         self.method.sectors().len() / self.generator.channels()
     }
 
-    /// Searches for the cones of a place, which is given by its index, row by row.
-    pub fn find(&self, index: usize) -> Found {
+    /// Searches for the cones of a place, which is given by its index, row by row. Leaves the
+    /// places that bound them.
+    pub fn find(&self, index: usize, likely: &mut Likely) -> Found {
         let width = self.size[0] as usize;
         let from = Apex {
             place: [(index % width) as u32, (index / width) as u32],
@@ -120,9 +125,13 @@ impl<'a> MapTask<'a> {
             let mut best = Best {
                 cost: cost.widest(),
                 nodes,
+                at: from.place,
             };
-            for search in cone * per_cone..(cone + 1) * per_cone {
+            let searches = cone * per_cone..(cone + 1) * per_cone;
+            for (search, likely) in searches.clone().zip(&mut likely[searches]) {
+                best.at = likely.unwrap_or(from.place);
                 self.method.search(self, search, from, &mut best);
+                *likely = Some(best.at);
             }
             (*ratio, nodes) = (cost.ratio(best.cost), best.nodes);
         }
