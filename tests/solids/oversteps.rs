@@ -196,6 +196,34 @@ fn a_step_that_is_too_long_is_known() {
     assert!(ball > 0.3 * off && ball < off, "{}", ball / off);
 }
 
+/// At scale -3 the scalar estimate exceeds the distance by more than 1.1, and a step stays within.
+#[test]
+fn an_estimate_that_is_too_large_is_known() {
+    let m = Mandelbox {
+        scale: -3.0,
+        ..Mandelbox::default()
+    };
+    assert_eq!(
+        (m.fold_limit, m.min_radius, m.fixed_radius),
+        (1.0, 0.5, 1.0)
+    );
+    let scalar = Mandelbox {
+        estimate: Estimate::Scalar,
+        ..m.clone()
+    };
+    let p = DVec3::new(0.7587, -0.0392, 1.9074);
+    let q = DVec3::new(0.756_660_022, -0.039_084_038, 1.905_269_723);
+    let off = p.distance(q);
+    // It is of the set, but for the digits that are written here.
+    let value = scalar.evaluator().value(q, MANY).0;
+    assert!(value < 1e-6 * off, "{value}");
+    let value = scalar.evaluator().value(p, MANY).0;
+    assert!((value / off - 1.213).abs() < 0.002, "{}", value / off);
+    assert!(value < scalar.lipschitz() * off, "{}", scalar.lipschitz());
+    let step = m.evaluator().step(p, MANY, 0.0).radius;
+    assert!(step > 0.9 * off && step < off, "{}", step / off);
+}
+
 /// |z|/w far out, with the Jacobian's norm after the first linear iterations in place of w: what
 /// the estimate of an escaped orbit tends to. Written without the code under test.
 fn converged(m: &Mandelbox, p: DVec3, follow: u32) -> f64 {
