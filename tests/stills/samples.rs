@@ -54,11 +54,12 @@ fn a_small_picture_is_the_large_one_made_small() {
     }
 }
 
-/// The plan with other samples, with and without cones.
+/// The plan with other samples, with and without cones, and the same shell.
 fn sampled(plan: &Plan, samples: u32, coarsest: u32) -> Plan {
     let mut plan = plan.clone();
     plan.samples = samples;
     plan.march.coarsest = Some(coarsest);
+    plan.march.shell = Some(0.2);
     plan
 }
 
