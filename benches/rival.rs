@@ -7,6 +7,8 @@
 //! *No cones* is `safe` with rays alone: it keeps its shell, which the rivals have not.
 //! Times are medians of warm runs in turns.
 
+use std::time::{Duration, Instant};
+
 use anyhow::{Context, Result};
 use as_sharp::as_sharp;
 use conemarch::base::outcome::Counts;
@@ -24,8 +26,9 @@ mod as_sharp;
 #[allow(dead_code, reason = "other programs use the rest")]
 mod markdown;
 
-/// Warm runs that a median is taken of.
-const RUNS: usize = 5;
+/// Warm turns that a median is taken of, at least, and for how long: short times vary more.
+const TURNS: usize = 9;
+const LEAST: Duration = Duration::from_secs(20);
 /// The factor on the steps to the set.
 const STRIDE: f64 = 0.1;
 /// What is compared, and the changes of the preset.
@@ -102,18 +105,26 @@ impl Bench {
             });
         }
         let mut times = vec![Vec::new(); plans.len()];
-        for run in 0..=RUNS {
-            for (plan, times) in plans.iter().zip(&mut times) {
+        let begin = Instant::now();
+        let mut run = 0;
+        while run <= TURNS || begin.elapsed() < LEAST {
+            let mut turn: Vec<_> = plans.iter().zip(&mut times).collect();
+            // What runs after another finds the processor warm or busy.
+            if run % 2 == 1 {
+                turn.reverse();
+            }
+            for (plan, times) in turn {
                 let ms = self.render(plan, false)?.march_ms;
                 // The first round compiles.
                 if run > 0 {
                     times.push(ms);
                 }
             }
+            run += 1;
         }
         for (measured, mut times) in all.iter_mut().zip(times) {
             times.sort_by(f64::total_cmp);
-            measured.ms = times[RUNS / 2];
+            measured.ms = times[times.len() / 2];
         }
         Ok(all)
     }

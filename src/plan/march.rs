@@ -123,7 +123,7 @@ pub const COARSEST: u32 = 16;
 /// The shell with cones: rays that start behind them are wrong on as few pixels as rays alone.
 const SHELL: f64 = 0.2;
 /// The shell of rays alone: half as much keeps them within 3 % of the time of rays without a shell.
-const SHELL_ALONE: f64 = 0.1;
+const SHELL_ALONE: f64 = 0.05;
 
 settings! {
     /// How a picture is marched.
@@ -134,7 +134,7 @@ settings! {
         detail: f64 = 1.0, number(1e-3, 1e3),
             "hit threshold in footprints: a ray hits where the estimate is at most this";
         shell: Option<f64> = None, auto_number(0.0, 0.99),
-            "share of the hit threshold by which steps keep away from the surface; more costs time and lowers the error; auto is 0.2, and 0.1 without cones";
+            "share of the hit threshold by which steps keep away from the surface; more costs time and lowers the error; auto is 0.2, and 0.05 without cones";
         relaxation: Relaxation = Relaxation::Auto, relaxation(), "factor on the steps of rays; auto follows the change of the estimate from step to step, and off is 1";
         fudge: Vec<f64> = vec![1.0], numbers(6, 0.01, 1.0),
             "factors on the width of the cones in mode calibrated, for each pass from coarse to fine; at most one for each pass, and the last one repeats";
