@@ -4,6 +4,8 @@
 //! pixels, nearer to the surface, with more iterations, and over larger height maps. Times are
 //! medians of warm runs on the clock.
 
+use std::time::{Duration, Instant};
+
 use anyhow::Result;
 use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::Choice;
@@ -15,8 +17,9 @@ use conemarch::scene::Assets;
 #[allow(dead_code, reason = "other programs use the rest")]
 mod markdown;
 
-/// Warm runs that a median is taken of.
-const RUNS: usize = 3;
+/// Warm turns that a median is taken of, at least, and for how long: short times vary more.
+const TURNS: usize = 3;
+const LEAST: Duration = Duration::from_secs(3);
 /// A render with more pixels than this runs once, after a warm one.
 const LARGE: u32 = 3_000_000;
 const HEIGHTS: [u32; 7] = [90, 180, 360, 720, 1080, 2160, 4320];
@@ -55,19 +58,23 @@ impl Bench {
             plans.push(preset::load(name, &all?)?.plan.one_sample());
         }
         let pixels = plans[0].size.iter().product::<u32>();
-        let runs = if pixels > LARGE { 1 } else { RUNS };
+        let turns = if pixels > LARGE { 1 } else { TURNS };
         let mut times = [vec![], vec![]];
-        for run in 0..=runs {
-            for (plan, times) in plans.iter().zip(&mut times) {
-                let ms = self.ms(plan)?;
-                if run > 0 {
-                    times.push(ms);
+        let begin = Instant::now();
+        let mut turn = 0;
+        while turn <= turns || begin.elapsed() < LEAST {
+            for i in [turn % 2, 1 - turn % 2] {
+                let ms = self.ms(&plans[i])?;
+                // The first turn compiles.
+                if turn > 0 {
+                    times[i].push(ms);
                 }
             }
+            turn += 1;
         }
         Ok(times.map(|mut times| {
             times.sort_by(f64::total_cmp);
-            times[runs / 2]
+            times[times.len() / 2]
         }))
     }
 }
