@@ -30,7 +30,7 @@ fn main() -> anyhow::Result<()> {
     };
     let mut work = renderer.begin(&plan, &Assets::default(), extras)?;
     // Until the first frame begins, a thread makes maps and compiles programs.
-    while work.picture().is_none() && work.poll()?.is_none() {
+    while work.is_preparing() {
         std::thread::sleep(Duration::from_millis(10));
         work.advance(0.0)?;
     }

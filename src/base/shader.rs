@@ -128,7 +128,10 @@ impl Program {
             }
             left -= lines;
         }
-        ("end of program", left)
+        // The joined text ends too early.
+        self.modules
+            .last()
+            .map_or(("", 1), |m| (m.path, m.source.lines().count()))
     }
 
     /// Parses and validates the joined text, and checks that exactly the declared constants
@@ -138,10 +141,8 @@ impl Program {
         capabilities: naga::valid::Capabilities,
     ) -> Result<(naga::Module, naga::valid::ModuleInfo), ShaderError> {
         let source = self.source();
-        let module = naga::front::wgsl::parse_str(&source).map_err(|e| {
-            let line = e.location(&source).map_or(1, |l| l.line_number as usize);
-            self.fault(self.locate(line), e.message().to_string())
-        })?;
+        let parsed = naga::front::wgsl::parse_str(&source);
+        let module = parsed.map_err(|e| self.misread(&source, &e))?;
         if module.entry_points.iter().all(|e| e.name != self.entry) {
             return Err(self.fault(self.entry_at(), "the entry point is missing".into()));
         }
@@ -158,6 +159,19 @@ impl Program {
         })?;
         self.check_constants(&source, &module)?;
         Ok((module, info))
+    }
+
+    /// The fault of a text that does not parse. Where a module lacks its end, the parser meets it in a
+    /// later one.
+    fn misread(&self, source: &str, e: &naga::front::wgsl::ParseError) -> ShaderError {
+        let at = e.location(source);
+        let at_end = at.is_some_and(|at| at.offset as usize >= source.trim_end().len());
+        let place = self.locate(at.map_or(1, |at| at.line_number as usize));
+        let unended = |m: &Module| unended(&m.source).map(|(line, what)| (m.path, line, what));
+        match self.modules.iter().find_map(unended) {
+            Some((path, line, what)) if path != place.0 || at_end => self.fault((path, line), what),
+            _ => self.fault(place, e.message().to_string()),
+        }
     }
 
     /// The file and the line of a span of the joined text.
@@ -221,4 +235,55 @@ impl Program {
         }
         text
     }
+}
+
+/// The line, from 1, of what a text begins and does not end, and what it is.
+fn unended(text: &str) -> Option<(usize, String)> {
+    let mut open: Vec<(char, usize)> = Vec::new();
+    let (mut comments, mut in_line_comment) = (0, false);
+    // The last character that is not of a comment, and its line.
+    let mut last = None;
+    let mut line = 1;
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
+        let pair = (c, rest.peek().copied().unwrap_or('\n'));
+        if c == '\n' {
+            line += 1;
+            in_line_comment = false;
+        } else if in_line_comment {
+        } else if pair == ('/', '*') {
+            comments += 1;
+            rest.next();
+        } else if comments > 0 {
+            if pair == ('*', '/') {
+                comments -= 1;
+                rest.next();
+            }
+        } else if pair == ('/', '/') {
+            in_line_comment = true;
+        } else if !c.is_whitespace() {
+            last = Some((c, line));
+            let opener = match c {
+                ')' => '(',
+                ']' => '[',
+                '}' => '{',
+                _ => {
+                    if "([{".contains(c) {
+                        open.push((c, line));
+                    }
+                    continue;
+                }
+            };
+            match open.pop() {
+                Some((found, _)) if found == opener => {}
+                Some((found, at)) => return Some((at, format!("`{found}` has no end"))),
+                None => return Some((line, format!("`{c}` ends nothing"))),
+            }
+        }
+    }
+    if let Some((found, at)) = open.first() {
+        return Some((*at, format!("`{found}` has no end")));
+    }
+    let (c, at) = last?;
+    (!";}".contains(c)).then(|| (at, "the declaration has no `;` at its end".into()))
 }

@@ -1,6 +1,5 @@
 //! Ctrl-C and other requests to end: the work stops as soon as it can and leaves no file.
 
-use std::process::exit;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -8,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
+use signal_hook::low_level::exit;
 
 use crate::command::print::say;
 use crate::gpu::RenderError;
@@ -85,7 +85,8 @@ pub fn keeps(what: Option<String>) {
     *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = what;
 }
 
-/// Ends the process without a trace of files, but for what is kept.
+/// Ends the process without a trace of files, but for what is kept. Destructors of the driver do not
+/// run, as one of its threads may compile a program.
 fn end() -> ! {
     let _kept = picture::clear();
     let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
@@ -93,5 +94,5 @@ fn end() -> ! {
         Some(kept) => say(&format!("error: cancelled; {kept}")),
         None => say(&format!("error: {CANCELLED}")),
     }
-    exit(code().into());
+    exit(code().into())
 }

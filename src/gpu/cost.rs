@@ -95,7 +95,7 @@ impl Cost {
         // need it.
         let rounds = (stage.limit - stage.chunk).div_ceil(stage.most.max(1)) + 1;
         let ahead = self.last.map_or(first + rounds, |last| last + 1);
-        ahead.min(ROUNDS * first + ROUNDS)
+        ahead.min(ROUNDS * first)
     }
 
     /// Learns from a stage that so far took so many dispatches, `ran` of them in a submission, of so

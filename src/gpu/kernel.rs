@@ -255,23 +255,23 @@ impl Kernel {
     }
 
     /// Has the driver compile what it compiles only when it meets a dispatch: Mesa's software Vulkan
-    /// then takes up to 0.3 s for a program that its cache does not hold.
+    /// then takes up to a second for a program that its cache does not hold.
     ///
     /// # Errors
     /// The device has no room.
     pub fn warm(&self, device: &Device) -> Result<(), RenderError> {
-        let largest = self.bindings.iter().map(|b| b.bytes).max();
-        let buffer = || Array::in_buffer(device, "warm", &vec![0; largest.unwrap_or(0) as usize]);
-        let [read, written] = [buffer()?, buffer()?];
+        // One for each variable, as WebGPU lets no two variables that are written share a buffer.
+        let buffer = |b: &Binding| Array::in_buffer(device, "warm", &vec![0; b.bytes as usize]);
+        let buffers = self.bindings.iter().map(buffer);
+        let buffers = buffers.collect::<Result<Vec<_>, _>>()?;
         let one = [0; 4];
         let numbers = Array::in_texture(device, "warm", &one, false)?;
         let whole_numbers = Array::in_texture(device, "warm", &one, true)?;
         let picture = new_picture(device, [1, 1]).create_view(&Default::default());
         let resource = |name: &str| {
-            let binding = self.bindings.iter().find(|b| b.name == name)?;
-            Some(match binding.kind {
-                Kind::Storage { read_only: true } => read.binding(),
-                Kind::Storage { read_only: false } => written.binding(),
+            let at = self.bindings.iter().position(|b| b.name == name)?;
+            Some(match self.bindings[at].kind {
+                Kind::Storage { .. } => buffers[at].binding(),
                 Kind::Texture { whole: false } => numbers.binding(),
                 Kind::Texture { whole: true } => whole_numbers.binding(),
                 Kind::Picture => wgpu::BindingResource::TextureView(&picture),

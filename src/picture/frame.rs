@@ -72,7 +72,8 @@ pub struct LevelLayer {
 /// How the host and a device worked together on a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Traffic {
-    /// How often the device had nothing to do until the host knew more.
+    /// How often the device had nothing to do until the host had read a count: more dispatches of a
+    /// stage were needed than were encoded. What a host waits between its calls does not count.
     pub drains: u32,
     /// Submissions.
     pub submissions: u32,

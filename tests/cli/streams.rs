@@ -233,3 +233,19 @@ fn long_work_tells_its_progress_in_lines() {
         assert!(code == Some(130) || is_short, "{args}: {code:?}");
     }
 }
+
+/// A driver that compiles a program must not meet its own destructors.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_while_a_driver_compiles_ends_with_its_own_exit_code() {
+    for nth in 0..10 {
+        let folder = Folder::new();
+        let mut command = folder.command("render stones --size 64x36 -o a.png");
+        command.env("MESA_SHADER_CACHE_DISABLE", "true");
+        command.stdout(Stdio::null()).stderr(Stdio::piped());
+        let child = command.spawn().expect("the program starts");
+        sleep(Duration::from_millis(300 + 40 * nth));
+        let (found, said) = ended(child, &["INT", "INT"]);
+        assert!(matches!(found, Some(130 | 0)), "{found:?}: {said}");
+    }
+}

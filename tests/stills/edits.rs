@@ -227,3 +227,55 @@ fn a_program_that_cannot_be_bound_leaves_the_others_as_they_were() {
     renderer.sources = None;
     assert!(render(&mut renderer).unwrap() == old);
 }
+
+/// What lacks its end is noticed in a later file, or at the end of the program.
+#[test]
+fn a_shader_text_that_lacks_an_end_is_told_with_its_own_file_and_line() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let plan = sized("mandelbox", [64, 36]);
+    let without_last = |text: &str| text[..text.rfind('}').unwrap()].to_string();
+    let file = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
+    // The line of the last bracket at the start of a function or struct.
+    let of_last = |text: &str| {
+        let at = text.lines().enumerate();
+        let opens = at.filter(|(_, l)| l.ends_with('{') && !l.starts_with(' '));
+        opens.last().unwrap().0 + 1
+    };
+    let brackets = [
+        "wgsl/pass/quick.wgsl",
+        "wgsl/pass/look.wgsl",
+        "wgsl/pass/color.wgsl",
+        "wgsl/pass/trace.wgsl",
+        "wgsl/scene/distance.wgsl",
+        "wgsl/base/view.wgsl",
+    ];
+    let mut cases: Vec<(&str, String, usize, &str)> = Vec::new();
+    for path in brackets {
+        let text = file(path);
+        cases.push((path, without_last(&text), of_last(&text), "`{` has no end"));
+    }
+    let look = file(brackets[1]);
+    let lines = look.lines().count();
+    for (added, says) in [
+        ("\nconst EXTRA = 3 // none", "no `;`"),
+        ("\n/* a /* b */", "block comment"),
+        ("\n}", "expected global item"),
+    ] {
+        cases.push((
+            brackets[1],
+            format!("{}{added}", look.trim_end()),
+            lines + 1,
+            says,
+        ));
+    }
+    for (path, text, line, says) in cases {
+        let mut renderer = adapter::open();
+        renderer.sources = Some(Arc::new(move |asked| (asked == path).then(|| text.clone())));
+        let said = whole(&mut renderer, &plan).unwrap_err().to_string();
+        let place = format!("{path}:{line}: ");
+        assert!(
+            said.starts_with(&place) && said.contains(says),
+            "{place}{says}: {said}"
+        );
+    }
+}

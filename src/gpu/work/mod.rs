@@ -293,7 +293,7 @@ impl Work {
         };
         loop {
             self.advance(SUBMISSION_MS)?;
-            // Software Vulkan runs a submission before it returns: ask before the next one.
+            // Software Vulkan runs a submission before the next call returns: ask before that.
             if !tell(self.progress()) {
                 return Err(RenderError::Cancelled);
             }

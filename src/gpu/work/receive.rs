@@ -37,8 +37,8 @@ impl Run {
     }
 
     /// Takes in a submission that has ended. It is in time if the host could submit after the one
-    /// before had ended: software Vulkan runs a submission before it returns, so that two end at
-    /// once.
+    /// before had ended: in software Vulkan a submission waits for the one before, so that the
+    /// host finds two of them ended at once.
     fn land(&mut self, flight: Flight, in_time: bool) -> Result<(), RenderError> {
         let shared = self.shared.clone();
         let device = &shared.device;
