@@ -9,6 +9,7 @@ use std::time::SystemTime;
 
 use anyhow::{Context, Result, anyhow};
 use clap::{Args, ValueHint};
+use image::{ImageFormat, ImageReader};
 
 use crate::command::arguments::{bits, noise, pixel_samples, size};
 use crate::command::executor::{Executor, device};
@@ -310,10 +311,17 @@ fn is_there(path: &Path, plan: &Plan, depth: Option<BitDepth>) -> bool {
     let Ok(bytes) = std::fs::read(path) else {
         return false;
     };
-    // An empty chunk ends the file.
     bits_of(path) == Some(depth.unwrap_or_default() as u8)
-        && bytes.ends_with(b"IEND\xae\x42\x60\x82")
         && preset::find(path).is_ok_and(|found| found.text == preset::write_beside(plan, path))
+        && is_whole(&bytes)
+}
+
+/// Whether a PNG has all of its pixels, undamaged by their checksums.
+fn is_whole(png: &[u8]) -> bool {
+    // An empty chunk ends the file.
+    let mut reader = ImageReader::with_format(Cursor::new(png), ImageFormat::Png);
+    reader.no_limits();
+    png.ends_with(b"IEND\xae\x42\x60\x82") && reader.decode().is_ok()
 }
 
 /// Looks for ffmpeg before anything is rendered.

@@ -44,6 +44,13 @@ pub fn field<'a>(camera: &'a mut Camera, of: &str) -> &'a mut DVec3 {
     }
 }
 
+/// The tracks that hold their value from the beat `of` on, as they are at the beat `at`.
+#[derive(Clone, Copy, Debug)]
+struct Hold {
+    of: f64,
+    at: f64,
+}
+
 /// Sets what a track of [`POSE`] says of a time.
 fn set(camera: &mut Camera, track: &Track, time: f64) {
     if let [x, y, z] = track.at(time)[..] {
@@ -103,13 +110,14 @@ impl Plan {
         }
         if let Some(pose) = self.pose_at(beat) {
             // What has no track stays: all poses share it.
-            let parts = [pose.eye, pose.target(), pose.up()];
+            let up = self.own_up(beat).unwrap_or(pose.up());
+            let parts = [pose.eye, pose.target(), up];
             for (of, part) in POSE.into_iter().zip(parts) {
                 if self.track(of).is_some() {
                     *field(&mut still.camera, of) = part;
                 }
             }
-            self.hold(&mut still.camera, beat);
+            self.hold(&mut still.camera, Hold { of: beat, at: beat });
         }
         still.check().map(|()| still)
     }
@@ -130,31 +138,62 @@ impl Plan {
         let index = index.min(times.len() - 2);
         let [from, to] = [times[index], times[index + 1]];
         let u = (beat - from) / (to - from);
-        // A track that holds its value says nothing of the way.
-        let between = own()
-            .map(|track| track.between_at(track.index_at(from)))
-            .max_by_key(|between| match between {
-                Between::Step => 0,
-                Between::Smooth => 2,
-                _ => 1,
-            })?;
         // What is held does not move on before its next key.
-        let pose = |index: usize| self.key_pose(times[index], from);
+        let held = Hold { of: from, at: from };
+        let pose = |index: usize| self.key_pose(times[index], &[held]);
         let [here, there] = [pose(index), pose(index + 1)];
-        Some(match between {
+        Some(match self.way_from(from) {
             Between::Smooth => {
                 let around = self.around(&times, index);
-                let [before, after] = around.map(|(time, i)| (time, pose(i)));
+                let [before, after] = around.map(|(time, i, cut)| {
+                    let cut = Hold {
+                        of: times[cut[0]],
+                        at: times[cut[1]],
+                    };
+                    (time, self.key_pose(times[i], &[cut, held]))
+                });
                 Pose::on_spline([before, (from, here), (to, there), after], beat)
             }
             between => here.toward(&there, between.share(u)),
         })
     }
 
-    /// The keys before and after the two from `index` on, with their times. A film that loops
-    /// through the same pose goes on around its end. At the ends of other films the first or the last
-    /// pose stands twice.
-    fn around(&self, times: &[f64], index: usize) -> [(f64, usize); 2] {
+    /// How the camera goes on from a time. A track that holds its value, has not begun or is over
+    /// says nothing of that.
+    fn way_from(&self, time: f64) -> Between {
+        let own = POSE.iter().filter_map(|of| self.track(of));
+        let moving = own.filter_map(|track| {
+            let index = track.index_at(time);
+            let moves = track.keys[index].time <= time && index + 1 < track.keys.len();
+            moves.then(|| track.between_at(index))
+        });
+        let way = moving.max_by_key(|between| match between {
+            Between::Step => 0,
+            Between::Smooth => 2,
+            _ => 1,
+        });
+        way.unwrap_or(Between::Linear)
+    }
+
+    /// What the track of `camera.up` says of a beat at one of its keys, or between two that say the
+    /// same; there, a level camera stays level. The way of the pose would roll it.
+    fn own_up(&self, beat: f64) -> Option<DVec3> {
+        let track = self.track("camera.up")?;
+        let index = track.index_at(beat);
+        let key = &track.keys[index];
+        let next = track.keys.get(index + 1);
+        let stays = beat <= key.time || next.is_none_or(|next| next.value == key.value);
+        let [x, y, z] = key.value[..] else {
+            return None;
+        };
+        stays.then(|| DVec3::new(x, y, z))
+    }
+
+    /// The keys before and after the two from `index` on: their times, their indices, and the two
+    /// keys of the way to them. A film that loops through the same pose goes on around its end. At the
+    /// ends of other films the first or the last pose stands twice. So does what a cut leads to or
+    /// from: it does not bend the way on the other side.
+    fn around(&self, times: &[f64], index: usize) -> [(f64, usize, [usize; 2]); 2] {
         let Timing {
             length, looping, ..
         } = self.time;
@@ -162,25 +201,25 @@ impl Plan {
         let closed = looping
             && last > 1
             && times[last] - times[0] == length
-            && self.key_pose(times[0], times[0]) == self.key_pose(times[last], times[last]);
+            && self.key_pose(times[0], &[]) == self.key_pose(times[last], &[]);
         let step = times[index + 1] - times[index];
         let before = match index.checked_sub(1) {
-            Some(i) => (times[i], i),
-            None if closed => (times[last - 1] - length, last - 1),
-            None => (times[0] - step, 0),
+            Some(i) => (times[i], i, [i, index]),
+            None if closed => (times[last - 1] - length, last - 1, [last - 1, last]),
+            None => (times[0] - step, 0, [0, 0]),
         };
         let after = match index + 2 {
-            i if i <= last => (times[i], i),
-            _ if closed => (times[1] + length, 1),
-            _ => (times[last] + step, last),
+            i if i <= last => (times[i], i, [i - 1; 2]),
+            _ if closed => (times[1] + length, 1, [0, 0]),
+            _ => (times[last] + step, last, [last, last]),
         };
         [before, after]
     }
 
     /// The pose at a key of one of the camera's tracks. A track without a key there goes the way
     /// between its own keys as a camera does, so that a key of another track does not bend it. One
-    /// that holds its value from a time on keeps it.
-    fn key_pose(&self, time: f64, held: f64) -> Pose {
+    /// that holds its value is as `held` says.
+    fn key_pose(&self, time: f64, held: &[Hold]) -> Pose {
         let mut camera = self.key_camera(time);
         for track in POSE.iter().filter_map(|of| self.track(of)) {
             let index = track.index_at(time);
@@ -188,6 +227,9 @@ impl Plan {
             let Some(next) = track.keys.get(index + 1).filter(|_| key.time < time) else {
                 continue;
             };
+            if track.of == "camera.up" && self.own_up(time).is_some() {
+                continue;
+            }
             let pose = |time: f64| {
                 let camera = self.key_camera(time);
                 Pose::new(camera.eye, camera.target, camera.up)
@@ -204,7 +246,9 @@ impl Plan {
                 _ => there.up(),
             };
         }
-        self.hold(&mut camera, held);
+        for hold in held {
+            self.hold(&mut camera, *hold);
+        }
         Pose::new(camera.eye, camera.target, camera.up)
     }
 
@@ -217,11 +261,11 @@ impl Plan {
         camera
     }
 
-    /// Sets what tracks that hold their value hold at a time.
-    fn hold(&self, camera: &mut Camera, time: f64) {
+    /// Sets what tracks that hold their value from a time on say of another.
+    fn hold(&self, camera: &mut Camera, Hold { of, at }: Hold) {
         let own = POSE.iter().filter_map(|of| self.track(of));
-        for track in own.filter(|t| t.between_at(t.index_at(time)) == Between::Step) {
-            set(camera, track, time);
+        for track in own.filter(|t| t.between_at(t.index_at(of)) == Between::Step) {
+            set(camera, track, at);
         }
     }
 

@@ -320,6 +320,7 @@ impl Live {
         self.pictures.moving = moving;
         if let Err(fault) = plan.check() {
             self.warn(format!("{}: {}", fault.key, fault.why));
+            self.pictures.rest();
             self.go_on_with_still();
             return Ok(());
         }

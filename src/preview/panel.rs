@@ -110,9 +110,12 @@ fn cost(redo: Option<Redo>) -> &'static str {
     }
 }
 
-/// A slider over large ranges of positive numbers is logarithmic.
+/// Whether a slider is logarithmic: over a large range, of both signs too.
 fn is_wide([low, high]: [f64; 2]) -> bool {
-    low >= 0.0 && high / low.max(high * 1e-4) >= 100.0
+    match low < 0.0 {
+        true => high >= 100.0,
+        false => high / low.max(high * 1e-4) >= 100.0,
+    }
 }
 
 fn noted(response: &Response, asked: &mut PanelRequest) -> bool {
@@ -156,12 +159,20 @@ fn number(ui: &mut Ui, range: [f64; 2], now: f64, asked: &mut PanelRequest) -> O
     let mut x = now;
     // A slider over a large range of both signs has no useful places; such numbers are dragged.
     let response = if low >= 0.0 || high - low <= 1000.0 {
-        let slider = Slider::new(&mut x, low..=high);
+        let mut slider = Slider::new(&mut x, low..=high);
         ui.spacing_mut().slider_width = 100.0;
+        if is_wide(range) {
+            // Of both signs, half of the places are left for each.
+            let smallest = match low < 0.0 {
+                true => 1e-3 * high,
+                false => low.max(1e-4 * high.min(100.0)),
+            };
+            let wide = slider.logarithmic(true).smallest_positive(smallest);
+            // A step of a linear number would leap over small ones.
+            slider = wide.drag_value_speed(speed(now));
+        }
         ui.add(
             slider
-                .logarithmic(is_wide(range))
-                .smallest_positive(low.max(1e-4 * high.min(100.0)))
                 .update_while_editing(false)
                 .custom_formatter(short)
                 .custom_parser(typed(now)),

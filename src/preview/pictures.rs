@@ -138,6 +138,12 @@ impl Pictures {
         }
     }
 
+    /// Makes no more of them until [`Pictures::want`] asks again.
+    pub fn rest(&mut self) {
+        self.fail();
+        self.plan = None;
+    }
+
     /// Makes the pictures again with other texts of shaders. Until they are compiled, the old
     /// programs stay.
     pub fn again(&mut self) {

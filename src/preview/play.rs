@@ -104,22 +104,30 @@ pub fn set_key(plan: &mut Plan, of: &str, beat: f64) -> bool {
     let Some(value) = numbers(plan, of) else {
         return false;
     };
-    let key = TrackKey {
+    let mut key = TrackKey {
         time: beat,
         value,
         between: None,
     };
+    // A new track of the camera goes on as the camera does.
+    let of_camera = |track: &&Track| POSE.contains(&track.of.as_str());
+    let camera = plan.tracks.iter().find(of_camera);
+    let between = camera.filter(|_| POSE.contains(&of)).map(|t| t.between);
     match plan.tracks.iter_mut().find(|track| track.of == of) {
         Some(track) => {
             let at = track.keys.partition_point(|key| key.time < beat - SAME);
             match track.keys.get_mut(at) {
                 Some(old) if (old.time - beat).abs() <= SAME => old.value = key.value,
-                _ => track.keys.insert(at, key),
+                _ => {
+                    let before = at.checked_sub(1).map(|i| &track.keys[i]);
+                    key.between = before.and_then(|key| key.between);
+                    track.keys.insert(at, key);
+                }
             }
         }
         None => plan.tracks.push(Track {
             of: of.into(),
-            between: Default::default(),
+            between: between.unwrap_or_default(),
             keys: vec![key],
         }),
     }
@@ -208,6 +216,12 @@ pub fn shows_film(plan: &Plan, beat: f64) -> bool {
                 ..moment
             } == *plan
         })
+}
+
+/// Whether what has a track is as in a file, so that no other view than the film's was left.
+pub fn has_still_of(plan: &Plan, saved: &Plan) -> bool {
+    let is_same = |track: &Track| numbers(plan, &track.of) == numbers(saved, &track.of);
+    plan.tracks.iter().all(is_same)
 }
 
 /// The plan to save while a moment of its film is shown. Settings with the values of that moment
@@ -358,6 +372,29 @@ mod tests {
     }
 
     #[test]
+    fn a_key_of_what_is_shown_keeps_the_way() {
+        let mut plan = plan();
+        let key = |time: f64, between| TrackKey {
+            time,
+            value: vec![0.0, -9.0, 1.0],
+            between,
+        };
+        plan.tracks = vec![Track {
+            of: POSE[0].into(),
+            between: Between::Linear,
+            keys: vec![key(0.0, Some(Between::Step)), key(6.0, None)],
+        }];
+        set_view(&mut plan, 2.0);
+        // The eye is still held.
+        assert_eq!(plan.tracks[0].keys[1].between, Some(Between::Step));
+        let ways: Vec<_> = plan.tracks.iter().map(|track| track.between).collect();
+        assert_eq!(ways, [Between::Linear; 3]);
+        assert!(set_key(&mut plan, "camera.fov", 2.0));
+        let own = plan.track("camera.fov").map(|track| track.between);
+        assert_eq!(own, Some(Between::default()));
+    }
+
+    #[test]
     fn another_moment_does_not_change_the_still() {
         let mut plan = plan();
         let saved = plan.clone();
@@ -367,6 +404,7 @@ mod tests {
         assert_eq!(pose_at(&mut plan, 3.0), None);
         let kept = with_still(&plan, &saved, 3.0);
         assert_eq!((&kept.camera, &kept.tracks), (&saved.camera, &plan.tracks));
+        assert!(has_still_of(&kept, &saved) && !has_still_of(&plan, &saved));
         assert!(shows_film(&plan, 3.0) && !shows_film(&plan, 2.0));
         // Another view is a new still.
         plan.camera.eye.x = 6.0;

@@ -13,6 +13,7 @@ use crate::preview::keep::{self, Slot};
 use crate::preview::live::Live;
 use crate::preview::notice::Ends;
 use crate::preview::pictures::Pictures;
+use crate::preview::play::has_still_of;
 use crate::preview::reload::{Watched, files_in, sources};
 use crate::preview::still::Still;
 
@@ -208,7 +209,10 @@ impl Live {
             }
         } else if is_kept {
             self.unkept = None;
-        } else if self.unkept.get_or_insert_with(Instant::now).elapsed() > KEEP {
+        } else if self.unkept.get_or_insert_with(Instant::now).elapsed() > KEEP
+            // What does not fit is told as such, and kept when it fits.
+            && self.document.plan.check().is_ok()
+        {
             let could_keep = self.keeps;
             self.keeps = self.keep_now();
             if could_keep && !self.keeps {
@@ -247,6 +251,10 @@ impl Live {
             self.play.fit(self.document.plan.time.length);
             self.slot = slot;
             self.kept = None;
+            // Of a film, what was kept was made at some moment of it, or from another view.
+            if has_still_of(&self.document.plan, self.document.saved()) {
+                self.show_moment();
+            }
             self.keep_now();
         } else {
             slot.drop(kept.as_deref(), &self.document);
@@ -269,9 +277,13 @@ impl Live {
         if !self.document.is_changed() {
             return true;
         }
-        (self.unkept, self.kept) = (None, Some(self.document.plan.clone()));
+        self.unkept = None;
         let folder = self.options.kept.as_deref();
         let is_right = self.document.plan.check().is_ok();
-        is_right && self.slot.keep(folder, &self.document).unwrap_or(false)
+        let is_kept = is_right && self.slot.keep(folder, &self.document).unwrap_or(false);
+        if is_kept {
+            self.kept = Some(self.document.plan.clone());
+        }
+        is_kept
     }
 }

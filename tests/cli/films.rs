@@ -143,6 +143,101 @@ fn tracks_of_one_camera_do_not_spoil_each_other() {
     assert_eq!(camera(&alone, 1.7).target, DVec3::ZERO);
 }
 
+/// A film of a camera with tracks of these keys.
+fn of_camera(tracks: &[(&str, &str)]) -> Plan {
+    let tracks = tracks
+        .iter()
+        .map(|(key, lines)| format!("[[track]]\nkey = \"camera.{key}\"\n{lines}\n"));
+    let text = format!("[scene]\nkind = \"slab\"\n{}", tracks.collect::<String>());
+    read(&text, "film").unwrap()
+}
+
+#[test]
+fn an_upward_direction_that_stays_keeps_the_horizon_level() {
+    let eye = "keys = [[0, [9, 0, 1]], [4, [0, 8, 5]], [9, [-7, 0, 2]]]";
+    let up = "keys = [[0, [0, 0, 1]], [4, [0, 0, 1]], [9, [1, 0, 2]]]";
+    for way in ["linear", "smooth"] {
+        let between = format!("between = \"{way}\"\n");
+        let [eye, up] = [eye, up].map(|keys| format!("{between}{keys}"));
+        let plan = of_camera(&[("eye", &eye), ("up", &up)]);
+        let camera = |beat: f64| plan.at(beat).unwrap().camera;
+        for beat in [0.0, 1.3, 2.0, 3.9, 4.0] {
+            assert_eq!(camera(beat).up, DVec3::Z, "{way} {beat}");
+        }
+        // Other directions are those of the keys there, and turn without a jump between them.
+        assert_eq!(camera(9.0).up, DVec3::new(1.0, 0.0, 2.0));
+        for beat in [4.0, 9.0] {
+            let side = |beat: f64| {
+                let camera = camera(beat);
+                let view = (camera.target - camera.eye).normalize();
+                view.cross(camera.up).normalize()
+            };
+            let [before, after] = [-1e-6, 1e-6].map(|step| side(beat + step));
+            assert!(before.distance(after) < 1e-4, "{way} {beat}");
+        }
+    }
+    // A key of the eye does not roll it either.
+    let up = "keys = [[0, [0, 0, 1]], [9, [0, 0, 1]]]";
+    let plan = of_camera(&[("eye", eye), ("up", up)]);
+    for beat in [2.0, 4.0, 6.0] {
+        assert_eq!(plan.at(beat).unwrap().camera.up, DVec3::Z, "{beat}");
+    }
+}
+
+#[test]
+fn a_track_that_is_over_or_has_not_begun_says_nothing_of_the_way() {
+    let eye = "between = \"linear\"\nkeys = [[0, [9, 0, 0]], [8, [9, 8, 0]]]";
+    let over = "between = \"smooth\"\nkeys = [[0, [0, 0, 0]], [1, [0, 0, 0]]]";
+    let later = "between = \"smooth\"\nkeys = [[7, [0, 0, 0]], [8, [0, 0, 0]]]";
+    for (target, beats) in [(over, [1.5, 3.0, 7.5]), (later, [0.5, 3.0, 6.5])] {
+        let [with, alone] = [
+            of_camera(&[("eye", eye), ("target", target)]),
+            of_camera(&[("eye", eye)]),
+        ];
+        for beat in beats {
+            let eye = |plan: &Plan| plan.at(beat).unwrap().camera.eye;
+            assert!(eye(&with).distance(eye(&alone)) < 1e-9, "{target} {beat}");
+        }
+    }
+    // Between two tracks nothing moves.
+    let eye = "keys = [[0, [9, 0, 0]], [2, [9, 8, 0]]]";
+    let target = "keys = [[6, [0, 0, 0]], [8, [0, 0, 3]]]";
+    let plan = of_camera(&[("eye", eye), ("target", target)]);
+    assert_eq!(plan.at(4.0).unwrap().camera.eye, DVec3::new(9.0, 8.0, 0.0));
+}
+
+#[test]
+fn a_cut_does_not_bend_the_ways_on_its_sides() {
+    let before = "[0, [9, 0, 1]], [1, [9, 2, 1]], [3, [8, 4, 1], \"step\"]";
+    let after = "[4, [-9, 3, 1]], [5, [-8, 2, 1]], [7, [-7, -2, 1]]";
+    let film = |keys: &str| of_camera(&[("eye", &format!("keys = [{keys}]"))]);
+    let both = film(&format!("{before}, {after}"));
+    for (alone, beats) in [
+        (film(before), [0.4, 1.5, 2.9]),
+        (film(after), [4.1, 4.9, 6.0]),
+    ] {
+        for beat in beats {
+            let eye = |plan: &Plan| plan.at(beat).unwrap().camera.eye;
+            assert!(eye(&both).distance(eye(&alone)) < 1e-12, "{beat}");
+        }
+    }
+    // Of a loop, too.
+    let closed = |keys: &str| {
+        let text = format!(
+            "[scene]\nkind = \"slab\"\n[time]\nlength = 8\nloop = true\n[[track]]\nkey = \"camera.eye\"\nkeys = [{keys}]\n"
+        );
+        read(&text, "loop").unwrap()
+    };
+    let cut = closed(&format!(
+        "[0, [9, 0, 1], \"step\"], {after}, [8, [9, 0, 1]]"
+    ));
+    let open = film(&format!("{after}, [8, [9, 0, 1]]"));
+    for beat in [4.5, 6.0, 7.5] {
+        let eye = |plan: &Plan| plan.at(beat).unwrap().camera.eye;
+        assert!(eye(&cut).distance(eye(&open)) < 1e-12, "{beat}");
+    }
+}
+
 #[test]
 fn values_between_two_keys_may_not_fit() {
     let text = "[scene]\nkind = \"distance\"\nformula = \"mandelbox\"\n[[track]]\nkey = \"scene.scale\"\nkeys = [[0, 2], [10, -2]]\n";
@@ -219,11 +314,15 @@ fn frames_are_those_of_their_moments_and_are_rendered_once() {
             .unwrap()
     };
     let first = time("f-004.png");
-    // A damaged frame, and one with other settings.
+    // Damaged frames, and one with other settings.
     folder.write("f-001.png", &folder.bytes("f-001.png")[..200]);
+    let mut damaged = folder.bytes("f-007.png");
+    let at = damaged.len() - 40;
+    damaged[at] ^= 1;
+    folder.write("f-007.png", damaged);
     fs::copy(folder.0.join("f-004.png"), folder.0.join("f-000.png")).unwrap();
     let rest = said(&folder.done(line));
-    assert!(rest.ends_with("6 frames; 2 there already\n"), "{rest}");
+    assert!(rest.ends_with("7 frames; 1 there already\n"), "{rest}");
     assert_eq!(time("f-004.png"), first);
     for (frame, beat) in [(0, "0"), (1, "0.5"), (5, "2.5"), (7, "3.5")] {
         folder.done(&format!(

@@ -173,6 +173,16 @@ fn work_that_cannot_be_kept_is_not_dropped_at_once() {
         assert!(view.is_open());
     };
     stays(&mut view);
+    // It is kept as soon as it can be.
+    std::fs::remove_file(folder.0.join("cache")).unwrap();
+    sleep(Duration::from_millis(3500));
+    let file = folder.0.join("cache/conemarch/unsaved-mandelbox.toml");
+    assert!(file.exists());
+    view.hold("a", 200);
+    std::fs::remove_dir_all(folder.0.join("cache")).unwrap();
+    folder.write("cache", "");
+    sleep(Duration::from_millis(2500));
+    stays(&mut view);
     // What was said holds no longer once the work is saved.
     view.key("ctrl+s");
     view.hold("w", 200);
@@ -239,6 +249,33 @@ fn another_preset_keeps_unsaved_work_and_none_is_lost() {
         kept(),
         ["unsaved-mandelbox-1.toml", "unsaved-mandelbox.toml"]
     );
+}
+
+#[test]
+fn a_film_that_is_restored_shows_its_moment() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    // The still of the file is none of the film's moments.
+    folder.write("film.toml", FILM);
+    let view = Preview::open(&desktop, &folder.0, "film.toml --size 960x540");
+    let first = view.at_rest();
+    // A key of what is shown is a change of the film.
+    view.key("period");
+    view.key("k");
+    sleep(Duration::from_millis(2500));
+    drop(view);
+    let view = Preview::open(&desktop, &folder.0, "film.toml --size 960x540");
+    view.at_rest();
+    view.click(RESTORE[0], RESTORE[1]);
+    let left = |shot: &Shot| {
+        let rows = shot.rgb.chunks_exact(3 * 960).skip(140).take(240);
+        rows.flat_map(|row| &row[..3 * 600])
+            .copied()
+            .collect::<Vec<_>>()
+    };
+    view.wait_for("the first moment", |shot| left(shot) == left(&first));
+    folder.done("render film.toml --size 960x540 -o still.png");
+    assert!(left(&picture(&folder, "still.png")) != left(&first));
+    view.close();
 }
 
 /// The button that takes unsaved work, in a window of 960 x 540.

@@ -112,6 +112,25 @@ fn a_slider_is_one_step_and_the_layers_are_those_of_files() {
         .unwrap()
         .plan;
     assert_eq!(undone.scene, before.scene);
+    // Its places are those of small scales too, and its number is dragged by hundredths of it.
+    view.drag(1, [792, 94], [820, 94]);
+    view.at_rest();
+    let scale = || {
+        view.key("ctrl+s");
+        sleep(Duration::from_millis(500));
+        let text = String::from_utf8(folder.bytes("mandelbox-1.toml")).unwrap();
+        let table: toml::Table = text.parse().unwrap();
+        table["scene"]["scale"].as_float().unwrap()
+    };
+    let dragged = scale();
+    assert!((2.5..20.0).contains(&dragged), "{dragged}");
+    view.key("ctrl+z");
+    view.at_rest();
+    view.drag(1, [876, 94], [896, 94]);
+    view.at_rest();
+    let dragged = scale();
+    assert!((2.05..2.7).contains(&dragged), "{dragged}");
+    view.key("ctrl+z");
     view.key("Tab");
     // Several layers come from the same render.
     for (key, layer) in [
@@ -136,6 +155,25 @@ fn a_slider_is_one_step_and_the_layers_are_those_of_files() {
         view.wait_for("another pass", |shot| *shot != before);
         before = view.at_rest();
     }
+    view.close();
+}
+
+#[test]
+fn a_plan_that_does_not_fit_is_told_at_rest() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
+    view.at_rest();
+    // The number of `scene.scale`.
+    view.click(884, 94);
+    view.key("ctrl+a");
+    view.xdotool("type 0");
+    view.key("Return");
+    view.at_rest();
+    let before = view.processor_time();
+    sleep(Duration::from_secs(2));
+    let spent = view.processor_time() - before;
+    assert!(spent <= 0.05, "{spent} s of 2 at rest");
+    view.key("ctrl+z");
     view.close();
 }
 
