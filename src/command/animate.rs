@@ -5,17 +5,16 @@ use std::io::{Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
-use std::time::SystemTime;
 
 use anyhow::{Context, Result, anyhow};
 use clap::{Args, ValueHint};
-use image::{ImageFormat, ImageReader};
 
 use crate::command::arguments::{bits, noise, pixel_samples, size};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
+use crate::command::frames::{Pattern, changed, is_there};
 use crate::command::interrupt::{self, POLL};
-use crate::command::output::{Format, bits_of};
+use crate::command::output::Format;
 use crate::command::print::{counted, say};
 use crate::command::progress::Reporter;
 use crate::command::render::{at_fault, loaded, moment};
@@ -99,40 +98,6 @@ fn shard(text: &str) -> Result<[u32; 2], String> {
     let read = pair.and_then(|(i, n)| Some([i.parse().ok()?, n.parse().ok()?]));
     read.filter(|[i, n]| (1..=*n).contains(i))
         .ok_or_else(|| "must be a part of so many, from 1/4 to 4/4 for example".into())
-}
-
-/// The names of frames.
-#[derive(Clone, Debug, PartialEq)]
-struct Pattern {
-    before: String,
-    digits: usize,
-    after: String,
-}
-
-impl Pattern {
-    /// Reads a pattern with one `%d` or `%05d`.
-    fn read(text: &str) -> Result<Self, String> {
-        let form =
-            "must have %05d, or another width, for the number of the frame, like out-%05d.png";
-        let (before, rest) = text.split_once('%').ok_or(form)?;
-        let (digits, after) = rest.split_once('d').ok_or(form)?;
-        let zero = digits.is_empty() || digits.starts_with('0');
-        let width = digits.parse::<usize>().ok().filter(|width| *width <= 9);
-        if !zero || after.contains('%') || (width.is_none() && !digits.is_empty()) {
-            return Err(form.into());
-        }
-        Ok(Self {
-            before: before.into(),
-            digits: width.unwrap_or(0),
-            after: after.into(),
-        })
-    }
-
-    /// The name of a frame.
-    fn name(&self, frame: u32) -> PathBuf {
-        let width = self.digits;
-        format!("{}{frame:0width$}{}", self.before, self.after).into()
-    }
 }
 
 /// Renders the frames of a film.
@@ -285,45 +250,6 @@ fn render(
     Ok(())
 }
 
-/// When a file got its content or its name, as far as the system tells.
-fn changed(path: &Path) -> Option<SystemTime> {
-    let file = fs::metadata(path).ok()?;
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        use std::time::{Duration, UNIX_EPOCH};
-        // A file that is copied or moved here may keep an older time of its content.
-        let [seconds, rest] = [file.ctime(), file.ctime_nsec()].map(|n| n.max(0) as u64);
-        let since = Duration::from_secs(seconds) + Duration::from_nanos(rest);
-        file.modified().ok().max(Some(UNIX_EPOCH + since))
-    }
-    #[cfg(not(unix))]
-    file.modified().ok()
-}
-
-/// Whether a frame was rendered already: a complete PNG with this plan and these bits, newer than
-/// the files that the plan names.
-fn is_there(path: &Path, plan: &Plan, depth: Option<BitDepth>) -> bool {
-    let is_newer = |(_, file): &(_, PathBuf)| changed(file) >= changed(path);
-    if plan.files().iter().any(is_newer) {
-        return false;
-    }
-    let Ok(bytes) = std::fs::read(path) else {
-        return false;
-    };
-    bits_of(path) == Some(depth.unwrap_or_default() as u8)
-        && preset::find(path).is_ok_and(|found| found.text == preset::write_beside(plan, path))
-        && is_whole(&bytes)
-}
-
-/// Whether a PNG has all of its pixels, undamaged by their checksums.
-fn is_whole(png: &[u8]) -> bool {
-    // An empty chunk ends the file.
-    let mut reader = ImageReader::with_format(Cursor::new(png), ImageFormat::Png);
-    reader.no_limits();
-    png.ends_with(b"IEND\xae\x42\x60\x82") && reader.decode().is_ok()
-}
-
 /// Looks for ffmpeg before anything is rendered.
 fn find_ffmpeg() -> Result<()> {
     let mut asked = Command::new("ffmpeg");
@@ -399,27 +325,4 @@ fn join(film: &Plan, pattern: &Pattern, [first, last]: [u32; 2], video: &Path) -
     is_unfinished(false);
     say(&shown.to_string());
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_pattern_numbers_its_frames() {
-        let name = |text: &str| Pattern::read(text).map(|p| p.name(42));
-        assert_eq!(name("a/out-%05d.png"), Ok("a/out-00042.png".into()));
-        assert_eq!(name("%d.png"), Ok("42.png".into()));
-        assert_eq!(name("%01d.png"), Ok("42.png".into()));
-        for wrong in [
-            "out.png",
-            "%5d.png",
-            "%x.png",
-            "%05d-%d.png",
-            "%099d.png",
-            "%-3d.png",
-        ] {
-            assert!(name(wrong).is_err(), "{wrong}");
-        }
-    }
 }

@@ -5,6 +5,7 @@
 //! - [`executor`]: the device or the CPU that `--device` chooses
 //! - [`bands`]: big pictures, with their finished bands in a file, [`unfinished`]; [`tile`]: parts of a
 //!   picture
+//! - [`frames`]: the files of a film's frames
 //! - [`memory`]: checks before the work that a picture fits
 //! - [`output`]: where a render writes, and how; [`sink`]: files and standard output
 //! - [`progress`]: how much is done; [`mod@print`]: standard output and standard error
@@ -20,6 +21,7 @@ pub mod conemap;
 pub mod devices;
 pub mod executor;
 pub mod failure;
+pub mod frames;
 pub mod interrupt;
 pub mod line;
 pub mod memory;

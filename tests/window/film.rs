@@ -176,6 +176,23 @@ fn keys_are_dragged_and_copied_and_a_part_is_played_again() {
     view.key("ctrl+z");
     view.key("ctrl+z");
     assert_eq!(keys(), [0.0, 5.0]);
+    // The chosen key gets another view, and is taken away.
+    let eye = || {
+        assert_eq!(keys(), [0.0, 5.0]);
+        let plan = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+        plan.tracks[0].keys[1].value.clone()
+    };
+    let before = eye();
+    view.click(x(5), row);
+    view.hold("d", 300);
+    view.key("ctrl+k");
+    assert!(eye() != before);
+    view.key("Delete");
+    assert_eq!(keys(), [0.0]);
+    for _ in 0..3 {
+        view.key("ctrl+z");
+    }
+    assert_eq!(eye(), before);
     // Two handles, and the playhead at 7: the part from 4 to 5 is played again and again.
     view.drag(1, [x(10), handles], [x(5), handles]);
     view.drag(1, [x(0), handles], [x(4), handles]);

@@ -4,6 +4,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use conemarch::plan::Plan;
+use conemarch::plan::camera::Camera;
 use conemarch::preset;
 
 use crate::desktop::{Desktop, Preview};
@@ -76,6 +77,39 @@ fn keys_wheel_and_clicks_fly() {
     view.hold("w", 1000);
     let stopped = saved(&view, &folder).camera;
     assert!(stopped.eye.dot(ahead) < 0.0, "{stopped:?}");
+    view.close();
+}
+
+#[test]
+fn a_left_drag_orbits_shift_is_faster_and_f11_fills_the_screen() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
+    let flown = |with: &str| {
+        let before = saved(&view, &folder).camera.eye;
+        view.xdotool(&format!("keydown {with}"));
+        view.hold("s", 300);
+        view.xdotool(&format!("keyup {with}"));
+        let way = saved(&view, &folder).camera.eye - before;
+        view.key("ctrl+z");
+        way.length()
+    };
+    let [plain, fast] = ["F3", "shift"].map(flown);
+    assert!(fast > 2.0 * plain, "{fast} and {plain}");
+    // The target lies in the middle of the window then.
+    view.point(300, 270);
+    view.xdotool("click --repeat 2 --delay 60 1");
+    let before = saved(&view, &folder).camera;
+    view.at_rest();
+    view.drag(1, [480, 270], [430, 250]);
+    let after = saved(&view, &folder).camera;
+    let far = |camera: &Camera| camera.eye.distance(camera.target);
+    assert!((far(&after) / far(&before) - 1.0).abs() < 1e-3);
+    assert!(after.target.distance(before.target) < 0.01 * far(&before));
+    assert!(after.eye.distance(before.eye) > 0.05 * far(&before));
+    view.key("F11");
+    assert_eq!(view.at_rest().size, [1280, 800]);
+    view.key("F11");
+    assert_eq!(view.at_rest().size, [960, 540]);
     view.close();
 }
 
