@@ -17,7 +17,10 @@ use crate::command::unfinished::{Owner, Unfinished};
 use crate::command::{failure::usage, interrupt};
 use crate::pass::progress::Progress;
 use crate::picture::frame::Frame;
-use crate::picture::{BitDepth, Bloom, Layer, Place, PngHead, Shades, SummedLight, write_png_rows};
+use crate::picture::{
+    BitDepth, Bloom, Layer, Place, PngHead, Shades, SummedLight, exr_row_bytes, exr_rows,
+    write_exr_rows, write_png_rows,
+};
 use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Plan, WINDOW_STEP};
 use crate::preset;
@@ -53,15 +56,18 @@ impl Bands {
     /// It is to be resumed, and it has no bands.
     pub fn of(args: &Render, plan: &Plan, format: Format, output: &Path) -> Result<Option<Self>> {
         let whole = output.metadata().is_ok_and(|m| !m.is_file()) || is_stdout(output);
-        let can =
-            format == Format::Png && args.layer.facts().is_local && !whole && plan.window.is_none();
+        let is_local = match format {
+            Format::Png => args.layer.facts().is_local,
+            format => format == Format::Exr,
+        };
+        let can = is_local && !whole && plan.window.is_none();
         if args.resume && !can {
             let local = Layer::ALL
                 .into_iter()
                 .filter(|layer| layer.facts().is_local);
             let local: Vec<&str> = local.map(Layer::name).collect();
             return Err(usage(format!(
-                "only a .png file of one of the layers {} can be resumed; leave --resume out, or write such a file",
+                "only an .exr file, or a .png file of one of the layers {}, can be resumed; leave --resume out, or write such a file",
                 local.join(", ")
             )));
         }
@@ -88,6 +94,8 @@ impl Bands {
 /// A big picture under way.
 pub struct BigPicture<'a> {
     plan: &'a Plan,
+    extras: Extras,
+    format: Format,
     layer: Layer,
     depth: BitDepth,
     bands: Bands,
@@ -101,26 +109,32 @@ impl<'a> BigPicture<'a> {
     /// # Errors
     /// What is kept beside the picture does not fit.
     pub fn begin(
-        (args, plan, bands): (&Render, &'a Plan, Bands),
-        (output, device): (&Path, String),
-        assets: &Assets,
+        (args, plan, extras): (&Render, &'a Plan, Extras),
+        (output, format, bands): (&Path, Format, Bands),
+        (assets, device): (&Assets, String),
     ) -> Result<Self> {
         let preset = preset::write_beside(plan, output);
         let depth = args.options.depth.unwrap_or_default();
-        let more = format!("{} {depth:?} {}", args.layer.name(), bands.rows);
+        let more = match format {
+            Format::Exr => format!("EXR {extras:?} {}", bands.rows),
+            _ => format!("{} {depth:?} {}", args.layer.name(), bands.rows),
+        };
         let owner = Owner {
             version: env!("CARGO_PKG_VERSION").into(),
             device,
             picture: fingerprint(plan, assets, &more),
         };
-        let row = match keeps_light(plan, args.layer) {
-            true => plan.size[0] as usize * light_bytes(plan),
-            false => head((plan, args.layer, depth), &preset).row_bytes(),
+        let row = match format {
+            Format::Exr => exr_row_bytes(plan, extras),
+            _ if keeps_light(plan, args.layer) => plan.size[0] as usize * light_bytes(plan),
+            _ => head((plan, args.layer, depth), &preset).row_bytes(),
         };
         let length = |band| bands.block(band).size[1] as usize * row;
         let lengths: Vec<usize> = (0..bands.count()).map(length).collect();
         Ok(Self {
             plan,
+            extras,
+            format,
             layer: args.layer,
             depth,
             bands,
@@ -137,20 +151,21 @@ impl<'a> BigPicture<'a> {
     pub fn make(
         &mut self,
         executor: &mut Executor,
-        (assets, extras): (&Assets, Extras),
+        assets: &Assets,
         place: &mut Place,
     ) -> Result<Figures> {
-        let figures = self.render(executor, assets, extras);
-        let made = figures.and_then(|figures| self.write(place).map(|()| figures));
-        made.map_err(|e| self.kept.context(e))
+        let figures = self.render(executor, assets);
+        let written = figures.and_then(|figures| {
+            let written = match self.format {
+                Format::Exr => self.write_exr(place),
+                _ => self.write_png(place),
+            };
+            written.map(|()| figures)
+        });
+        written.map_err(|e| self.kept.context(e))
     }
 
-    fn render(
-        &mut self,
-        executor: &mut Executor,
-        assets: &Assets,
-        extras: Extras,
-    ) -> Result<Figures> {
+    fn render(&mut self, executor: &mut Executor, assets: &Assets) -> Result<Figures> {
         let mut figures: Option<Figures> = None;
         let mut plan = self.plan.clone();
         let (first, all) = (self.kept.count(), self.bands.count());
@@ -163,11 +178,12 @@ impl<'a> BigPicture<'a> {
                 progress.report_part(now, share, &detail)
             };
             plan.window = Some(self.bands.block(band));
-            let frame = executor.picture(&plan, assets, extras, &mut watch)?;
+            let frame = executor.picture(&plan, assets, self.extras, &mut watch)?;
             let own = Figures::of(&frame);
-            let rows = match keeps_light(&plan, self.layer) {
-                true => light(&frame),
-                false => Shades::new(self.layer, &frame, &plan).rows(self.depth),
+            let rows = match self.format {
+                Format::Exr => exr_rows(&frame, &plan),
+                _ if keeps_light(&plan, self.layer) => light(&frame),
+                _ => Shades::new(self.layer, &frame, &plan).rows(self.depth),
             };
             drop(frame);
             self.kept.append(rows, own.tally)?;
@@ -184,7 +200,27 @@ impl<'a> BigPicture<'a> {
         })
     }
 
-    fn write(&mut self, place: &mut Place) -> Result<()> {
+    fn write_exr(&mut self, place: &mut Place) -> Result<()> {
+        let mut progress = Reporter::start("writing the picture");
+        let (all, height) = (self.bands.count(), self.bands.rows as usize);
+        let row = exr_row_bytes(self.plan, self.extras);
+        let (kept, mut read) = (&mut self.kept, (all, Vec::new()));
+        let rows = |first: usize, count: usize| {
+            let band = first / height;
+            if read.0 != band {
+                progress.report(band as f64 / all as f64, "encoding");
+                interrupt::check()?;
+                read = (band, kept.rows(band)?);
+            }
+            // The encoder's blocks of 32 rows lie in one band, whose height is a multiple of 64.
+            let begin = (first - band * height) * row;
+            Ok(read.1[begin..begin + count * row].to_vec())
+        };
+        let of = (self.plan, self.extras);
+        place.write(|to| write_exr_rows(to, of, &self.preset, rows))
+    }
+
+    fn write_png(&mut self, place: &mut Place) -> Result<()> {
         let mut progress = Reporter::start("writing the picture");
         let (all, bands) = (self.bands.count(), self.bands);
         let bloom = self.bloom(&mut progress)?;

@@ -95,8 +95,8 @@ pub struct Render {
 
     /// Continue an unfinished picture. The result has the same bytes as a picture made at once
     ///
-    /// A PNG of more than 16 megapixels is rendered in bands of rows. FILE.png.part beside the picture
-    /// keeps each finished band. It is removed when the picture is complete. After an interrupt, a
+    /// A PNG or EXR of more than 16 megapixels is rendered in bands of rows. FILE.part beside the picture
+    /// FILE keeps each finished band. It is removed when the picture is complete. After an interrupt, a
     /// full disk or a kill, the same command with --resume continues the picture. Without --resume,
     /// such a file is never overwritten. With --resume a smaller picture has bands too. If there is no
     /// such file, the picture begins at its first row.
@@ -210,11 +210,10 @@ pub fn run(args: &Render) -> Result<()> {
     let mut big = None;
     let mut made = match (bands, picture) {
         (Some(bands), Sink::File(mut place)) => {
-            let at = (output.as_path(), executor.identity());
-            let begun = BigPicture::begin((args, &plan, bands), at, &assets)?;
-            let made = big
-                .insert(begun)
-                .make(&mut executor, (&assets, extras), &mut place)?;
+            let to = (output.as_path(), format, bands);
+            let of = (&assets, executor.identity());
+            let begun = BigPicture::begin((args, &plan, extras), to, of)?;
+            let made = big.insert(begun).make(&mut executor, &assets, &mut place)?;
             results.add(place);
             made
         }

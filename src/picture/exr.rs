@@ -11,15 +11,16 @@
 
 use std::io::{Seek, Write};
 
+use exr::image::write::channels::WritableChannels;
 use exr::meta::attribute::Chromaticities;
-use exr::prelude::{IntegerBounds, Vec2, WritableImage};
+use exr::prelude::{Image, IntegerBounds, Layer, Vec2, WritableImage};
 
 use crate::picture::SOFTWARE;
 use crate::picture::error::OutputError;
 use crate::picture::frame::Frame;
-use crate::plan::Plan;
+use crate::plan::{Extras, Plan};
 use crate::preset::PNG_KEYWORD;
-use crate::raster::exr::{Channels, image, text_of};
+use crate::raster::exr::{self as file, Rows, image, text_of};
 
 /// Depth of the sky: farther than any scene, and finite, as compositors compute with it.
 /// Blender writes the same number.
@@ -59,7 +60,89 @@ pub fn write_exr_channels(
     plan: &Plan,
     preset: &str,
 ) -> Result<(), OutputError> {
-    encode(to, &described(size, list, plan, preset))
+    encode(to, &described(size, file::channels(list), plan, preset))
+}
+
+/// The names of the channels of [`write_exr`], sorted.
+fn names(plan: &Plan, extras: Extras) -> Vec<String> {
+    let always = [
+        "A",
+        "B",
+        "G",
+        "R",
+        "Z",
+        "depth.Z",
+        "normal.X",
+        "normal.Y",
+        "normal.Z",
+        "position.X",
+        "position.Y",
+        "position.Z",
+        "state.Y",
+    ];
+    let others = [
+        ("samples.Y", plan.is_adaptive()),
+        ("steps.Y", extras.count),
+        ("variance.Y", plan.has_variance(extras)),
+    ];
+    let others = others.into_iter().filter(|(_, is_there)| *is_there);
+    let mut names: Vec<_> = always
+        .into_iter()
+        .chain(others.map(|(name, _)| name))
+        .collect();
+    names.sort();
+    names.into_iter().map(String::from).collect()
+}
+
+/// Bytes of a row in [`exr_rows`].
+pub fn exr_row_bytes(plan: &Plan, extras: Extras) -> usize {
+    4 * plan.size[0] as usize * names(plan, extras).len()
+}
+
+/// The rows of a frame that is a part of the picture, as wide as it, for [`write_exr_rows`].
+pub fn exr_rows(frame: &Frame, plan: &Plan) -> Vec<u8> {
+    let mut list = channels(frame, plan);
+    list.sort_by(|(a, _), (b, _)| a.cmp(b));
+    let width = frame.size[0] as usize;
+    let mut rows = Vec::with_capacity(4 * list.len() * frame.depth.len());
+    for y in 0..frame.size[1] as usize {
+        for (_, values) in &list {
+            let row = &values[y * width..(y + 1) * width];
+            rows.extend(row.iter().flat_map(|value| value.to_le_bytes()));
+        }
+    }
+    rows
+}
+
+/// Writes the file of [`write_exr`] from parts of its rows. `read` is told the first row and how many,
+/// in ascending order, and returns what [`exr_rows`] makes of them.
+///
+/// # Errors
+/// `read` fails, or the disk is full.
+pub fn write_exr_rows<E: From<OutputError> + Send>(
+    to: &mut (impl Write + Seek),
+    (plan, extras): (&Plan, Extras),
+    preset: &str,
+    mut read: impl FnMut(usize, usize) -> Result<Vec<u8>, E> + Send,
+) -> Result<(), E> {
+    let mut failed = None;
+    let row = exr_row_bytes(plan, extras);
+    // The encoder takes no error. What is written after one is nothing.
+    let rows = Rows::new(names(plan, extras), |first, count| {
+        let zeros = || vec![0; count * row];
+        if failed.is_some() {
+            return zeros();
+        }
+        read(first, count).unwrap_or_else(|e| {
+            failed = Some(e);
+            zeros()
+        })
+    });
+    let written = encode(to, &described(plan.size, rows, plan, preset));
+    match failed {
+        Some(e) => Err(e),
+        None => written.map_err(E::from),
+    }
 }
 
 /// Writes the frame of a plan's window as a part of the whole image: the file's display window is
@@ -74,7 +157,12 @@ pub fn write_exr_part(
     preset: &str,
     comments: &str,
 ) -> Result<(), OutputError> {
-    let mut image = described(frame.size, channels(frame, plan), plan, preset);
+    let mut image = described(
+        frame.size,
+        file::channels(channels(frame, plan)),
+        plan,
+        preset,
+    );
     let place = frame.origin.map(|o| o as i32);
     let size = plan.size.map(|n| n as usize);
     image.attributes.display_window = IntegerBounds::from_dimensions((size[0], size[1]));
@@ -129,8 +217,13 @@ fn channels(frame: &Frame, plan: &Plan) -> Named {
 }
 
 /// Channels with all attributes.
-fn described(size: [u32; 2], list: Named, plan: &Plan, preset: &str) -> Channels {
-    let mut image = image(size, list, [PNG_KEYWORD, preset]);
+fn described<'a, C: WritableChannels<'a> + 'a>(
+    size: [u32; 2],
+    channels: C,
+    plan: &Plan,
+    preset: &str,
+) -> Image<Layer<C>> {
+    let mut image = image(size, channels, [PNG_KEYWORD, preset]);
     let own = &mut image.layer_data.attributes;
     own.software_name = Some(SOFTWARE.into());
     own.comments = Some(plan.title.as_str().into()).filter(|_| !plan.title.is_empty());
@@ -142,7 +235,10 @@ fn described(size: [u32; 2], list: Named, plan: &Plan, preset: &str) -> Channels
     image
 }
 
-fn encode(to: &mut (impl Write + Seek), image: &Channels) -> Result<(), OutputError> {
+fn encode<'a, C: WritableChannels<'a> + 'a>(
+    to: &mut (impl Write + Seek),
+    image: &'a Image<Layer<C>>,
+) -> Result<(), OutputError> {
     let written = image.write().to_buffered(to);
     written.map_err(|e| OutputError::encode("EXR", e))
 }
@@ -157,4 +253,33 @@ fn camera(plan: &Plan) -> String {
     let keys = camera.keys().into_iter();
     let lines = keys.map(|k| format!("{} = {}", k.name, k.slot.get()));
     lines.collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cpu;
+    use crate::scene::{Assets, Scene};
+
+    #[test]
+    fn a_picture_in_parts_has_the_channels_of_one_at_once() {
+        let mut plan = Plan::new(Scene::all().into_iter().next().expect("a scene"));
+        plan.size = [16, 8];
+        let mut extras = Extras {
+            normals: true,
+            ..Extras::default()
+        };
+        for samples in [1, 16] {
+            plan.samples = samples;
+            plan.until = 0.01 * f64::from(samples - 1);
+            extras.variance = samples > 1;
+            extras.count = samples > 1;
+            let watch = &mut |_: &_| true;
+            let frame = cpu::render(&plan, &Assets::default(), extras, watch).expect("a frame");
+            let list = channels(&frame, &plan).into_iter();
+            let mut there: Vec<String> = list.map(|(name, _)| name).collect();
+            there.sort();
+            assert_eq!(there, names(&plan, extras));
+        }
+    }
 }

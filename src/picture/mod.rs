@@ -23,7 +23,10 @@ mod web;
 
 pub use bloom::{Bloom, SummedLight};
 pub use error::OutputError;
-pub use exr::{FAR, Named, write_exr, write_exr_channels, write_exr_part};
+pub use exr::{
+    FAR, Named, exr_row_bytes, exr_rows, write_exr, write_exr_channels, write_exr_part,
+    write_exr_rows,
+};
 #[cfg(feature = "cli")]
 pub use folder::Folder;
 pub use layer::{Layer, LayerFacts, Shades, heat};

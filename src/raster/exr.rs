@@ -4,9 +4,16 @@
 //! whole numbers become f32. A size is checked before memory is allocated for it.
 
 use std::io::{BufRead, Read, Seek};
+use std::sync::{Mutex, PoisonError};
 
+use exr::block::BlockIndex;
+use exr::image::write::channels::{ChannelsWriter, WritableChannels};
+use exr::math::RoundingMode;
 use exr::meta::MetaData;
-use exr::meta::attribute::{AttributeValue, Text};
+use exr::meta::attribute::{
+    AttributeValue, ChannelDescription, ChannelList, LevelMode, SampleType, Text,
+};
+use exr::meta::header::Header;
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image, Layer, LayerAttributes,
     LineOrder, ReadChannels, ReadLayers, ReadSpecificChannel,
@@ -197,7 +204,8 @@ pub fn all_channels(from: impl BufRead + Seek) -> Result<Vec<(String, Vec<f32>)>
         .first_valid_layer()
         .all_attributes()
         .pedantic();
-    let image: Channels = read.from_buffered(from).map_err(|e| broken(&e))?;
+    let image: Image<Layer<AnyChannels<FlatSamples>>> =
+        read.from_buffered(from).map_err(|e| broken(&e))?;
     let list = image.layer_data.channel_data.list.into_iter();
     let named = list.map(|channel| match channel.sample_data {
         FlatSamples::F32(values) => Ok((channel.name.to_string(), values)),
@@ -210,20 +218,60 @@ fn broken(e: &exr::error::Error) -> String {
     format!("is an EXR that cannot be read: {e}; fetch or save it again")
 }
 
-/// One part of named f32 channels.
-pub type Channels = Image<Layer<AnyChannels<FlatSamples>>>;
+/// Named f32 channels, in the order of a file.
+pub fn channels(named: Vec<(String, Vec<f32>)>) -> AnyChannels<FlatSamples> {
+    let named = named.into_iter();
+    let list = named.map(|(name, values)| AnyChannel::new(name.as_str(), FlatSamples::F32(values)));
+    AnyChannels::sort(list.collect())
+}
 
-/// Named f32 channels of a size with a text attribute, which are written losslessly and have
-/// the same bytes every time.
-pub fn image(
+/// f32 channels whose rows are asked for when they are written.
+pub struct Rows<R> {
+    names: Vec<String>,
+    read: Mutex<R>,
+}
+
+impl<R: FnMut(usize, usize) -> Vec<u8>> Rows<R> {
+    /// Channels with these names. `read` is told the first row and how many, in ascending order. It
+    /// returns for each row that of each channel, in the order of their sorted names.
+    pub fn new(names: Vec<String>, read: R) -> Self {
+        let read = Mutex::new(read);
+        Self { names, read }
+    }
+}
+
+impl<'a, R: FnMut(usize, usize) -> Vec<u8> + Send + 'a> WritableChannels<'a> for Rows<R> {
+    type Writer = &'a Self;
+
+    fn infer_channel_list(&self) -> ChannelList {
+        let names = self.names.iter();
+        let list = names.map(|name| ChannelDescription::named(name.as_str(), SampleType::F32));
+        ChannelList::new(list.collect())
+    }
+
+    fn infer_level_modes(&self) -> (LevelMode, RoundingMode) {
+        (LevelMode::Singular, RoundingMode::Down)
+    }
+
+    fn create_writer(&'a self, _: &Header) -> &'a Self {
+        self
+    }
+}
+
+impl<R: FnMut(usize, usize) -> Vec<u8> + Send> ChannelsWriter for &Rows<R> {
+    fn extract_uncompressed_block(&self, _: &Header, block: BlockIndex) -> Vec<u8> {
+        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        read(block.pixel_position.y(), block.pixel_size.height())
+    }
+}
+
+/// Channels of a size with a text attribute, which are written losslessly and have the same bytes
+/// every time.
+pub fn image<'a, C: WritableChannels<'a> + 'a>(
     size: [u32; 2],
-    channels: Vec<(String, Vec<f32>)>,
+    channels: C,
     [attribute, text]: [&str; 2],
-) -> Channels {
-    let channels = channels.into_iter();
-    let list = channels
-        .map(|(name, values)| AnyChannel::new(name.as_str(), FlatSamples::F32(values)))
-        .collect();
+) -> Image<Layer<C>> {
     let mut attributes = LayerAttributes::default();
     attributes.other.insert(attribute.into(), text_of(text));
     // Lines in their order, so that threads that end in any order give the same bytes.
@@ -233,7 +281,6 @@ pub fn image(
         ..Encoding::SMALL_FAST_LOSSLESS
     };
     let size = (size[0] as usize, size[1] as usize);
-    let channels = AnyChannels::sort(list);
     Image::from_layer(Layer::new(size, attributes, encoding, channels))
 }
 

@@ -85,9 +85,12 @@ fn bands_and_parts_have_the_bytes_of_the_picture_made_at_once() {
             folder.bytes(&format!("m.{file}")) == whole,
             "merge {file} {more}"
         );
-        if file == "png" {
-            folder.done(&format!("render {PICTURE} -o b.png --resume {more}"));
-            assert!(folder.bytes("b.png") == whole, "bands {more}");
+        if file != "webp" {
+            folder.done(&format!("render {PICTURE} -o b.{file} --resume {more}"));
+            assert!(
+                folder.bytes(&format!("b.{file}")) == whole,
+                "bands {file} {more}"
+            );
         }
     }
     folder.fails(

@@ -34,7 +34,7 @@ pub fn encode(file: &MapFile, format: &MapFormat) -> Result<Vec<u8>, FileError> 
     let text = label::write(file, &format).map_err(fail)?;
     let mut bytes = Cursor::new(Vec::new());
     let written = if layout.is_exr() {
-        let image = exr::image(file.map.size, floats(file), [KEYWORD, &text]);
+        let image = exr::image(file.map.size, exr::channels(floats(file)), [KEYWORD, &text]);
         let written = image.write().to_buffered(&mut bytes);
         written.map_err(|e| e.to_string())
     } else {
