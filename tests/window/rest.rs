@@ -161,14 +161,17 @@ fn a_slider_is_one_step_and_the_layers_are_those_of_files() {
 #[test]
 fn a_plan_that_does_not_fit_is_told_at_rest() {
     let (desktop, folder) = (Desktop::new(), Folder::new());
-    let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
-    view.at_rest();
+    // So many samples are not done before the plan no longer fits.
+    let line = "mandelbox --size 960x540 --set image.samples=4096";
+    let view = Preview::open(&desktop, &folder.0, line);
     // The number of `scene.scale`.
-    view.click(884, 94);
+    view.click(858, 94);
+    sleep(Duration::from_millis(500));
     view.key("ctrl+a");
-    view.xdotool("type 0");
+    view.xdotool("type --delay 200 0");
     view.key("Return");
     view.at_rest();
+    sleep(Duration::from_millis(500));
     let before = view.processor_time();
     sleep(Duration::from_secs(2));
     let spent = view.processor_time() - before;
