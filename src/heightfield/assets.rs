@@ -355,7 +355,7 @@ impl Assets {
                 if tracing.generator() == Some(by)
                     && let Some(cones) = &*self.cones(settings, surface, make)?
                 {
-                    return Ok(Paint::new(&cones.map));
+                    return Ok(Paint::new(cones.map()));
                 }
                 Ok(Paint::new(&tracing.made(by, surface, make)?))
             },

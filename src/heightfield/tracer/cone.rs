@@ -1,8 +1,9 @@
 //! Cones of a map: how far one lets a ray go on, and whether a map fits a tracer.
 //! Twin: `wgsl/heightfield/tracer/cone.wgsl`.
 
+use crate::heightfield::HeightSurface;
+use crate::heightfield::tracer::settings::TracerCones;
 use crate::heightfield::tracer::{GridRay, LocalRay, TraceError, TracerKind, grid::FAR};
-use crate::heightfield::{ConeMap, HeightSurface};
 
 /// The share of a ratio, and of the way that it gives, which is used. Ways are rounded by
 /// about 1e-15 of their length here and by 1e-7 in f32; the shader has shares of its own.
@@ -34,8 +35,9 @@ pub fn cone_end(grid: &GridRay<'_>, ratio: f64, over: f64, offset: f64) -> f64 {
 pub fn check_map(
     tracer: TracerKind,
     surface: &HeightSurface,
-    map: &ConeMap,
+    cones: &TracerCones,
 ) -> Result<(), TraceError> {
+    let map = cones.map();
     let kind = map.kind;
     if !tracer.facts().kinds.contains(&kind) {
         let tracer = tracer.name();
@@ -43,11 +45,11 @@ pub fn check_map(
     }
     let heights = surface.heights();
     let [w, h] = kind.places(heights.size(), heights.wrap(), surface.patches());
-    let cones = w as usize * h as usize * kind.channels();
+    let ratios = w as usize * h as usize * kind.channels();
     let debug = |value: &dyn std::fmt::Debug| format!("{value:?}");
     for (what, wanted, found) in [
         ("places", debug(&[w, h]), debug(&map.size)),
-        ("cones", debug(&cones), debug(&map.ratios.len())),
+        ("cones", debug(&ratios), debug(&map.ratios.len())),
         ("wrapping axes", debug(&heights.wrap()), debug(&map.wrap)),
     ] {
         if found != wanted {
@@ -58,9 +60,8 @@ pub fn check_map(
             });
         }
     }
-    let mut numbers = map.ratios.iter().chain([&map.offset]);
-    match numbers.find(|n| !(n.is_finite() && **n >= 0.0)) {
-        Some(n) => Err(TraceError::Number(*n)),
+    match cones.wrong_number() {
+        Some(n) => Err(TraceError::Number(n)),
         None => Ok(()),
     }
 }

@@ -136,8 +136,8 @@ impl TracerKind {
         };
         if self.needs_map() {
             let cones = cones.ok_or(TraceError::Missing(self.name()))?;
-            check_map(self, surface, &cones.map)?;
-            tracer.map = cones.map.clone();
+            check_map(self, surface, cones)?;
+            tracer.map = cones.map().clone();
             tracer.nodes = method.nodes(surface, cones);
         }
         Ok(Arc::new(tracer))

@@ -1,7 +1,7 @@
 //! Settings of a heightfield's tracer: which one it is, its cones, and its numbers.
 
 use std::path::Path;
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 
 use thiserror::Error;
 
@@ -79,11 +79,29 @@ impl From<Fault> for PrepareError {
 #[derive(Clone, Debug)]
 pub struct TracerCones {
     /// The map.
-    pub map: Arc<ConeMap>,
+    map: Arc<ConeMap>,
     /// The cones of nodes, for a tracer that reads those.
     pub nodes: Option<NodeCones>,
     /// What a file does not tell and is assumed, with the file's name.
     pub note: Option<String>,
+    /// The answer of [`TracerCones::wrong_number`], once it was asked for.
+    wrong: Arc<OnceLock<Option<f64>>>,
+}
+
+impl TracerCones {
+    /// The map.
+    pub fn map(&self) -> &Arc<ConeMap> {
+        &self.map
+    }
+
+    /// A number of the map that no map can have. It is looked for once, as a flight makes a tracer
+    /// for every step.
+    pub fn wrong_number(&self) -> Option<f64> {
+        *self.wrong.get_or_init(|| {
+            let mut numbers = self.map.ratios.iter().chain([&self.map.offset]);
+            numbers.find(|n| !(n.is_finite() && **n >= 0.0)).copied()
+        })
+    }
 }
 
 impl<M: Into<Arc<ConeMap>>> From<M> for TracerCones {
@@ -92,6 +110,7 @@ impl<M: Into<Arc<ConeMap>>> From<M> for TracerCones {
             map: map.into(),
             nodes: None,
             note: None,
+            wrong: Arc::default(),
         }
     }
 }

@@ -96,7 +96,7 @@ impl Method for WalkMip {
     }
 
     fn nodes(&self, surface: &HeightSurface, cones: &TracerCones) -> Option<NodeCones> {
-        let made = || node_cones(surface, &cones.map);
+        let made = || node_cones(surface, cones.map());
         self.of_nodes
             .then(|| cones.nodes.clone().unwrap_or_else(made))
     }
