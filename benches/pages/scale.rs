@@ -4,14 +4,22 @@ use conemarch::command::bench::plot::{PANEL, axes, axes_at, head, line};
 
 /// Panels beside each other.
 const COLUMNS: usize = 2;
-/// The colours of `safe` and of the rival, as in the other plot.
-const COLORS: [&str; 2] = ["#0072b2", "#000000"];
+
+/// The colour of a mode, as in the other plot.
+fn color_of(mode: &str) -> &'static str {
+    match mode {
+        "safe" => "#0072b2",
+        _ => "#000000",
+    }
+}
 
 /// A table of `benches/scale.rs`.
 struct Table {
     caption: String,
     column: String,
-    /// What was changed, and the times of `safe` and of the rival.
+    /// The two modes.
+    modes: [String; 2],
+    /// What was changed, and the times of both.
     rows: Vec<[f64; 3]>,
     exponents: [String; 2],
 }
@@ -31,19 +39,23 @@ fn tables(text: &str) -> Vec<Table> {
             ([caption], _) => tables.push(Table {
                 caption: caption.split(',').next().unwrap_or("").replace('`', ""),
                 column: String::new(),
+                modes: Default::default(),
                 rows: Vec::new(),
                 exponents: Default::default(),
             }),
-            (["exponent", safe, rival, ..], Some(table)) => {
-                table.exponents = [safe, rival].map(|e| e.to_string());
+            (["exponent", one, two, ..], Some(table)) => {
+                table.exponents = [one, two].map(|e| e.to_string());
             }
-            ([x, safe, rival, ..], Some(table)) => match [x, safe, rival].map(|c| number(c)) {
-                [Some(x), Some(safe), Some(rival)] => {
+            ([x, one, two, ..], Some(table)) => match [x, one, two].map(|c| number(c)) {
+                [Some(x), Some(one), Some(two)] => {
                     // Maps are square, and the exponent is that of a side.
                     let x = if table.column == "map" { x.sqrt() } else { x };
-                    table.rows.push([x, safe, rival]);
+                    table.rows.push([x, one, two]);
                 }
-                _ if table.column.is_empty() => table.column = x.to_string(),
+                _ if table.column.is_empty() => {
+                    table.column = x.to_string();
+                    table.modes = [one, two].map(|mode| mode.replace(", ms", ""));
+                }
                 _ => {}
             },
             _ => {}
@@ -74,8 +86,8 @@ pub fn draw(text: &str) -> String {
         };
         let labels = [column, "march and trace, ms"];
         axes(&mut svg, [&x, &y], &table.caption, labels);
-        for (of, name) in ["safe", "rival"].into_iter().enumerate() {
-            let color = COLORS[of];
+        for (of, mode) in table.modes.iter().enumerate() {
+            let color = color_of(mode);
             let place = |row: &[f64; 3]| [x.place(row[0]), y.place(row[of + 1])];
             line(&mut svg, table.rows.iter().map(place), color);
             for row in &table.rows {
@@ -87,7 +99,7 @@ pub fn draw(text: &str) -> String {
             let (left, top) = (x.at + 10.0, y.at + y.length + 18.0 + 15.0 * of as f64);
             let exponent = &table.exponents[of];
             svg.push(format!(
-                r##"<text x="{left:.1}" y="{top:.1}" fill="{color}">{name}, exponent {exponent}</text>"##
+                r##"<text x="{left:.1}" y="{top:.1}" fill="{color}">{mode}, exponent {exponent}</text>"##
             ));
         }
     }
