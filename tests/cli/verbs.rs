@@ -7,7 +7,7 @@ use crate::tools::rendered;
 fn help_and_version_name_everything() {
     let folder = Folder::new();
     let verbs = "render merge animate presets devices completions bench conemap 130";
-    let options = "--output --size --set --device --layer --depth --quality --stats --until --at --resume --tile FILE.png.part --explain NAME.depth.png 1e10 nearest";
+    let options = "--output --size --set --device --layer --depth --quality --stats --until --at --resume --tile FILE.part --explain NAME.depth.png 1e10 nearest";
     for (line, has) in [
         ("--help", verbs),
         ("--version", "conemarch"),
