@@ -143,8 +143,8 @@ fn what_does_not_fit_into_memory_is_refused_with_a_size_that_does() {
     let folder = Folder::new();
     let huge = "--device cpu --size 65536x65536";
     let says = "65536x65536|iB of memory|--size ";
-    // A PNG is made in bands.
-    let render = format!("render mandelbox {huge} -o a.exr");
+    // A PNG of colours and an EXR are made in bands.
+    let render = format!("render mandelbox {huge} --layer depth -o a.png");
     folder.fails(&render, 1, says);
     for verb in ["error", "steps", "calibrate"] {
         let says = "bench-far|iB of memory|would fit";
@@ -154,7 +154,7 @@ fn what_does_not_fit_into_memory_is_refused_with_a_size_that_does() {
     let said = said(&output(&mut folder.command(&render)));
     let advised = said.split("--size ").nth(1).expect("a size");
     let advised = advised.split(' ').next().unwrap_or_default();
-    let explain = "render mandelbox --device cpu -o a.exr --explain --size";
+    let explain = "render mandelbox --device cpu --layer depth -o a.png --explain --size";
     folder.done(&format!("{explain} {advised}"));
 }
 
