@@ -38,8 +38,7 @@ const BUSY: Duration = Duration::from_millis(1);
 pub const PANEL: Duration = Duration::from_millis(400);
 /// The same while the film is played.
 const PLAYING: Duration = Duration::from_millis(150);
-/// The least time between two paintings of the panel, and while the camera moves, where a painting
-/// takes the time of several pictures.
+/// The least time between two paintings of the panel, and while the camera moves: each costs pictures.
 const PAUSE: Duration = Duration::from_millis(40);
 const MOVING_PANEL: Duration = Duration::from_millis(1000);
 /// Time after which the last picture is turned if no other came.
