@@ -95,7 +95,7 @@ fn a_left_drag_orbits_shift_is_faster_and_f11_fills_the_screen() {
     };
     let [plain, fast] = ["F3", "shift"].map(flown);
     assert!(fast > 2.0 * plain, "{fast} and {plain}");
-    // The target lies in the middle of the window then.
+    // The eye goes round what lies in the middle of the window.
     view.point(300, 270);
     view.xdotool("click --repeat 2 --delay 60 1");
     let before = saved(&view, &folder).camera;
@@ -104,7 +104,6 @@ fn a_left_drag_orbits_shift_is_faster_and_f11_fills_the_screen() {
     let after = saved(&view, &folder).camera;
     let far = |camera: &Camera| camera.eye.distance(camera.target);
     assert!((far(&after) / far(&before) - 1.0).abs() < 1e-3);
-    assert!(after.target.distance(before.target) < 0.01 * far(&before));
     assert!(after.eye.distance(before.eye) > 0.05 * far(&before));
     view.key("F11");
     assert_eq!(view.at_rest().size, [1280, 800]);
