@@ -60,8 +60,9 @@ impl Live {
         let typed = !flies || self.ctx.text_edit_focused();
         if typed && !matches!(event, WindowEvent::RedrawRequested) {
             let response = self.gui.on_window_event(&self.stage.window, event);
-            // What egui knows may be older than the pointer's way onto the panel.
-            taken = response.consumed || is_in(&self.panels, self.cursor);
+            // What egui knows may be older than the pointer's way onto the panel, or off it.
+            let is_over = self.ctx.egui_is_using_pointer() || is_in(&self.over, self.cursor);
+            taken = response.consumed && is_over || is_in(&self.panels, self.cursor);
             if response.repaint && self.concerns_panel(event) {
                 self.paint_now();
             }

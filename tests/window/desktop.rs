@@ -1,13 +1,17 @@
 //! A desktop of its own: an X server without a screen, a window manager, and the preview in it.
 
 use std::io::{BufRead, BufReader};
+use std::os::unix::fs::MetadataExt as _;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use conemarch::plan::Plan;
+use conemarch::preset;
+
 /// What a test says where the desktop's programs are missing.
-const MISSING: &str = "this test needs Xvfb, openbox, xdotool and xwd; on Debian: apt-get install xvfb openbox xdotool x11-apps";
+const MISSING: &str = "this test needs Xvfb, openbox, xdotool, xclip and xwd; on Debian: apt-get install xvfb openbox xdotool xclip x11-apps";
 
 fn start(command: &mut Command) -> Child {
     let quiet = command.stdin(Stdio::null()).stderr(Stdio::null());
@@ -218,6 +222,28 @@ impl<'a> Preview<'a> {
     /// Presses a key.
     pub fn key(&self, key: &str) {
         self.xdotool(&format!("key {key}"));
+    }
+
+    /// Saves to a file, and reads it when it is written.
+    pub fn save(&self, file: &Path) -> Plan {
+        let written = || Some(std::fs::metadata(file).ok()?.ino());
+        let before = written();
+        self.key("ctrl+s");
+        let began = Instant::now();
+        while written().is_none_or(|now| Some(now) == before) {
+            assert!(
+                began.elapsed() < Duration::from_secs(20),
+                "nothing is saved"
+            );
+            sleep(Duration::from_millis(50));
+        }
+        preset::load(file, &[]).expect("a preset").plan
+    }
+
+    /// The text in the clipboard.
+    pub fn copied(&self) -> String {
+        let text = self.desktop.tool("xclip", "-selection clipboard -out");
+        String::from_utf8(text).expect("text")
     }
 
     /// Holds a key for some milliseconds.

@@ -40,9 +40,7 @@ fn the_timeline_shows_the_frames_of_the_film() {
     view.key("k");
     // It shows the timeline.
     view.key("t");
-    view.key("ctrl+s");
-    sleep(Duration::from_millis(500));
-    let saved = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+    let saved = view.save(&folder.0.join("film.toml"));
     assert_eq!(saved.tracks.len(), 3);
     assert!(saved.tracks[0].keys[1].value != [17.0, 10.0, 12.0]);
     // The still of the file stays.
@@ -91,9 +89,7 @@ fn a_key_lies_in_a_film_that_became_shorter_again() {
     }
     view.key("ctrl+z");
     view.key("k");
-    view.key("ctrl+s");
-    sleep(Duration::from_millis(500));
-    let saved = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+    let saved = view.save(&folder.0.join("film.toml"));
     assert_eq!(saved.time.length, 2.0);
     let times = saved.tracks.iter().flat_map(|track| &track.keys);
     let times: Vec<f64> = times.map(|key| key.time).collect();
@@ -122,9 +118,7 @@ fn playing_drops_pictures_and_never_time() {
         sleep(Duration::from_millis(900));
     }
     view.key("k");
-    view.key("ctrl+s");
-    sleep(Duration::from_millis(1000));
-    let saved = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+    let saved = view.save(&folder.0.join("film.toml"));
     let times = saved.tracks[1].keys.iter().map(|key| key.time);
     let shown = times.fold(0.0, f64::max);
     assert!((shown - played).abs() < 0.6, "{shown} of {played} s");
@@ -145,9 +139,7 @@ fn keys_are_dragged_and_copied_and_a_part_is_played_again() {
     let (handles, row) = (513, 529);
     let keys = || {
         sleep(Duration::from_millis(300));
-        view.key("ctrl+s");
-        sleep(Duration::from_millis(700));
-        let plan = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+        let plan = view.save(&folder.0.join("film.toml"));
         let times = plan.tracks[0].keys.iter().map(|key| key.time.round());
         times.collect::<Vec<_>>()
     };

@@ -5,10 +5,8 @@ use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use conemarch::preset;
-
 use crate::desktop::{Desktop, Preview};
-use crate::folder::Folder;
+use crate::folder::{Folder, output, said};
 use crate::{FILM, SIZE, picture};
 
 /// Makes the layer of `lost.c` in a folder, and a command use it.
@@ -80,9 +78,7 @@ fn a_lost_device_is_opened_again_and_nothing_is_lost() {
     view.key("space");
     let played = began.elapsed().as_secs_f64();
     view.key("k");
-    view.key("ctrl+s");
-    sleep(Duration::from_millis(1000));
-    let saved = preset::load(folder.0.join("film.toml"), &[]).unwrap().plan;
+    let saved = view.save(&folder.0.join("film.toml"));
     let shown = saved.tracks[1].keys[0].time;
     assert!((shown - played).abs() < 0.3, "{shown} of {played} s");
     // A still begins again.
@@ -97,4 +93,20 @@ fn a_lost_device_is_opened_again_and_nothing_is_lost() {
     folder.done(&format!("render film.toml --at {shown} -o b.png"));
     assert!(picture(&folder, "film-1.png") == picture(&folder, "b.png"));
     view.close();
+}
+
+#[test]
+fn without_an_adapter_for_the_window_a_sentence_tells_what_would_do() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    folder.write("blind", "");
+    for device in ["auto", "0", "cpu"] {
+        let line = format!("mandelbox --device {device}");
+        let mut command = Preview::command(&desktop, &folder.0, &line);
+        with_layer(&mut command, &folder.0);
+        let ended = output(&mut command);
+        assert_eq!(ended.status.code(), Some(1));
+        let said = said(&ended);
+        let begins = said.starts_with("error: no adapter can show pictures in this window (");
+        assert!(begins && said.contains("`render`"), "{device}: {said}");
+    }
 }

@@ -1,6 +1,7 @@
 /* A Vulkan layer between the program and its driver: the next submission after the file `lose`
  * appears in the folder $LOSE is answered with VK_ERROR_DEVICE_LOST, or, after the file `lose-shown`,
- * the next one that draws to the window. It takes the file away. The structures are those of
+ * the next one that draws to the window. It takes the file away. With a file `blind` there, no adapter
+ * can draw to windows. The structures are those of
  * vk_layer.h, which few machines have. */
 #include <stdint.h>
 #include <stdio.h>
@@ -55,11 +56,15 @@ static int32_t create_device(void *adapter, const struct Info *info, const void 
     return created;
 }
 
-static int is_asked(const char *name) {
+static int in_folder(const char *name, int (*call)(const char *)) {
     char path[4096];
     snprintf(path, sizeof path, "%s/%s", getenv("LOSE"), name);
-    return unlink(path) == 0;
+    return call(path) == 0;
 }
+
+static int is_asked(const char *name) { return in_folder(name, unlink); }
+
+static int is_there(const char *path) { return access(path, F_OK); }
 
 static int32_t submit(void *queue, uint32_t count, const void *infos, void *fence) {
     /* A submission waits for the one before, and one that draws to the window also for its image. */
@@ -67,6 +72,12 @@ static int32_t submit(void *queue, uint32_t count, const void *infos, void *fenc
     if (is_asked("lose") || (waits > 1 && is_asked("lose-shown")))
         return -4;
     return submit_below(queue, count, infos, fence);
+}
+
+/* Whether a family of queues of an adapter can draw to a surface. */
+static int32_t no_surface(void *adapter, uint32_t family, uint64_t surface, uint32_t *supported) {
+    *supported = 0;
+    return 0;
 }
 
 Function find_of_device(void *device, const char *name) {
@@ -86,6 +97,8 @@ Function find_of_instance(void *instance, const char *name) {
         return (Function)create_device;
     if (!strcmp(name, "vkGetDeviceProcAddr"))
         return (Function)find_of_device;
+    if (!strcmp(name, "vkGetPhysicalDeviceSurfaceSupportKHR") && in_folder("blind", is_there))
+        return (Function)no_surface;
     if (!strcmp(name, "vkQueueSubmit"))
         return (Function)submit;
     return instance_below ? instance_below(instance, name) : NULL;
