@@ -7,7 +7,6 @@ use crate::gpu::render::Renderer;
 use crate::gpu::work::Work;
 use crate::picture::frame::Frame;
 use crate::plan::{Extras, Plan};
-use crate::preview::pictures::redo;
 use crate::scene::Assets;
 
 /// The small, the full or the fine picture.
@@ -85,4 +84,33 @@ impl Picture {
     pub fn is_made(&self, wish: u64) -> bool {
         self.made.as_ref().is_some_and(|(made, _)| *made == wish)
     }
+}
+
+/// The most that the change from one plan to another makes again.
+pub fn redo(from: &Plan, to: &Plan) -> Redo {
+    if from.scene.kind() != to.scene.kind() || from.scene.formula() != to.scene.formula() {
+        return Redo::Assets;
+    }
+    let (mut from, mut to) = (from.clone(), to.clone());
+    let sections = crate::preset::SECTIONS.into_iter();
+    let changes = sections.flat_map(|section| {
+        // Keys are words; those of a flight, which moves the camera alone, would be most of its time on the host.
+        let same = match section {
+            "scene" => from.scene == to.scene,
+            "camera" => from.camera == to.camera,
+            "march" => from.march == to.march,
+            "look" => from.look == to.look,
+            _ => false,
+        };
+        if same {
+            return Vec::new();
+        }
+        let old = from.keys(section).unwrap_or_default();
+        let new = to.keys(section).unwrap_or_default();
+        let pairs = old.into_iter().zip(new);
+        let changed = pairs.filter(|(old, new)| old.slot.get() != new.slot.get());
+        let redo = changed.filter_map(|(old, _)| old.redo);
+        redo.collect::<Vec<_>>()
+    });
+    changes.max().unwrap_or(Redo::Nothing)
 }

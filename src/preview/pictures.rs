@@ -14,7 +14,7 @@ use crate::gpu::render::Renderer;
 use crate::pass::progress::Progress;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::{Extras, Plan};
-use crate::preview::picture::Picture;
+use crate::preview::picture::{Picture, redo};
 use crate::scene::Assets;
 
 /// Milliseconds of work that are submitted at once. What was submitted must end before another plan
@@ -394,22 +394,4 @@ impl Pictures {
     fn sum(&self, of: fn(&Picture) -> usize) -> usize {
         [&self.small, &self.full, &self.fine].map(of).iter().sum()
     }
-}
-
-/// The most that the change from one plan to another makes again.
-pub fn redo(from: &Plan, to: &Plan) -> Redo {
-    let (mut from, mut to) = (from.clone(), to.clone());
-    if from.scene.kind() != to.scene.kind() || from.scene.formula() != to.scene.formula() {
-        return Redo::Assets;
-    }
-    let sections = crate::preset::SECTIONS.into_iter();
-    let changes = sections.flat_map(|section| {
-        let old = from.keys(section).unwrap_or_default();
-        let new = to.keys(section).unwrap_or_default();
-        let pairs = old.into_iter().zip(new);
-        let changed = pairs.filter(|(old, new)| old.slot.get() != new.slot.get());
-        let redo = changed.filter_map(|(old, _)| old.redo);
-        redo.collect::<Vec<_>>()
-    });
-    changes.max().unwrap_or(Redo::Nothing)
 }
