@@ -2,6 +2,7 @@
 //! `-- --write` it writes its table into docs/accuracy.md. It takes ten minutes on two cores.
 
 use anyhow::{Context, Result};
+use conemarch::base::srgb::LUMA;
 use conemarch::cpu;
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
@@ -35,7 +36,11 @@ fn main() -> Result<()> {
     let (adapter, _) = chosen.context("there is no adapter")?;
     let on = adapter.get_info().name;
     let mut renderer = Renderer::new(Device::open(adapter)?);
-    let (assets, extras) = (Assets::default(), Extras::default());
+    let assets = Assets::default();
+    let extras = Extras {
+        variance: true,
+        ..Extras::default()
+    };
     let mut on_gpu = |plan: &Plan| renderer.render(plan, &assets, extras, &mut |_| true);
     let on_cpu = |plan: &Plan| cpu::render(plan, &assets, extras, &mut |_| true);
     let mut rows = Vec::new();
@@ -58,11 +63,12 @@ fn main() -> Result<()> {
         (paths.size, paths.samples, paths.until) = (PATHS.0, PATHS.1, 0.0);
         (paths.look.mode, paths.march.coarsest) = (LightMode::Path, Some(1));
         let frames = [on_gpu(&paths)?, on_cpu(&paths)?];
+        cells.push(format!("{:.2}", of_means(&frames)));
         cells.extend([0, 1, 2].map(|channel| format!("{:.2}", apart(&frames, channel))));
         rows.push(cells.join(" | "));
     }
     let table = markdown::table(
-        "preset | FLIP, rays alone | with cones | as chosen | paths: red, standard errors | green | blue",
+        "preset | FLIP, rays alone | with cones | as chosen | paths, standard errors of the means | of the difference: red | green | blue",
         "lr",
         rows,
     );
@@ -89,4 +95,16 @@ fn apart([one, two]: &[Frame; 2], channel: usize) -> f64 {
     let mean = off.iter().sum::<f64>() / n;
     let spread = off.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
     mean / (spread / n).sqrt()
+}
+
+/// The difference of the mean luminances, in standard errors of a difference of two independent means.
+fn of_means(frames: &[Frame; 2]) -> f64 {
+    let [one, two] = frames.each_ref().map(|frame| {
+        let light = frame.radiance.iter();
+        light
+            .map(|c| LUMA.dot(DVec3::from(c.map(f64::from))))
+            .sum::<f64>()
+    });
+    let variances = frames.iter().flat_map(|frame| &frame.variance);
+    (one - two) / variances.map(|v| f64::from(*v)).sum::<f64>().sqrt()
 }

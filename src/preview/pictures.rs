@@ -222,7 +222,11 @@ impl Pictures {
     }
 
     fn try_advance(&mut self) -> Result<bool, RenderError> {
-        self.renderer.device.check()?;
+        let pictures = [&self.small, &self.full, &self.fine];
+        if pictures.iter().all(|picture| picture.under_way.is_none()) {
+            // Pictures ask as they go on.
+            self.renderer.device.check()?;
+        }
         let Some(plan) = self.plan.clone() else {
             return Ok(false);
         };

@@ -66,6 +66,8 @@ pub struct Run {
     /// Blocks in the frame, without those of the first picture.
     pub(super) collected: usize,
     delivered: bool,
+    /// Whether the device was asked since the last submission.
+    received: bool,
 }
 
 impl Run {
@@ -141,6 +143,7 @@ impl Run {
             ended,
             collected: 0,
             delivered: false,
+            received: false,
         };
         let last = run.reusable.made.take().filter(|_| run.job.extras.reuse);
         let (job, visits) = (&run.job, run.job.visits);
@@ -294,6 +297,7 @@ impl Run {
     /// The device failed.
     pub fn advance(&mut self, budget_ms: f64) -> Result<(), RenderError> {
         self.receive()?;
+        let submitted = self.cursor;
         // What is no number is no budget.
         let budget_ms = budget_ms.max(0.0);
         let aim = budget_ms.clamp(1.0, LONGEST_MS);
@@ -307,6 +311,7 @@ impl Run {
             self.follow_slice(slice);
         }
         self.fill(budget_ms);
+        self.received = self.cursor == submitted;
         Ok(())
     }
 
@@ -330,7 +335,10 @@ impl Run {
     /// # Errors
     /// The device failed, or left cells unvisited.
     pub fn poll(&mut self) -> Result<Option<Frame>, RenderError> {
-        self.receive()?;
+        // A question to the device takes some of the time that a picture has on the host.
+        if !std::mem::take(&mut self.received) {
+            self.receive()?;
+        }
         if self.collected < self.job.blocks() {
             return Ok(None);
         }
