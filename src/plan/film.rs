@@ -134,8 +134,11 @@ impl Plan {
             return None;
         };
         let beat = beat.clamp(first, last);
+        if beat == last {
+            // Nothing is held there any more.
+            return Some(self.key_pose(last, &[]));
+        }
         let index = times.partition_point(|time| *time <= beat) - 1;
-        let index = index.min(times.len() - 2);
         let [from, to] = [times[index], times[index + 1]];
         let u = (beat - from) / (to - from);
         // What is held does not move on before its next key.

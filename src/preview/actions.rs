@@ -196,7 +196,7 @@ impl Live {
             }
             Action::Step(frames) => {
                 self.play.step(&self.document.plan, frames);
-                self.show_moment();
+                self.follow_playhead();
             }
             Action::Key => {
                 let beat = self.play.beat;

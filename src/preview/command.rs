@@ -68,7 +68,16 @@ pub fn command(name: &str, plan: &Plan, layer: Layer) -> Result<String, String> 
         line += &format!(" --layer {}", layer.name());
     }
     let [width, height] = now.size;
-    Ok(line + &format!(" --size {width}x{height} -o picture.png"))
+    let file = written(name);
+    Ok(line + &format!(" --size {width}x{height} -o {file}"))
+}
+
+/// The file that the command writes: another than the preset, which can be a picture.
+fn written(name: &str) -> &'static str {
+    match Path::new(name).ends_with("picture.png") {
+        true => "picture-2.png",
+        false => "picture.png",
+    }
 }
 
 /// A word of a command as a shell takes it.
@@ -102,6 +111,8 @@ mod tests {
             line,
             "conemarch render mandelbox --size 1280x720 -o picture.png"
         );
+        let files = ["a/picture.png", "a/picture.toml"].map(written);
+        assert_eq!(files, ["picture-2.png", "picture.png"]);
         let quotes = quoted("it's 1");
         assert_eq!(quotes, "'it'\\''s 1'");
     }

@@ -34,6 +34,8 @@ pub struct Document {
     saved_at: usize,
     /// The plan before the gesture under way: a drag, or a flight.
     before: Option<(Plan, f64)>,
+    /// Steps in the past when work was restored that was kept, until it is undone or saved.
+    restored_at: Option<usize>,
 }
 
 impl Document {
@@ -50,6 +52,7 @@ impl Document {
             future: Vec::new(),
             saved_at: 0,
             before: None,
+            restored_at: None,
         }
     }
 
@@ -76,7 +79,7 @@ impl Document {
         };
         // Only time may have gone on.
         let mut then = before.0.clone();
-        let same_film = pose_at(&mut then, self.beat).is_none();
+        let same_film = shows_film(&then, before.1) && pose_at(&mut then, self.beat).is_none();
         if before.0 != self.plan && !(same_film && then == self.plan) {
             if self.past.len() < self.saved_at {
                 // The saved plan was undone, and is out of reach now.
@@ -116,8 +119,13 @@ impl Document {
     }
 
     /// Goes to another moment of the film. Changes that no file has and that are not of the film are
-    /// left by a step, so that an undo returns to them. Returns what does not fit.
+    /// left by a step, so that an undo returns to them. A moment that does not fit changes nothing;
+    /// returns why it does not.
     pub fn go_to(&mut self, beat: f64) -> Option<String> {
+        let mut posed = self.plan.clone();
+        if let Some(wrong) = pose_at(&mut posed, beat) {
+            return Some(wrong);
+        }
         let alone = beat != self.beat && self.before.is_none() && !self.plan.tracks.is_empty();
         if alone && self.is_changed() && !shows_film(&self.plan, self.beat) {
             // What was undone can still be done again after it.
@@ -126,8 +134,20 @@ impl Document {
             }
             self.push((self.plan.clone(), self.beat));
         }
-        self.beat = beat;
-        pose_at(&mut self.plan, beat)
+        (self.plan, self.beat) = (posed, beat);
+        None
+    }
+
+    /// Takes in work that was kept, as a step.
+    pub fn restore(&mut self, plan: Plan) {
+        self.change(|now| *now = plan);
+        self.restored_at = Some(self.past.len());
+    }
+
+    /// Whether the work that was taken in has been undone since the last question.
+    pub fn has_left_restored(&mut self) -> bool {
+        let steps = self.past.len();
+        self.restored_at.take_if(|at| steps < *at).is_some()
     }
 
     fn push(&mut self, step: (Plan, f64)) {
@@ -166,6 +186,7 @@ impl Document {
         write(&path, preset::write_beside(&plan, &path).as_bytes())?;
         self.end();
         self.saved = plan;
+        self.restored_at = None;
         for plan in [&mut self.saved, &mut self.plan] {
             preset::move_beside(plan, &path);
         }
@@ -207,7 +228,7 @@ pub fn unused(folder: &Path, name: &str, ending: &str) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preview::play::set_view;
+    use crate::preview::play::{set_key, set_view};
     use crate::scene::Scene;
     use glam::DVec3;
 
@@ -263,8 +284,47 @@ mod tests {
             doc.end();
             doc.is_changed()
         };
-        assert!(!end_at(2.0, 0.0));
+        // A view that is not of the film is not lost by a gesture that shows the film.
+        assert!(end_at(4.0, 0.5) && end_at(2.0, 0.0));
+        doc.past.clear();
+        let mut end_at = |beat, x: f64| {
+            doc.begin();
+            doc.beat = beat;
+            assert_eq!(pose_at(&mut doc.plan, beat), None);
+            doc.plan.camera.eye.x += x;
+            doc.end();
+            doc.is_changed()
+        };
+        assert!(!end_at(3.0, 0.0));
         assert!(end_at(3.0, 0.5));
+    }
+
+    #[test]
+    fn a_moment_that_does_not_fit_is_no_step() {
+        let mut doc = document();
+        for (beat, fov) in [(0.0, 40.0), (4.0, 400.0)] {
+            doc.plan.camera.fov = fov;
+            assert!(set_key(&mut doc.plan, "camera.fov", beat));
+        }
+        assert_eq!(doc.go_to(0.0), None);
+        doc.change(|plan| plan.look.fog = 1.0);
+        for beat in [3.9, 3.95, 4.0] {
+            assert!(doc.go_to(beat).is_some());
+        }
+        assert_eq!((doc.past.len(), doc.beat), (1, 0.0));
+    }
+
+    #[test]
+    fn work_that_was_restored_can_be_left() {
+        let mut doc = document();
+        let mut kept = doc.plan.clone();
+        kept.look.fog = 1.0;
+        doc.restore(kept);
+        doc.change(|plan| plan.camera.fov = 50.0);
+        doc.undo();
+        assert!(!doc.has_left_restored());
+        doc.undo();
+        assert!(doc.has_left_restored() && !doc.has_left_restored());
     }
 
     #[test]
@@ -283,11 +343,14 @@ mod tests {
         assert_eq!(doc.go_to(3.0), None);
         assert_eq!(doc.past.len(), steps + 2);
         assert_eq!((doc.undo(), doc.plan == flown), (Some(1.0), true));
-        // Nor is a gesture under way.
-        doc.begin();
-        assert_eq!(doc.go_to(3.5), None);
-        doc.end();
-        assert_eq!(doc.past.len(), steps + 1);
+        // Nor is a gesture under way, but it keeps the view before it.
+        for made in [1, 0] {
+            let steps = doc.past.len();
+            doc.begin();
+            assert_eq!(doc.go_to(3.5), None);
+            doc.end();
+            assert_eq!(doc.past.len(), steps + made);
+        }
     }
 
     #[test]

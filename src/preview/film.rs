@@ -15,6 +15,13 @@ impl Live {
         self.paint_soon(PANEL);
     }
 
+    /// Shows another moment after the playhead has moved. At the same one, a view that is not of the film stays.
+    pub fn follow_playhead(&mut self) {
+        if self.play.beat != self.document.beat {
+            self.show_moment();
+        }
+    }
+
     /// Undoes or redoes a step. Under another playhead than that of the step, its film is shown at
     /// the present one, unless it showed another view than that of the film.
     pub fn go_back(&mut self, step: fn(&mut Document) -> Option<f64>) {
@@ -24,6 +31,10 @@ impl Live {
         let Some(beat) = step(&mut self.document) else {
             return;
         };
+        if self.document.has_left_restored() {
+            // It stays for the next start.
+            self.release_kept();
+        }
         let plan = &self.document.plan;
         // The film may be shorter than before.
         self.play.fit(plan.time.length);
@@ -40,9 +51,9 @@ impl Live {
         let mut done = false;
         self.document
             .change(|plan| done = chosen.is_some_and(|place| overwrite(plan, &place)));
-        self.show_moment();
-        if !done {
-            self.tell("no key of the timeline is chosen; click one", true);
+        match done {
+            true => self.show_moment(),
+            false => self.tell("no key of the timeline is chosen; click one", true),
         }
     }
 

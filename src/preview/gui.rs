@@ -202,7 +202,7 @@ impl Live {
         }
         if asked.timeline.moved {
             self.play.playing = false;
-            self.show_moment();
+            self.follow_playhead();
         }
         if let Some(restore) = asked.restore {
             self.take_offer(restore);

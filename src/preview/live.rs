@@ -310,6 +310,7 @@ impl Live {
 
     /// Asks for the picture of the plan, and takes in what is finished.
     fn render(&mut self, moving: bool) -> Result<(), PreviewError> {
+        self.answer_question();
         let mut plan = self.shown();
         // A discrete GPU marches cones only for who looks at them.
         let is_large = self.stage.screen.device().is_discrete();
@@ -318,10 +319,7 @@ impl Live {
         }
         self.pictures.moving = moving;
         if let Err(fault) = plan.check() {
-            self.warn(format!("{}: {}", fault.key, fault.why));
-            self.pictures.rest();
-            self.go_on_with_still();
-            return Ok(());
+            return self.rest_on(&fault);
         }
         if let ShownView::Fronts(n) = self.shot
             && n >= passes(&plan, &self.pictures.assets)
@@ -353,7 +351,6 @@ impl Live {
         if self.pictures.is_right() {
             self.end_notice(Ends::WithPicture);
         }
-        self.answer_question();
         // A still takes what pictures leave, and its share of a film that plays.
         if self.play.playing || !self.pictures.is_busy() {
             self.go_on_with_still();

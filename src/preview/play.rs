@@ -224,31 +224,26 @@ pub fn has_still_of(plan: &Plan, saved: &Plan) -> bool {
     plan.tracks.iter().all(is_same)
 }
 
-/// The plan to save while a moment of its film is shown. Settings with the values of that moment
-/// keep those of the file, so that the still stays the one that it was.
+/// The plan to save. While a moment of its film is shown, what has tracks keeps the values of the
+/// file, so that the still stays the one that it was. Another view is saved as it is.
 pub fn with_still(plan: &Plan, saved: &Plan, beat: f64) -> Plan {
     let mut still = plan.clone();
-    let Ok(moment) = plan.at(beat) else {
+    if !shows_film(plan, beat) {
         return still;
-    };
+    }
     let is_pose = |track: &&Track| POSE.contains(&track.of.as_str());
     for track in plan.tracks.iter().filter(|track| !is_pose(track)) {
-        if numbers(plan, &track.of) == numbers(&moment, &track.of)
-            && let Some(own) = numbers(saved, &track.of)
-        {
+        if let Some(own) = numbers(saved, &track.of) {
             // What the file has fits.
             let _ = still.set_numbers(&track.of, &own);
         }
     }
-    let camera = |plan: &Plan| [plan.camera.eye, plan.camera.target, plan.camera.up];
-    if camera(plan) == camera(&moment) {
-        let mut own = still.camera.clone();
-        for track in plan.tracks.iter().filter(is_pose) {
-            *field(&mut own, &track.of) = *field(&mut saved.camera.clone(), &track.of);
-        }
-        if own.check().is_ok() {
-            still.camera = own;
-        }
+    let mut own = still.camera.clone();
+    for track in plan.tracks.iter().filter(is_pose) {
+        *field(&mut own, &track.of) = *field(&mut saved.camera.clone(), &track.of);
+    }
+    if own.check().is_ok() {
+        still.camera = own;
     }
     still
 }
@@ -406,9 +401,16 @@ mod tests {
         assert_eq!((&kept.camera, &kept.tracks), (&saved.camera, &plan.tracks));
         assert!(has_still_of(&kept, &saved) && !has_still_of(&plan, &saved));
         assert!(shows_film(&plan, 3.0) && !shows_film(&plan, 2.0));
-        // Another view is a new still.
+        // Another view is a new still, with all that it shows.
         plan.camera.eye.x = 6.0;
         assert_eq!(with_still(&plan, &saved, 3.0), plan);
+        let own = saved.camera.fov;
+        plan.camera.fov = own + 5.0;
+        assert!(set_key(&mut plan, "camera.fov", 3.0));
+        assert_eq!(with_still(&plan, &saved, 3.0), plan);
+        assert_eq!(pose_at(&mut plan, 3.0), None);
+        assert_eq!(with_still(&plan, &saved, 3.0).camera.fov, own);
+        plan.tracks.retain(|track| track.of != "camera.fov");
         // A target without a track belongs to every moment.
         plan.tracks.retain(|track| track.of == "camera.eye");
         plan.camera.target.z = 2.0;

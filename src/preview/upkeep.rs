@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::base::key::Fault;
 use crate::gpu::RenderError;
 use crate::gpu::device::DeviceError;
 use crate::preset;
@@ -89,6 +90,20 @@ impl Live {
         Ok(())
     }
 
+    /// Waits for another plan, since this one does not fit.
+    ///
+    /// # Errors
+    /// The device was lost, and does not open again.
+    pub fn rest_on(&mut self, fault: &Fault) -> Result<(), PreviewError> {
+        self.warn(format!("{}: {}", fault.key, fault.why));
+        self.pictures.rest();
+        self.go_on_with_still();
+        match self.pictures.advance() {
+            Ok(_) => Ok(()),
+            Err(lost) => self.failed(lost),
+        }
+    }
+
     /// Goes on with a still, and tells when it is written.
     pub fn go_on_with_still(&mut self) {
         let Some(said) = self.still.as_mut().and_then(Still::advance) else {
@@ -144,8 +159,7 @@ impl Live {
                 if was_changed {
                     // It stays for the next start.
                     self.keep_now();
-                    self.slot = Slot::default();
-                    (self.unkept, self.kept) = (None, None);
+                    self.release_kept();
                 }
                 self.document.reload(preset.plan);
                 self.show_moment();
@@ -247,7 +261,7 @@ impl Live {
         };
         if restore {
             self.keep_now();
-            self.document.change(|now| *now = plan);
+            self.document.restore(plan);
             self.play.fit(self.document.plan.time.length);
             self.slot = slot;
             self.kept = None;
@@ -264,6 +278,12 @@ impl Live {
             self.offer();
         }
         self.paint_soon(Duration::ZERO);
+    }
+
+    /// Leaves what is kept for the next start. New work is kept beside it.
+    pub fn release_kept(&mut self) {
+        self.slot = Slot::default();
+        (self.unkept, self.kept) = (None, None);
     }
 
     fn drop_kept(&mut self) {

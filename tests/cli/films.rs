@@ -221,6 +221,14 @@ fn a_cut_does_not_bend_the_ways_on_its_sides() {
             assert!(eye(&both).distance(eye(&alone)) < 1e-12, "{beat}");
         }
     }
+    // A cut to the last key happens.
+    let last = film(&format!("{before}, [4, [-9, 3, 1]]"));
+    for (beat, x) in [(3.9, 8.0), (4.0, -9.0), (7.0, -9.0)] {
+        assert!(
+            (last.at(beat).unwrap().camera.eye.x - x).abs() < 1e-12,
+            "{beat}"
+        );
+    }
     // Of a loop, too.
     let closed = |keys: &str| {
         let text = format!(
