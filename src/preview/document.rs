@@ -34,7 +34,7 @@ pub struct Document {
     saved_at: usize,
     /// The plan before the gesture under way: a drag, or a flight.
     before: Option<(Plan, f64)>,
-    /// Steps in the past when work was restored that was kept, until it is undone or saved.
+    /// Steps in the past when work was restored that was kept, until it is out of reach or saved.
     restored_at: Option<usize>,
 }
 
@@ -144,13 +144,14 @@ impl Document {
         self.restored_at = Some(self.past.len());
     }
 
-    /// Whether the work that was taken in has been undone since the last question.
-    pub fn has_left_restored(&mut self) -> bool {
-        let steps = self.past.len();
-        self.restored_at.take_if(|at| steps < *at).is_some()
+    /// Whether work that was kept has been taken in, and is not undone.
+    pub fn is_restored(&self) -> bool {
+        self.restored_at.is_some_and(|at| self.past.len() >= at)
     }
 
     fn push(&mut self, step: (Plan, f64)) {
+        // What was undone is out of reach now.
+        self.restored_at.take_if(|at| self.past.len() < *at);
         self.past.push(step);
         if self.past.len() > MOST_STEPS {
             self.past.remove(0);
@@ -161,6 +162,7 @@ impl Document {
     /// Takes in the file as another program has written it. It is a step that can be undone.
     pub fn reload(&mut self, plan: Plan) {
         self.end();
+        self.restored_at = None;
         self.saved = plan.clone();
         self.change(|now| *now = plan);
         self.saved_at = self.past.len();
@@ -321,10 +323,18 @@ mod tests {
         kept.look.fog = 1.0;
         doc.restore(kept);
         doc.change(|plan| plan.camera.fov = 50.0);
-        doc.undo();
-        assert!(!doc.has_left_restored());
-        doc.undo();
-        assert!(doc.has_left_restored() && !doc.has_left_restored());
+        assert!(doc.is_restored());
+        for (is_restored, step) in [
+            (true, Document::undo as fn(&mut _) -> _),
+            (false, Document::undo),
+            (true, Document::redo),
+            (false, Document::undo),
+        ] {
+            step(&mut doc);
+            assert_eq!(doc.is_restored(), is_restored);
+        }
+        doc.change(|plan| plan.camera.fov = 60.0);
+        assert!(!doc.is_restored());
     }
 
     #[test]

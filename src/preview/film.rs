@@ -28,12 +28,14 @@ impl Live {
         // Else the next moment of the film would take the place of what comes back.
         self.play.playing = false;
         let tracks = self.document.plan.tracks.clone();
+        let was_restored = self.document.is_restored();
         let Some(beat) = step(&mut self.document) else {
             return;
         };
-        if self.document.has_left_restored() {
-            // It stays for the next start.
-            self.release_kept();
+        if self.document.is_restored() != was_restored {
+            // Restored work and that before it are kept in places of their own.
+            std::mem::swap(&mut self.slot, &mut self.other_slot);
+            (self.unkept, self.kept) = (None, None);
         }
         let plan = &self.document.plan;
         // The film may be shorter than before.

@@ -105,6 +105,8 @@ pub struct Live {
     pub offered: Option<(u32, Plan)>,
     /// Where unsaved work of this session is kept.
     pub slot: Slot,
+    /// That of the work on the other side of a restore.
+    pub other_slot: Slot,
     pub options: Options,
     pub meter: Meter,
     /// The wish of a picture that is not on the screen yet, and whether it is a full one.
@@ -193,6 +195,7 @@ impl Live {
             question: None,
             offered: None,
             slot: Slot::default(),
+            other_slot: Slot::default(),
             meter: Meter::default(),
             taken: None,
             drawn: now,

@@ -198,14 +198,13 @@ impl Live {
                     .set_title(&format!("{} - conemarch", preset.name));
                 self.visible.timeline = !preset.plan.tracks.is_empty();
                 self.play = Default::default();
-                self.slot = Slot::default();
+                self.release_kept();
                 self.unread = false;
                 self.end_notice(Ends::WithFile);
                 self.document = Document::new(preset.name, path, preset.plan);
                 self.options.sets.clear();
                 self.offer();
                 self.preset_file = Watched::new(self.document.path.iter().cloned().collect());
-                (self.unkept, self.kept) = (None, None);
                 self.show_moment();
             }
             Err(e) => self.tell(e.to_string(), true),
@@ -263,7 +262,7 @@ impl Live {
             self.keep_now();
             self.document.restore(plan);
             self.play.fit(self.document.plan.time.length);
-            self.slot = slot;
+            self.other_slot = std::mem::replace(&mut self.slot, slot);
             self.kept = None;
             // Of a film, what was kept was made at some moment of it, or from another view.
             if has_still_of(&self.document.plan, self.document.saved()) {
@@ -282,7 +281,7 @@ impl Live {
 
     /// Leaves what is kept for the next start. New work is kept beside it.
     pub fn release_kept(&mut self) {
-        self.slot = Slot::default();
+        (self.slot, self.other_slot) = Default::default();
         (self.unkept, self.kept) = (None, None);
     }
 
