@@ -135,7 +135,12 @@ fn both_executors_find_the_same_light() {
             let spread = off.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
             let error = (spread / n).sqrt();
             println!("{name}: {mean:.2e} of {error:.2e}");
-            assert!(mean.abs() <= 3.0 * error, "{name}: {mean} {error}");
+            // In f32 all pixels of a relief may be off to one side, by a part of their last bit.
+            let rounding = 1e-7;
+            assert!(
+                mean.abs() <= 3.0 * error + rounding,
+                "{name}: {mean} {error}"
+            );
             // Most paths are the same on both.
             let same = off.iter().filter(|x| x.abs() < 0.007).count() as f64;
             assert!(same > 0.7 * n, "{name}: {same} of {n}");
