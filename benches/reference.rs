@@ -1,6 +1,6 @@
 //! Whether a small picture is the large one made small: `cargo bench --bench reference`. With
 //! `-- --write` it writes its table into docs/accuracy.md. It takes
-//! a minute on a large GPU, and hours on two cores.
+//! a minute on a large GPU, and very long in software.
 
 use anyhow::{Context, Result};
 use conemarch::gpu::adapters::{Adapters, Choice};

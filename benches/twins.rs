@@ -1,5 +1,5 @@
 //! How far the GPU's pictures are from those of the CPU executor: `cargo bench --bench twins`. With
-//! `-- --write` it writes its table into docs/accuracy.md. It takes ten minutes on two cores.
+//! `-- --write` it writes its table into docs/accuracy.md. It takes a minute with a large GPU and 16 cores.
 
 use anyhow::{Context, Result};
 use conemarch::base::srgb::LUMA;

@@ -15,7 +15,8 @@ impl Live {
         self.paint_soon(PANEL);
     }
 
-    /// Shows another moment after the playhead has moved. At the same one, a view that is not of the film stays.
+    /// Shows another moment after the playhead has moved. At the same one, a view that is not of the
+    /// film stays.
     pub fn follow_playhead(&mut self) {
         if self.play.beat != self.document.beat {
             self.show_moment();

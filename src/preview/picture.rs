@@ -94,7 +94,8 @@ pub fn redo(from: &Plan, to: &Plan) -> Redo {
     let (mut from, mut to) = (from.clone(), to.clone());
     let sections = crate::preset::SECTIONS.into_iter();
     let changes = sections.flat_map(|section| {
-        // Keys are words; those of a flight, which moves the camera alone, would be most of its time on the host.
+        // Keys hold their ranges and values as text. To write it takes much of the host's time in a
+        // flight, which changes the camera alone.
         let same = match section {
             "scene" => from.scene == to.scene,
             "camera" => from.camera == to.camera,
