@@ -21,7 +21,7 @@ use crate::preview::keep::Slot;
 use crate::preview::leaving::Leaving;
 use crate::preview::meter::{Figures, Meter};
 use crate::preview::notice::{Ends, Notice};
-use crate::preview::pictures::Pictures;
+use crate::preview::pictures::{BUSY, Pictures};
 use crate::preview::play::Play;
 use crate::preview::probe;
 use crate::preview::question::Question;
@@ -32,8 +32,6 @@ use crate::preview::views::ShownView;
 use crate::preview::window::{Options, REST, Stage};
 use crate::scene::Assets;
 
-/// How long the loop sleeps while the device works, or the camera flies.
-const BUSY: Duration = Duration::from_millis(1);
 /// Time after which the panel follows what the device does.
 pub const PANEL: Duration = Duration::from_millis(400);
 /// The same while the film is played.
@@ -259,7 +257,7 @@ impl Live {
             self.keep_work();
         }
         if self.hidden {
-            self.go_on_with_still();
+            self.go_on_hidden()?;
             return Ok(if self.still.is_some() { BUSY } else { REST });
         }
         let moving = flies || self.play.playing || self.drag.is_some() || self.panel_drag;

@@ -104,6 +104,18 @@ impl Live {
         }
     }
 
+    /// Goes on with what a hidden window does.
+    ///
+    /// # Errors
+    /// The device was lost, and does not open again.
+    pub fn go_on_hidden(&mut self) -> Result<(), PreviewError> {
+        self.go_on_with_still();
+        match self.pictures.renderer.device.check() {
+            Ok(()) => Ok(()),
+            Err(lost) => self.failed(lost.into()),
+        }
+    }
+
     /// Goes on with a still, and tells when it is written.
     pub fn go_on_with_still(&mut self) {
         let Some(said) = self.still.as_mut().and_then(Still::advance) else {

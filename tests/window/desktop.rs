@@ -260,6 +260,16 @@ impl<'a> Preview<'a> {
         self.xdotool("click 1");
     }
 
+    /// Types a number into the field of the panel at a pixel.
+    pub fn type_into(&self, [x, y]: [u32; 2], number: &str) {
+        self.click(x, y);
+        sleep(Duration::from_millis(500));
+        self.key("ctrl+a");
+        self.xdotool(&format!("type --delay 200 {number}"));
+        self.key("Return");
+        sleep(Duration::from_millis(300));
+    }
+
     /// Moves the pointer to a pixel of the window.
     pub fn point(&self, x: u32, y: u32) {
         self.xdotool(&format!("mousemove --window {} {x} {y}", self.window));

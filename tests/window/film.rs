@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use conemarch::preset;
 
-use crate::desktop::{Desktop, Preview};
+use crate::desktop::{Desktop, Preview, Shot};
 use crate::folder::Folder;
 use crate::{FILM, SIZE, picture};
 
@@ -177,6 +177,11 @@ fn keys_are_dragged_and_copied_and_a_part_is_played_again() {
     let before = eye();
     view.click(x(5), row);
     view.hold("d", 300);
+    // A click on the key under the playhead leaves the view of the flight.
+    let above = |shot: &Shot| shot.rgb[..3 * 960 * 490].to_vec();
+    let flown = above(&view.at_rest());
+    view.click(x(5), row);
+    assert!(above(&view.at_rest()) == flown);
     view.key("ctrl+k");
     assert!(eye() != before);
     view.key("Delete");

@@ -146,14 +146,7 @@ fn a_typed_number_and_a_dragged_color_are_one_step() {
     let view = Preview::open(&desktop, &folder.0, "mandelbox --size 960x540");
     let first = preset::load("mandelbox", &[]).unwrap().plan;
     // The number beside the slider of `scene.scale`.
-    let set = |number: &str| {
-        view.click(858, 94);
-        sleep(Duration::from_millis(500));
-        view.key("ctrl+a");
-        view.xdotool(&format!("type --delay 200 {number}"));
-        view.key("Return");
-        sleep(Duration::from_millis(300));
-    };
+    let set = |number: &str| view.type_into([858, 94], number);
     // No Mandelbox has this scale, and no file could be opened with it.
     set("0.5");
     view.key("ctrl+s");

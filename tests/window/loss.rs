@@ -1,12 +1,12 @@
 //! A device that its driver loses while the window is open.
 
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use crate::desktop::{Desktop, Preview};
-use crate::folder::{Folder, output, said};
+use crate::folder::{Folder, said};
 use crate::{FILM, SIZE, picture};
 
 /// Makes the layer of `lost.c` in a folder, and a command use it.
@@ -31,6 +31,24 @@ fn with_layer(command: &mut Command, folder: &Path) {
         .env("LOSE", folder);
 }
 
+/// Loses the device at the next submission.
+fn lose(folder: &Folder, what: &str) {
+    folder.write(what, "");
+    let began = Instant::now();
+    while folder.0.join(what).exists() {
+        assert!(began.elapsed() < Duration::from_secs(20), "no submission");
+        sleep(Duration::from_millis(20));
+    }
+}
+
+fn wait_for_still(folder: &Folder, name: &str) {
+    let began = Instant::now();
+    while !folder.0.join(name).exists() {
+        assert!(began.elapsed() < Duration::from_secs(60), "no still");
+        sleep(Duration::from_millis(100));
+    }
+}
+
 #[test]
 fn a_lost_device_is_opened_again_and_nothing_is_lost() {
     let (desktop, folder) = (Desktop::new(), Folder::new());
@@ -40,16 +58,9 @@ fn a_lost_device_is_opened_again_and_nothing_is_lost() {
     let mut command = Preview::command(&desktop, &folder.0, &format!("film.toml {SIZE}"));
     with_layer(&mut command, &folder.0);
     let view = Preview::start(&desktop, command);
-    let lose = |what: &str| {
-        folder.write(what, "");
-        let began = Instant::now();
-        while folder.0.join(what).exists() {
-            assert!(began.elapsed() < Duration::from_secs(20), "no submission");
-            sleep(Duration::from_millis(20));
-        }
-    };
     view.key("Tab");
     view.key("t");
+    let lose = |what: &str| lose(&folder, what);
     folder.done(&format!("render film.toml {SIZE} --at 0 -o a.png"));
     let first = picture(&folder, "a.png");
     let is_first = || view.wait_for("the first moment", |shot| *shot == first);
@@ -85,13 +96,54 @@ fn a_lost_device_is_opened_again_and_nothing_is_lost() {
     view.at_rest();
     view.key("F12");
     lose("lose");
-    let began = Instant::now();
-    while !folder.0.join("film-1.png").exists() {
-        assert!(began.elapsed() < Duration::from_secs(60), "no still");
-        sleep(Duration::from_millis(100));
-    }
+    wait_for_still(&folder, "film-1.png");
     folder.done(&format!("render film.toml --at {shown} -o b.png"));
     assert!(picture(&folder, "film-1.png") == picture(&folder, "b.png"));
+    view.close();
+}
+
+#[test]
+fn a_hidden_window_notices_a_lost_device() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    // The still takes long enough to hide the window in the middle.
+    let film = FILM.replace("size = [320, 180]", "size = [1280, 720]\nsamples = 64");
+    folder.write("film.toml", film);
+    let mut command = Preview::command(&desktop, &folder.0, &format!("film.toml {SIZE}"));
+    with_layer(&mut command, &folder.0);
+    let view = Preview::start(&desktop, command);
+    view.key("F12");
+    view.hide(true);
+    sleep(Duration::from_millis(500));
+    lose(&folder, "lose");
+    wait_for_still(&folder, "film-1.png");
+    view.hide(false);
+    view.close();
+}
+
+#[test]
+fn a_lost_device_and_a_question_are_answered_over_settings_that_do_not_fit() {
+    let (desktop, folder) = (Desktop::new(), Folder::new());
+    let mut command = Preview::command(&desktop, &folder.0, "mandelbox --size 960x540");
+    with_layer(&mut command, &folder.0);
+    let view = Preview::start(&desktop, command);
+    view.key("Tab");
+    let first = view.at_rest();
+    view.key("Tab");
+    view.at_rest();
+    // The number of `scene.scale`.
+    view.type_into([858, 94], "0.5");
+    view.point(200, 300);
+    let unfit = view.at_rest();
+    view.xdotool("keydown alt click 1 keyup alt");
+    let told = view.wait_for("an answer", |shot| *shot != unfit);
+    folder.write("lose-shown", "");
+    view.key("F1");
+    view.wait_for("the keys", |shot| *shot != told);
+    assert!(!folder.0.join("lose-shown").exists());
+    view.key("F1");
+    view.key("ctrl+z");
+    view.key("Tab");
+    view.wait_for("the settings before", |shot| *shot == first);
     view.close();
 }
 
@@ -103,7 +155,17 @@ fn without_an_adapter_for_the_window_a_sentence_tells_what_would_do() {
         let line = format!("mandelbox --device {device}");
         let mut command = Preview::command(&desktop, &folder.0, &line);
         with_layer(&mut command, &folder.0);
-        let ended = output(&mut command);
+        command.stderr(Stdio::piped());
+        let mut process = command.spawn().expect("the program");
+        let began = Instant::now();
+        while process.try_wait().expect("a process").is_none() {
+            if began.elapsed() > Duration::from_secs(60) {
+                process.kill().expect("a process");
+                panic!("{device}: a window is open");
+            }
+            sleep(Duration::from_millis(50));
+        }
+        let ended = process.wait_with_output().expect("what it said");
         assert_eq!(ended.status.code(), Some(1));
         let said = said(&ended);
         let begins = said.starts_with("error: no adapter can show pictures in this window (");

@@ -166,11 +166,7 @@ fn a_plan_that_does_not_fit_is_told_at_rest() {
     let line = "mandelbox --size 960x540 --set image.samples=4096";
     let view = Preview::open(&desktop, &folder.0, line);
     // The number of `scene.scale`.
-    view.click(858, 94);
-    sleep(Duration::from_millis(500));
-    view.key("ctrl+a");
-    view.xdotool("type --delay 200 0");
-    view.key("Return");
+    view.type_into([858, 94], "0");
     view.at_rest();
     sleep(Duration::from_millis(500));
     let before = view.processor_time();
