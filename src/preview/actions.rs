@@ -188,7 +188,8 @@ impl Live {
             Action::Play => {
                 let over = self.play.beat >= self.document.plan.time.length;
                 self.play.playing = !self.play.playing;
-                // The time before it is none of the film's.
+                // What is flown so far is a step, and the time before it is none of the film's.
+                self.document.end();
                 self.ticked = Instant::now();
                 if self.play.playing && over {
                     self.play.beat = 0.0;
@@ -200,8 +201,7 @@ impl Live {
             }
             Action::Key => {
                 let beat = self.play.beat;
-                self.document.change(|plan| set_view(plan, beat));
-                self.show_moment();
+                self.change_keys(|plan| set_view(plan, beat));
                 self.visible.timeline = true;
             }
             Action::Overwrite => self.overwrite_key(),
@@ -242,7 +242,7 @@ impl Live {
             return;
         }
         let before = self.document.clone();
-        let plan = with_still(&self.document.plan, before.saved(), self.play.beat);
+        let plan = with_still(&before.plan, before.saved(), before.beat);
         // A file that cannot be opened again would be no preset.
         let checked = plan.check().map_err(|f| format!("{}: {}", f.key, f.why));
         let read = || preset::read(&preset::write(&plan), &before.name);
@@ -253,7 +253,8 @@ impl Live {
         match self.document.save(Path::new("."), plan) {
             Ok(path) => {
                 // It was kept under the name that it had.
-                self.slot.drop(self.options.kept.as_deref(), &before);
+                let kept = self.options.kept.clone();
+                self.slot().drop(kept.as_deref(), &before);
                 if before.path != self.document.path {
                     // What is offered is of the other file, and is offered again when that opens.
                     self.offered = None;

@@ -1,6 +1,6 @@
 //! The command line that makes a picture of the window.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::picture::Layer;
 use crate::plan::Plan;
@@ -68,16 +68,22 @@ pub fn command(name: &str, plan: &Plan, layer: Layer) -> Result<String, String> 
         line += &format!(" --layer {}", layer.name());
     }
     let [width, height] = now.size;
-    let file = written(name);
+    let file = written(name, &now);
     Ok(line + &format!(" --size {width}x{height} -o {file}"))
 }
 
-/// The file that the command writes: another than the preset, which can be a picture.
-fn written(name: &str) -> &'static str {
-    match Path::new(name).ends_with("picture.png") {
-        true => "picture-2.png",
-        false => "picture.png",
+/// The file that the command writes: none that it reads.
+fn written(name: &str, plan: &Plan) -> String {
+    let files = plan.files().into_iter().map(|(_, path)| path);
+    let read: Vec<PathBuf> = files.chain([name.into()]).collect();
+    let is_read = |file: &String| read.iter().any(|path| path.ends_with(file));
+    let mut file = String::from("picture.png");
+    let mut number = 1;
+    while is_read(&file) {
+        number += 1;
+        file = format!("picture-{number}.png");
     }
+    file
 }
 
 /// A word of a command as a shell takes it.
@@ -111,8 +117,16 @@ mod tests {
             line,
             "conemarch render mandelbox --size 1280x720 -o picture.png"
         );
-        let files = ["a/picture.png", "a/picture.toml"].map(written);
+        let mut plan = plan;
+        let files = ["a/picture.png", "a/picture.toml"].map(|name| written(name, &plan));
         assert_eq!(files, ["picture-2.png", "picture.png"]);
+        let sky = toml::Value::from("a/picture.png");
+        let mut keys = plan.keys("look").expect("a section");
+        let key = keys.iter_mut().find(|key| key.name == "sky_file");
+        key.expect("a key").slot.set(&sky).expect("a file");
+        drop(keys);
+        let files = ["a/picture-2.png", "a.toml"].map(|name| written(name, &plan));
+        assert_eq!(files, ["picture-3.png", "picture-2.png"]);
         let quotes = quoted("it's 1");
         assert_eq!(quotes, "'it'\\''s 1'");
     }

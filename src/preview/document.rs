@@ -27,15 +27,24 @@ pub struct Document {
     pub beat: f64,
     /// The plan in the file.
     saved: Plan,
-    /// Plans, each with the beat at which it was left.
-    past: Vec<(Plan, f64)>,
-    future: Vec<(Plan, f64)>,
+    /// Which work this is: 0, or the number of a restore.
+    work: u32,
+    /// Restores so far.
+    restores: u32,
+    past: Vec<Step>,
+    future: Vec<Step>,
     /// Steps in the past when the plan was saved.
     saved_at: usize,
     /// The plan before the gesture under way: a drag, or a flight.
     before: Option<(Plan, f64)>,
-    /// Steps in the past when work was restored that was kept, until it is out of reach or saved.
-    restored_at: Option<usize>,
+}
+
+/// A plan that was left.
+#[derive(Clone, Debug)]
+struct Step {
+    plan: Plan,
+    beat: f64,
+    work: u32,
 }
 
 impl Document {
@@ -52,7 +61,8 @@ impl Document {
             future: Vec::new(),
             saved_at: 0,
             before: None,
-            restored_at: None,
+            work: 0,
+            restores: 0,
         }
     }
 
@@ -85,7 +95,12 @@ impl Document {
                 // The saved plan was undone, and is out of reach now.
                 self.saved_at = usize::MAX;
             }
-            self.push(before);
+            let (plan, beat) = before;
+            self.push(Step {
+                plan,
+                beat,
+                work: self.work,
+            });
             self.future.clear();
         }
     }
@@ -103,19 +118,28 @@ impl Document {
     /// Takes a step back. Returns the beat at which its plan was left, if there was one.
     pub fn undo(&mut self) -> Option<f64> {
         self.end();
-        let (plan, beat) = self.past.pop()?;
-        let left = std::mem::replace(&mut self.plan, plan);
-        self.future.push((left, self.beat));
+        let step = self.past.pop()?;
+        let (beat, left) = (step.beat, self.swap(step));
+        self.future.push(left);
         Some(beat)
     }
 
     /// Takes a step back again. Returns the beat at which its plan was left, if there was one.
     pub fn redo(&mut self) -> Option<f64> {
         self.end();
-        let (plan, beat) = self.future.pop()?;
-        let left = std::mem::replace(&mut self.plan, plan);
-        self.past.push((left, self.beat));
+        let step = self.future.pop()?;
+        let (beat, left) = (step.beat, self.swap(step));
+        self.past.push(left);
         Some(beat)
+    }
+
+    /// Takes the plan of a step, and returns the one that is left.
+    fn swap(&mut self, step: Step) -> Step {
+        Step {
+            plan: std::mem::replace(&mut self.plan, step.plan),
+            beat: self.beat,
+            work: std::mem::replace(&mut self.work, step.work),
+        }
     }
 
     /// Goes to another moment of the film. Changes that no file has and that are not of the film are
@@ -132,7 +156,11 @@ impl Document {
             if self.saved_at > self.past.len() {
                 self.saved_at = self.saved_at.saturating_add(1);
             }
-            self.push((self.plan.clone(), self.beat));
+            self.push(Step {
+                plan: self.plan.clone(),
+                beat: self.beat,
+                work: self.work,
+            });
         }
         (self.plan, self.beat) = (posed, beat);
         None
@@ -140,18 +168,19 @@ impl Document {
 
     /// Takes in work that was kept, as a step.
     pub fn restore(&mut self, plan: Plan) {
+        self.end();
         self.change(|now| *now = plan);
-        self.restored_at = Some(self.past.len());
+        self.restores += 1;
+        self.work = self.restores;
     }
 
-    /// Whether work that was kept has been taken in, and is not undone.
-    pub fn is_restored(&self) -> bool {
-        self.restored_at.is_some_and(|at| self.past.len() >= at)
+    /// Which work this is: 0, or the number of the restore that it came from. An undo of a restore
+    /// returns to the work before.
+    pub fn work(&self) -> u32 {
+        self.work
     }
 
-    fn push(&mut self, step: (Plan, f64)) {
-        // What was undone is out of reach now.
-        self.restored_at.take_if(|at| self.past.len() < *at);
+    fn push(&mut self, step: Step) {
         self.past.push(step);
         if self.past.len() > MOST_STEPS {
             self.past.remove(0);
@@ -162,7 +191,6 @@ impl Document {
     /// Takes in the file as another program has written it. It is a step that can be undone.
     pub fn reload(&mut self, plan: Plan) {
         self.end();
-        self.restored_at = None;
         self.saved = plan.clone();
         self.change(|now| *now = plan);
         self.saved_at = self.past.len();
@@ -188,7 +216,6 @@ impl Document {
         write(&path, preset::write_beside(&plan, &path).as_bytes())?;
         self.end();
         self.saved = plan;
-        self.restored_at = None;
         for plan in [&mut self.saved, &mut self.plan] {
             preset::move_beside(plan, &path);
         }
@@ -309,24 +336,33 @@ mod tests {
     }
 
     #[test]
-    fn work_that_was_restored_can_be_left() {
+    fn each_step_knows_which_work_it_is_of() {
         let mut doc = document();
-        let mut kept = doc.plan.clone();
-        kept.look.fog = 1.0;
-        doc.restore(kept);
+        let kept = |fog: f64| {
+            let mut plan = document().plan;
+            plan.look.fog = fog;
+            plan
+        };
+        // A restore in the middle of a gesture ends it.
+        doc.begin();
         doc.change(|plan| plan.camera.fov = 50.0);
-        assert!(doc.is_restored());
-        for (is_restored, step) in [
-            (true, Document::undo as fn(&mut _) -> _),
-            (false, Document::undo),
-            (true, Document::redo),
-            (false, Document::undo),
-        ] {
-            step(&mut doc);
-            assert_eq!(doc.is_restored(), is_restored);
-        }
+        doc.restore(kept(1.0));
         doc.change(|plan| plan.camera.fov = 60.0);
-        assert!(!doc.is_restored());
+        doc.restore(kept(2.0));
+        let works = |doc: &mut Document, step: fn(&mut Document) -> Option<f64>| {
+            let mut works = vec![doc.work()];
+            while step(doc).is_some() {
+                works.push(doc.work());
+            }
+            works
+        };
+        assert_eq!(works(&mut doc, Document::undo), [2, 1, 1, 0, 0]);
+        assert_eq!(works(&mut doc, Document::redo), [0, 0, 1, 1, 2]);
+        doc.undo();
+        doc.change(|plan| plan.camera.fov = 70.0);
+        assert_eq!(doc.work(), 1);
+        doc.restore(kept(3.0));
+        assert_eq!(doc.work(), 3);
     }
 
     #[test]

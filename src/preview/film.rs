@@ -1,5 +1,6 @@
 //! What the open window does with the film of its document.
 
+use crate::plan::Plan;
 use crate::preview::document::Document;
 use crate::preview::live::{Live, PANEL};
 use crate::preview::play::{overwrite, remove, shows_film};
@@ -19,6 +20,10 @@ impl Live {
     /// film stays.
     pub fn follow_playhead(&mut self) {
         if self.play.beat != self.document.beat {
+            // What is flown so far is a step; a drag of a key goes on.
+            if !self.panel_drag {
+                self.document.end();
+            }
             self.show_moment();
         }
     }
@@ -29,15 +34,10 @@ impl Live {
         // Else the next moment of the film would take the place of what comes back.
         self.play.playing = false;
         let tracks = self.document.plan.tracks.clone();
-        let was_restored = self.document.is_restored();
         let Some(beat) = step(&mut self.document) else {
             return;
         };
-        if self.document.is_restored() != was_restored {
-            // Restored work and that before it are kept in places of their own.
-            std::mem::swap(&mut self.slot, &mut self.other_slot);
-            (self.unkept, self.kept) = (None, None);
-        }
+        self.unkept = None;
         let plan = &self.document.plan;
         // The film may be shorter than before.
         self.play.fit(plan.time.length);
@@ -48,23 +48,30 @@ impl Live {
         }
     }
 
+    /// Changes keys, and shows the moment again if that made a step. A view that is not of the film
+    /// stays otherwise.
+    pub fn change_keys(&mut self, change: impl FnOnce(&mut Plan)) {
+        let before = self.document.plan.clone();
+        self.document.change(change);
+        if self.document.plan != before {
+            self.show_moment();
+        }
+    }
+
     /// Overwrites the chosen key with what is shown.
     pub fn overwrite_key(&mut self) {
         let chosen = self.play.chosen.clone();
         let mut done = false;
-        self.document
-            .change(|plan| done = chosen.is_some_and(|place| overwrite(plan, &place)));
-        match done {
-            true => self.show_moment(),
-            false => self.tell("no key of the timeline is chosen; click one", true),
+        self.change_keys(|plan| done = chosen.is_some_and(|place| overwrite(plan, &place)));
+        if !done {
+            self.tell("no key of the timeline is chosen; click one", true);
         }
     }
 
     /// Takes the chosen key away.
     pub fn remove_key(&mut self) {
         if let Some(place) = self.play.chosen.take() {
-            self.document.change(|plan| remove(plan, &place));
-            self.show_moment();
+            self.change_keys(|plan| remove(plan, &place));
         }
     }
 }

@@ -43,7 +43,11 @@ fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
 /// Where the unsaved work of a window is kept. A window locks its slot as long as it is open, so that
 /// no other one takes its work for that of a crash.
 #[derive(Debug, Default)]
-pub struct Slot(Option<(u32, Lock)>);
+pub struct Slot {
+    place: Option<(u32, Lock)>,
+    /// What is kept there, if this window has written it.
+    kept: Option<Plan>,
+}
 
 /// A file that is locked as long as this lives.
 #[derive(Debug)]
@@ -79,7 +83,15 @@ impl Slot {
         let folder = folder?;
         let lock = Lock::take(folder, document, slot)?;
         let is_there = path(folder, document, slot).exists();
-        is_there.then(|| Self(Some((slot, lock))))
+        is_there.then(|| Self {
+            place: Some((slot, lock)),
+            kept: None,
+        })
+    }
+
+    /// What this window has kept there.
+    pub fn kept(&self) -> Option<&Plan> {
+        self.kept.as_ref()
     }
 
     /// Keeps the document's plan as it would be saved. Returns whether there is a place for it.
@@ -98,19 +110,22 @@ impl Slot {
         let plan = with_still(&document.plan, document.saved(), document.beat);
         // Work that nobody has taken yet is not written over.
         let mut free = (0..SLOTS).filter(|slot| !path(folder, document, *slot).exists());
-        if self.0.is_none() {
-            self.0 = free.find_map(|slot| Some((slot, Lock::take(folder, document, slot)?)));
+        if self.place.is_none() {
+            self.place = free.find_map(|slot| Some((slot, Lock::take(folder, document, slot)?)));
         }
-        let Some((slot, _)) = self.0 else {
+        let Some((slot, _)) = self.place else {
             return Ok(false);
         };
         let text = format!("{TITLE}{}\n{}", document.place, preset::write(&plan));
-        write(&path(folder, document, slot), text.as_bytes()).map(|()| true)
+        write(&path(folder, document, slot), text.as_bytes())?;
+        self.kept = Some(document.plan.clone());
+        Ok(true)
     }
 
     /// Forgets what was kept.
     pub fn drop(&mut self, folder: Option<&Path>, document: &Document) {
-        if let (Some(folder), Some((slot, _))) = (folder, self.0.take()) {
+        self.kept = None;
+        if let (Some(folder), Some((slot, _))) = (folder, self.place.take()) {
             let _ = fs::remove_file(path(folder, document, slot));
         }
     }

@@ -1,6 +1,6 @@
 //! The open window: what it shows, and what it does in each turn of its loop.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -21,7 +21,7 @@ use crate::preview::keep::Slot;
 use crate::preview::leaving::Leaving;
 use crate::preview::meter::{Figures, Meter};
 use crate::preview::notice::{Ends, Notice};
-use crate::preview::pictures::{BUSY, Pictures};
+use crate::preview::pictures::Pictures;
 use crate::preview::play::Play;
 use crate::preview::probe;
 use crate::preview::question::Question;
@@ -32,6 +32,8 @@ use crate::preview::views::ShownView;
 use crate::preview::window::{Options, REST, Stage};
 use crate::scene::Assets;
 
+/// How long the loop sleeps while the device works, or the camera flies.
+const BUSY: Duration = Duration::from_millis(1);
 /// Time after which the panel follows what the device does.
 pub const PANEL: Duration = Duration::from_millis(400);
 /// The same while the film is played.
@@ -101,10 +103,8 @@ pub struct Live {
     pub question: Option<Question>,
     /// Unsaved work of an earlier session with its slot, until it is taken or dropped.
     pub offered: Option<(u32, Plan)>,
-    /// Where unsaved work of this session is kept.
-    pub slot: Slot,
-    /// That of the work on the other side of a restore.
-    pub other_slot: Slot,
+    /// Where unsaved work of this session is kept: each work of the document has a place of its own.
+    pub slots: HashMap<u32, Slot>,
     pub options: Options,
     pub meter: Meter,
     /// The wish of a picture that is not on the screen yet, and whether it is a full one.
@@ -120,9 +120,8 @@ pub struct Live {
     /// Whether it holds something that could not be read.
     pub unread: bool,
     pub shader_files: Watched,
-    /// When the first change was made that is not kept yet, and what is kept.
+    /// When the first change was made that is not kept yet.
     pub unkept: Option<Instant>,
-    pub kept: Option<Plan>,
     /// How often the device was opened again since the last full picture.
     pub losses: u32,
     /// Dropped last, as its surface is to go after all that knows its device.
@@ -192,8 +191,7 @@ impl Live {
             still: None,
             question: None,
             offered: None,
-            slot: Slot::default(),
-            other_slot: Slot::default(),
+            slots: HashMap::new(),
             meter: Meter::default(),
             taken: None,
             drawn: now,
@@ -205,7 +203,6 @@ impl Live {
             unread: false,
             shader_files: options.wgsl.as_ref().map(watched).unwrap_or_default(),
             unkept: None,
-            kept: None,
             losses: 0,
             options,
         };

@@ -6,7 +6,6 @@
 //! show nothing. The others stop as soon as the plan changes.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use crate::base::key::Redo;
 use crate::gpu::RenderError;
@@ -18,8 +17,6 @@ use crate::plan::{Extras, Plan};
 use crate::preview::picture::{Picture, redo};
 use crate::scene::Assets;
 
-/// How long a loop sleeps between two turns while the device works.
-pub const BUSY: Duration = Duration::from_millis(1);
 /// Milliseconds of work that are submitted at once. What was submitted must end before another plan
 /// begins, and a drawing of the window waits for it.
 const SLICE_MS: f64 = 5.0;

@@ -225,11 +225,12 @@ impl Live {
 
     /// Keeps unsaved work now and then, so that it survives a crash.
     pub fn keep_work(&mut self) {
-        let is_kept = self.kept.as_ref() == Some(&self.document.plan);
+        let kept = self.slot().kept().cloned();
+        let is_kept = kept.as_ref() == Some(&self.document.plan);
         if !self.document.is_changed() {
             self.unkept = None;
             // All of it was undone.
-            if self.kept.is_some() {
+            if kept.is_some() {
                 self.drop_kept();
             }
         } else if is_kept {
@@ -274,8 +275,7 @@ impl Live {
             self.keep_now();
             self.document.restore(plan);
             self.play.fit(self.document.plan.time.length);
-            self.other_slot = std::mem::replace(&mut self.slot, slot);
-            self.kept = None;
+            self.slots.insert(self.document.work(), slot);
             // Of a film, what was kept was made at some moment of it, or from another view.
             if has_still_of(&self.document.plan, self.document.saved()) {
                 self.show_moment();
@@ -293,13 +293,19 @@ impl Live {
 
     /// Leaves what is kept for the next start. New work is kept beside it.
     pub fn release_kept(&mut self) {
-        (self.slot, self.other_slot) = Default::default();
-        (self.unkept, self.kept) = (None, None);
+        self.slots.clear();
+        self.unkept = None;
     }
 
     fn drop_kept(&mut self) {
-        self.slot.drop(self.options.kept.as_deref(), &self.document);
-        (self.unkept, self.kept) = (None, None);
+        let mut slot = self.slots.remove(&self.document.work()).unwrap_or_default();
+        slot.drop(self.options.kept.as_deref(), &self.document);
+        self.unkept = None;
+    }
+
+    /// Where the work in the window is kept.
+    pub fn slot(&mut self) -> &mut Slot {
+        self.slots.entry(self.document.work()).or_default()
     }
 
     /// Keeps unsaved work, and returns whether all of it is kept. What cannot be read again takes the
@@ -311,10 +317,7 @@ impl Live {
         self.unkept = None;
         let folder = self.options.kept.as_deref();
         let is_right = self.document.plan.check().is_ok();
-        let is_kept = is_right && self.slot.keep(folder, &self.document).unwrap_or(false);
-        if is_kept {
-            self.kept = Some(self.document.plan.clone());
-        }
-        is_kept
+        let slot = self.slots.entry(self.document.work()).or_default();
+        is_right && slot.keep(folder, &self.document).unwrap_or(false)
     }
 }

@@ -23,6 +23,16 @@ fn the_timeline_shows_the_frames_of_the_film() {
         view.wait_for(&format!("frame {frame}"), |shot| *shot == wanted);
     };
     shows(0);
+    // What is flown before another moment is a step, and so is what is flown after it.
+    view.xdotool("keydown d sleep 0.4 key period sleep 0.4 keyup d");
+    view.at_rest();
+    view.key("ctrl+z");
+    view.key("ctrl+z");
+    assert!(view.at_rest() != picture(&folder, "f-01.png"));
+    view.key("ctrl+z");
+    shows(1);
+    view.key("comma");
+    shows(0);
     for _ in 0..7 {
         view.key("period");
     }
@@ -153,6 +163,16 @@ fn keys_are_dragged_and_copied_and_a_part_is_played_again() {
     assert_eq!(keys(), [0.0, 7.0]);
     view.key("ctrl+z");
     assert_eq!(keys(), [0.0, 5.0]);
+    // The chosen key is gone, and nothing is left for it. What is told is below these rows.
+    let above = |shot: &Shot| shot.rgb[..3 * 960 * 440].to_vec();
+    view.hold("d", 300);
+    view.at_rest();
+    let flown = above(&view.at_rest());
+    view.key("Delete");
+    view.at_rest();
+    view.wait_for("the view of the flight", |shot| above(shot) == flown);
+    view.key("ctrl+z");
+    assert_eq!(keys(), [0.0, 5.0]);
     // The last key is copied too, on a way that begins beyond the end.
     view.drag(1, [x(5), row], [x(10), row]);
     view.xdotool("keydown alt");
@@ -178,10 +198,11 @@ fn keys_are_dragged_and_copied_and_a_part_is_played_again() {
     view.click(x(5), row);
     view.hold("d", 300);
     // A click on the key under the playhead leaves the view of the flight.
-    let above = |shot: &Shot| shot.rgb[..3 * 960 * 490].to_vec();
+    view.at_rest();
     let flown = above(&view.at_rest());
     view.click(x(5), row);
-    assert!(above(&view.at_rest()) == flown);
+    view.at_rest();
+    view.wait_for("the view of the flight", |shot| above(shot) == flown);
     view.key("ctrl+k");
     assert!(eye() != before);
     view.key("Delete");

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::sleep;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::Result;
 use clap::{Args, ValueHint};
@@ -25,7 +25,7 @@ use crate::gpu::adapters::Choice;
 use crate::gpu::device::Device;
 use crate::plan::{Extras, Plan};
 use crate::preview::flight::orbit;
-use crate::preview::pictures::{BUSY, Pictures};
+use crate::preview::pictures::Pictures;
 
 /// So many places of the flight have a full picture.
 const EYES: usize = 10;
@@ -122,7 +122,8 @@ impl FlightRun<'_> {
             if self.pictures.is_full() || (finished && moving) {
                 return Ok(ms(began));
             }
-            sleep(BUSY);
+            // The window, which draws too, asks every millisecond.
+            sleep(Duration::from_micros(500));
         }
     }
 
