@@ -28,9 +28,8 @@ use crate::wgsl;
 /// What roundings in f32 may take from the square of a sine, and from the growth of a cone.
 const SQUARE_SLACK: f64 = 1e-6;
 const GROWTH_SLACK: f64 = 4e-7;
-/// The most windows in the search of an empty ball: it halves the levels of the pyramid, of which
-/// a map of 8192 has 14.
-const HEIGHTFIELD_SEARCHES: u32 = 6;
+/// The most windows in the search of an empty ball: the levels of the pyramid of a map of 8192.
+const HEIGHTFIELD_SEARCHES: u32 = 14;
 /// Shadow rays start off the surface by this share of a texel, or by a few roundings if these are
 /// larger.
 const HEIGHTFIELD_LIFT: f64 = 1e-3;
@@ -144,7 +143,7 @@ impl Heightfield {
     }
 
     /// The radius of a ball about a local position that is proven empty, from windows of maxima.
-    /// The search ends where the radius is at least `enough`.
+    /// The search ends where the radius is at least `enough`, or where no window has more room.
     fn empty_radius(&self, p: DVec3, enough: f64) -> f64 {
         let (surface, place) = (&self.made.surface, &self.made.placement);
         let slack = self.slack.truncate().max_element();
@@ -152,26 +151,23 @@ impl Heightfield {
         // The least level whose nodes are wider than such a ball.
         let wide = 2.0 * (enough.max(0.0) / place.texel + slack);
         let fits = u32::BITS - (wide.min(1e6) as u32).leading_zeros();
-        let mut level = fits.min(surface.maxima().coarsest());
-        // Balls in windows of the levels below `low` are proven, those from `high` on are not.
-        let (mut low, mut high) = (0, level + 1);
-        for _ in 0..HEIGHTFIELD_SEARCHES {
-            if low >= high || free >= enough {
+        let most = fits.min(surface.maxima().coarsest());
+        for level in (0..=most).rev() {
+            // The room in a window is at most as wide as one of its nodes.
+            let node = f64::from(1 << level);
+            if free >= enough.min(place.texel * node) {
                 break;
             }
             // The point is at least half a node from every side of the window.
-            let corner = p.truncate() - 0.5 * f64::from(1 << level);
-            let window = window(surface, level, corner, BVec2::FALSE);
+            let window = window(surface, level, p.truncate() - 0.5 * node, BVec2::FALSE);
             let sides = (p.truncate() - window.low).min(window.high - p.truncate());
             let room = (sides.min_element() - slack) * place.texel;
             let gap = (p.z - self.slack.z - window.maximum) * place.depth;
             free = free.max(room.min(gap));
-            if gap < room {
-                high = level;
-            } else {
-                low = level + 1;
+            // A smaller window has less room.
+            if gap >= room {
+                break;
             }
-            level = (low + high) / 2;
         }
         free.max(0.0)
     }
@@ -320,7 +316,9 @@ impl Solid for Heightfield {
     }
 
     fn clearance(&self, q: DVec3) -> f64 {
-        self.empty_radius(self.made.placement.position(self.eye + q), self.far)
+        let p = self.made.placement.position(self.eye + q);
+        // The ball cannot reach below the surface.
+        self.empty_radius(p, self.surface_gap(p))
     }
 
     /// A mean of two values: the proven radius is far too small over steep ground, and the height

@@ -137,7 +137,7 @@ fn surface_gap(p: vec3<f32>) -> f32 {
 }
 
 /// The radius of a ball about a local position that is proven empty, from windows of maxima. The
-/// search ends where the radius is at least `enough`.
+/// search ends where the radius is at least `enough`, or where no window has more room.
 fn empty_radius(p: vec3<f32>, enough: f32) -> f32 {
     let slack = max(heightfield.slack.x, heightfield.slack.y);
     var free = block_distance(p);
@@ -145,11 +145,9 @@ fn empty_radius(p: vec3<f32>, enough: f32) -> f32 {
     let wide = 2.0 * (max(enough, 0.0) / heightfield.texel + slack);
     let fits = 32u - countLeadingZeros(u32(min(wide, 1e6)));
     var level = min(fits, heightmap.levels - 1u);
-    // Balls in windows of the levels below `low` are proven, those from `high` on are not.
-    var low = 0u;
-    var high = level + 1u;
     for (var i = 0u; i < HEIGHTFIELD_SEARCHES; i++) {
-        if low >= high || free >= enough {
+        // The room in a window is at most as wide as one of its nodes.
+        if free >= min(enough, heightfield.texel * f32(1u << level)) {
             break;
         }
         count_evaluation();
@@ -160,19 +158,20 @@ fn empty_radius(p: vec3<f32>, enough: f32) -> f32 {
         let room = min(sides.x, sides.y) * heightfield.texel;
         let gap = (p.z - heightfield.slack.z - window.maximum) * heightfield.depth;
         free = max(free, min(room, gap));
-        if gap < room {
-            high = level;
-        } else {
-            low = level + 1u;
+        // A smaller window has less room.
+        if gap >= room || level == 0u {
+            break;
         }
-        level = (low + high) / 2u;
+        level--;
     }
     return max(0.0, free);
 }
 
 /// The radius of a ball about a point that is proven empty.
 fn clearance(q: vec3<f32>) -> f32 {
-    return empty_radius(heightfield.eye + to_local(q), heightfield.far);
+    let p = heightfield.eye + to_local(q);
+    // The ball cannot reach below the surface.
+    return empty_radius(p, surface_gap(p));
 }
 
 /// The free room about a point, for occlusion, exact up to `enough`. It is a mean of two values:
