@@ -130,7 +130,7 @@ fn main() -> Result<()> {
         products = [0, 1].map(|i| products[i] * ratios[i]);
         rows.push(format!(
             "{name} | {rise:.3} | {:.0} | {:.0} | {:.2} | {:.0} | {:.0} | {:.2}",
-            safe[0], rival[0], ratios[0], safe[1], rival[1], ratios[1]
+            rival[0], safe[0], ratios[0], rival[1], safe[1], ratios[1]
         ));
     }
     let [primary, all] = products.map(|p| p.powf(1.0 / PRESETS.len() as f64));
@@ -138,7 +138,7 @@ fn main() -> Result<()> {
         "geometric mean | | | | {primary:.2} | | | {all:.2}"
     ));
     let table = markdown::table(
-        "640 x 360, 16 samples, 2 bounces | squared error, rival / safe | march and trace, ms: safe | rival | rival / safe at equal error | all passes, ms: safe | rival | rival / safe at equal error",
+        "640 x 360, 16 samples, 2 bounces | squared error, rival / safe | march and trace, ms: rival | safe | rival / safe at equal error | all passes, ms: rival | safe | rival / safe at equal error",
         "lr",
         rows,
     );

@@ -252,9 +252,7 @@ impl Live {
         }
         match self.document.save(Path::new("."), plan) {
             Ok(path) => {
-                // It was kept under the name that it had.
-                let kept = self.options.kept.clone();
-                self.slot().drop(kept.as_deref(), &before);
+                self.drop_saved();
                 if before.path != self.document.path {
                     // What is offered is of the other file, and is offered again when that opens.
                     self.offered = None;

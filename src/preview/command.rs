@@ -24,6 +24,7 @@ pub fn command(name: &str, plan: &Plan, layer: Layer) -> Result<String, String> 
         loaded.map_err(|e| e.to_string())
     };
     let mut known = made(&[])?.plan;
+    let file = written(name, [&known, &now]);
     let kinds = |plan: &Plan| {
         [
             ("kind", Some(plan.scene.kind())),
@@ -68,13 +69,13 @@ pub fn command(name: &str, plan: &Plan, layer: Layer) -> Result<String, String> 
         line += &format!(" --layer {}", layer.name());
     }
     let [width, height] = now.size;
-    let file = written(name, &now);
     Ok(line + &format!(" --size {width}x{height} -o {file}"))
 }
 
-/// The file that the command writes: none that it reads.
-fn written(name: &str, plan: &Plan) -> String {
-    let files = plan.files().into_iter().map(|(_, path)| path);
+/// The file that the command writes: none that the preset or the picture reads.
+fn written(name: &str, plans: [&Plan; 2]) -> String {
+    let files = plans.into_iter().flat_map(Plan::files);
+    let files = files.map(|(_, path)| path);
     let read: Vec<PathBuf> = files.chain([name.into()]).collect();
     let is_read = |file: &String| read.iter().any(|path| path.ends_with(file));
     let mut file = String::from("picture.png");
@@ -118,14 +119,15 @@ mod tests {
             "conemarch render mandelbox --size 1280x720 -o picture.png"
         );
         let mut plan = plan;
-        let files = ["a/picture.png", "a/picture.toml"].map(|name| written(name, &plan));
+        let files = ["a/picture.png", "a/picture.toml"].map(|name| written(name, [&plan; 2]));
         assert_eq!(files, ["picture-2.png", "picture.png"]);
+        let before = plan.clone();
         let sky = toml::Value::from("a/picture.png");
         let mut keys = plan.keys("look").expect("a section");
         let key = keys.iter_mut().find(|key| key.name == "sky_file");
         key.expect("a key").slot.set(&sky).expect("a file");
         drop(keys);
-        let files = ["a/picture-2.png", "a.toml"].map(|name| written(name, &plan));
+        let files = ["a/picture-2.png", "a.toml"].map(|name| written(name, [&plan, &before]));
         assert_eq!(files, ["picture-3.png", "picture-2.png"]);
         let quotes = quoted("it's 1");
         assert_eq!(quotes, "'it'\\''s 1'");

@@ -36,7 +36,7 @@ pub struct Document {
     /// Steps in the past when the plan was saved.
     saved_at: usize,
     /// The plan before the gesture under way: a drag, or a flight.
-    before: Option<(Plan, f64)>,
+    before: Option<Step>,
 }
 
 /// A plan that was left.
@@ -76,10 +76,19 @@ impl Document {
         &self.saved
     }
 
+    fn now(&self) -> Step {
+        Step {
+            plan: self.plan.clone(),
+            beat: self.beat,
+            work: self.work,
+        }
+    }
+
     /// Begins a gesture, unless one is under way. All changes until its end are one step.
     pub fn begin(&mut self) {
-        let now = || (self.plan.clone(), self.beat);
-        self.before.get_or_insert_with(now);
+        if self.before.is_none() {
+            self.before = Some(self.now());
+        }
     }
 
     /// Ends the gesture.
@@ -88,19 +97,14 @@ impl Document {
             return;
         };
         // Only time may have gone on.
-        let mut then = before.0.clone();
-        let same_film = shows_film(&then, before.1) && pose_at(&mut then, self.beat).is_none();
-        if before.0 != self.plan && !(same_film && then == self.plan) {
+        let mut then = before.plan.clone();
+        let same_film = shows_film(&then, before.beat) && pose_at(&mut then, self.beat).is_none();
+        if before.plan != self.plan && !(same_film && then == self.plan) {
             if self.past.len() < self.saved_at {
                 // The saved plan was undone, and is out of reach now.
                 self.saved_at = usize::MAX;
             }
-            let (plan, beat) = before;
-            self.push(Step {
-                plan,
-                beat,
-                work: self.work,
-            });
+            self.push(before);
             self.future.clear();
         }
     }
@@ -135,11 +139,9 @@ impl Document {
 
     /// Takes the plan of a step, and returns the one that is left.
     fn swap(&mut self, step: Step) -> Step {
-        Step {
-            plan: std::mem::replace(&mut self.plan, step.plan),
-            beat: self.beat,
-            work: std::mem::replace(&mut self.work, step.work),
-        }
+        let left = self.now();
+        (self.plan, self.work) = (step.plan, step.work);
+        left
     }
 
     /// Goes to another moment of the film. Changes that no file has and that are not of the film are
@@ -156,11 +158,7 @@ impl Document {
             if self.saved_at > self.past.len() {
                 self.saved_at = self.saved_at.saturating_add(1);
             }
-            self.push(Step {
-                plan: self.plan.clone(),
-                beat: self.beat,
-                work: self.work,
-            });
+            self.push(self.now());
         }
         (self.plan, self.beat) = (posed, beat);
         None
@@ -178,6 +176,15 @@ impl Document {
     /// returns to the work before.
     pub fn work(&self) -> u32 {
         self.work
+    }
+
+    /// Makes all steps of some works steps of the present one.
+    pub fn join(&mut self, works: impl Fn(u32) -> bool) {
+        for step in self.past.iter_mut().chain(&mut self.future) {
+            if works(step.work) {
+                step.work = self.work;
+            }
+        }
     }
 
     fn push(&mut self, step: Step) {
@@ -338,31 +345,25 @@ mod tests {
     #[test]
     fn each_step_knows_which_work_it_is_of() {
         let mut doc = document();
-        let kept = |fog: f64| {
-            let mut plan = document().plan;
-            plan.look.fog = fog;
-            plan
+        let kept = |samples| Plan {
+            samples,
+            ..document().plan
         };
         // A restore in the middle of a gesture ends it.
         doc.begin();
         doc.change(|plan| plan.camera.fov = 50.0);
-        doc.restore(kept(1.0));
+        doc.restore(kept(2));
         doc.change(|plan| plan.camera.fov = 60.0);
-        doc.restore(kept(2.0));
-        let works = |doc: &mut Document, step: fn(&mut Document) -> Option<f64>| {
-            let mut works = vec![doc.work()];
-            while step(doc).is_some() {
-                works.push(doc.work());
-            }
-            works
-        };
-        assert_eq!(works(&mut doc, Document::undo), [2, 1, 1, 0, 0]);
-        assert_eq!(works(&mut doc, Document::redo), [0, 0, 1, 1, 2]);
+        doc.restore(kept(3));
+        type Change = fn(&mut Document) -> Option<f64>;
+        let mut works = |step: Change| [0; 5].map(|_| (doc.work(), step(&mut doc)).0);
+        assert_eq!(works(Document::undo), [2, 1, 1, 0, 0]);
+        assert_eq!(works(Document::redo), [0, 0, 1, 1, 2]);
         doc.undo();
-        doc.change(|plan| plan.camera.fov = 70.0);
-        assert_eq!(doc.work(), 1);
-        doc.restore(kept(3.0));
-        assert_eq!(doc.work(), 3);
+        doc.restore(kept(4));
+        // A work that is kept nowhere is the present one after a save.
+        doc.join(|work| work == 0);
+        assert_eq!([0; 5].map(|_| (doc.work(), doc.undo()).0), [3, 1, 1, 3, 3]);
     }
 
     #[test]

@@ -51,6 +51,8 @@ impl Live {
     /// Changes keys, and shows the moment again if that made a step. A view that is not of the film
     /// stays otherwise.
     pub fn change_keys(&mut self, change: impl FnOnce(&mut Plan)) {
+        // What is flown so far is a step.
+        self.document.end();
         let before = self.document.plan.clone();
         self.document.change(change);
         if self.document.plan != before {

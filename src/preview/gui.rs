@@ -179,7 +179,12 @@ impl Live {
     }
 
     fn answer(&mut self, asked: Requests) {
-        self.panel_drag = asked.panel.dragging || asked.timeline.dragging;
+        let dragging = asked.panel.dragging || asked.timeline.dragging;
+        if dragging && !self.panel_drag {
+            // What is flown so far is a step of its own.
+            self.document.end();
+        }
+        self.panel_drag = dragging;
         self.panel_typing = asked.panel.typing;
         if let Some(name) = asked.open {
             self.open(name);

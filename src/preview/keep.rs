@@ -44,9 +44,19 @@ fn path(folder: &Path, document: &Document, slot: u32) -> PathBuf {
 /// no other one takes its work for that of a crash.
 #[derive(Debug, Default)]
 pub struct Slot {
-    place: Option<(u32, Lock)>,
+    held: Option<Held>,
     /// What is kept there, if this window has written it.
     kept: Option<Plan>,
+}
+
+/// A file of a slot. It stays the same when its document is saved to another place.
+#[derive(Debug)]
+struct Held {
+    file: PathBuf,
+    /// The place of the document.
+    of: String,
+    #[expect(dead_code, reason = "its end unlocks it")]
+    lock: Lock,
 }
 
 /// A file that is locked as long as this lives.
@@ -57,11 +67,6 @@ struct Lock(
 );
 
 impl Lock {
-    /// Locks a slot, unless another window has it.
-    fn take(folder: &Path, document: &Document, slot: u32) -> Option<Self> {
-        Self::beside(&path(folder, document, slot))
-    }
-
     /// Locks the slot of a file.
     fn beside(path: &Path) -> Option<Self> {
         let path = path.with_extension("lock");
@@ -77,14 +82,24 @@ impl Drop for Lock {
     }
 }
 
+impl Held {
+    /// Locks a slot, unless another window has it.
+    fn take(folder: &Path, document: &Document, slot: u32) -> Option<Self> {
+        let file = path(folder, document, slot);
+        Some(Self {
+            lock: Lock::beside(&file)?,
+            of: document.place.clone(),
+            file,
+        })
+    }
+}
+
 impl Slot {
     /// That of work of an earlier session; `None` if another window has taken it.
     pub fn of(folder: Option<&Path>, document: &Document, slot: u32) -> Option<Self> {
-        let folder = folder?;
-        let lock = Lock::take(folder, document, slot)?;
-        let is_there = path(folder, document, slot).exists();
-        is_there.then(|| Self {
-            place: Some((slot, lock)),
+        let held = Held::take(folder?, document, slot)?;
+        held.file.exists().then_some(Self {
+            held: Some(held),
             kept: None,
         })
     }
@@ -110,23 +125,23 @@ impl Slot {
         let plan = with_still(&document.plan, document.saved(), document.beat);
         // Work that nobody has taken yet is not written over.
         let mut free = (0..SLOTS).filter(|slot| !path(folder, document, *slot).exists());
-        if self.place.is_none() {
-            self.place = free.find_map(|slot| Some((slot, Lock::take(folder, document, slot)?)));
+        if self.held.is_none() {
+            self.held = free.find_map(|slot| Held::take(folder, document, slot));
         }
-        let Some((slot, _)) = self.place else {
+        let Some(held) = &self.held else {
             return Ok(false);
         };
-        let text = format!("{TITLE}{}\n{}", document.place, preset::write(&plan));
-        write(&path(folder, document, slot), text.as_bytes())?;
+        let text = format!("{TITLE}{}\n{}", held.of, preset::write(&plan));
+        write(&held.file, text.as_bytes())?;
         self.kept = Some(document.plan.clone());
         Ok(true)
     }
 
     /// Forgets what was kept.
-    pub fn drop(&mut self, folder: Option<&Path>, document: &Document) {
+    pub fn drop(&mut self) {
         self.kept = None;
-        if let (Some(folder), Some((slot, _))) = (folder, self.place.take()) {
-            let _ = fs::remove_file(path(folder, document, slot));
+        if let Some(held) = self.held.take() {
+            let _ = fs::remove_file(held.file);
         }
     }
 }
@@ -139,7 +154,7 @@ pub fn find(folder: Option<&Path>, document: &Document) -> Option<(u32, Plan)> {
     let slots = (0..SLOTS).filter_map(|slot| Some((written(slot).ok()?, slot)));
     let mut slots: Vec<_> = slots.collect();
     slots.sort();
-    let unlocked = |slot: &u32| Lock::take(folder, document, *slot).is_some();
+    let unlocked = |slot: &u32| Held::take(folder, document, *slot).is_some();
     let mut slots = slots.into_iter().rev().map(|(_, slot)| slot);
     slots.find_map(|slot| {
         let plan = read(folder, document, slot)?;
@@ -234,13 +249,9 @@ mod tests {
         assert_eq!(find(at, &document), Some((1, newer.clone())));
         crash(&mut one);
         assert_eq!(find(at, &document), Some((1, newer)));
-        Slot::of(at, &document, 1)
-            .expect("free")
-            .drop(at, &document);
+        Slot::of(at, &document, 1).expect("free").drop();
         assert_eq!(find(at, &document), Some((0, older)));
-        Slot::of(at, &document, 0)
-            .expect("free")
-            .drop(at, &document);
+        Slot::of(at, &document, 0).expect("free").drop();
         assert_eq!(find(at, &document), None);
         assert_eq!(find(None, &document), None);
         assert!(!two.keep(None, &document).expect("no error"), "nowhere");
@@ -255,5 +266,12 @@ mod tests {
         let text = elsewhere(at, &other).expect("there is work");
         assert!(text.contains(&file.display().to_string()), "{text}");
         assert_eq!(elsewhere(at, &document), None);
+        // Saved to another place, the work is kept in its file and dropped from there.
+        let mut slot = Slot::of(at, &document, 0).expect("free");
+        document.place = "another".into();
+        slot.keep(at, &document).expect("kept");
+        assert!(file.exists() && !path(folder.path(), &document, 0).exists());
+        slot.drop();
+        assert!(!file.exists());
     }
 }

@@ -228,11 +228,7 @@ impl Live {
         let kept = self.slot().kept().cloned();
         let is_kept = kept.as_ref() == Some(&self.document.plan);
         if !self.document.is_changed() {
-            self.unkept = None;
-            // All of it was undone.
-            if kept.is_some() {
-                self.drop_kept();
-            }
+            self.keep_now();
         } else if is_kept {
             self.unkept = None;
         } else if self.unkept.get_or_insert_with(Instant::now).elapsed() > KEEP
@@ -282,7 +278,7 @@ impl Live {
             }
             self.keep_now();
         } else {
-            slot.drop(kept.as_deref(), &self.document);
+            slot.drop();
         }
         if !restore && !self.document.is_changed() {
             // There may be older work.
@@ -298,9 +294,20 @@ impl Live {
     }
 
     fn drop_kept(&mut self) {
-        let mut slot = self.slots.remove(&self.document.work()).unwrap_or_default();
-        slot.drop(self.options.kept.as_deref(), &self.document);
+        self.slot().drop();
         self.unkept = None;
+    }
+
+    /// Forgets what was kept of work that is saved now. What this window keeps nothing of is the same
+    /// work from now on.
+    pub fn drop_saved(&mut self) {
+        self.drop_kept();
+        let kept = |work| {
+            self.slots
+                .get(&work)
+                .is_some_and(|slot| slot.kept().is_some())
+        };
+        self.document.join(|work| !kept(work));
     }
 
     /// Where the work in the window is kept.
@@ -311,10 +318,14 @@ impl Live {
     /// Keeps unsaved work, and returns whether all of it is kept. What cannot be read again takes the
     /// place of nothing.
     pub fn keep_now(&mut self) -> bool {
+        self.unkept = None;
         if !self.document.is_changed() {
+            // All of it was undone.
+            if self.slot().kept().is_some() {
+                self.drop_kept();
+            }
             return true;
         }
-        self.unkept = None;
         let folder = self.options.kept.as_deref();
         let is_right = self.document.plan.check().is_ok();
         let slot = self.slots.entry(self.document.work()).or_default();
