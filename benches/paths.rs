@@ -38,12 +38,12 @@ const FURNACE: [(&str, &[&str], &[u32]); 3] = [
     (
         "mandelbox",
         &["look.trap=point", "image.reference=2160"],
-        &[16],
+        &[2, 4, 8, 16],
     ),
     (
         "mandelbox-gate",
         &["look.trap=point", "image.reference=2160"],
-        &[16],
+        &[2, 4, 8, 16],
     ),
 ];
 /// Scenes whose noise is measured, at so many samples.
