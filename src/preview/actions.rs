@@ -241,11 +241,12 @@ impl Live {
             self.tell(text, true);
             return;
         }
-        let before = self.document.clone();
-        let plan = with_still(&before.plan, before.saved(), before.beat);
+        let (name, was_at) = (self.document.name.clone(), self.document.path.clone());
+        let Document { plan, beat, .. } = &self.document;
+        let plan = with_still(plan, self.document.saved(), *beat);
         // A file that cannot be opened again would be no preset.
         let checked = plan.check().map_err(|f| format!("{}: {}", f.key, f.why));
-        let read = || preset::read(&preset::write(&plan), &before.name);
+        let read = || preset::read(&preset::write(&plan), &name);
         if let Err(why) = checked.and_then(|()| read().map_err(|e| e.to_string())) {
             self.tell(format!("not saved: {why}"), true);
             return;
@@ -253,7 +254,7 @@ impl Live {
         match self.document.save(Path::new("."), plan) {
             Ok(path) => {
                 self.drop_saved();
-                if before.path != self.document.path {
+                if was_at != self.document.path {
                     // What is offered is of the other file, and is offered again when that opens.
                     self.offered = None;
                 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crate::base::key::Fault;
 use crate::gpu::RenderError;
 use crate::gpu::device::DeviceError;
+use crate::plan::Plan;
 use crate::preset;
 use crate::preview::document::Document;
 use crate::preview::error::PreviewError;
@@ -225,8 +226,7 @@ impl Live {
 
     /// Keeps unsaved work now and then, so that it survives a crash.
     pub fn keep_work(&mut self) {
-        let kept = self.slot().kept().cloned();
-        let is_kept = kept.as_ref() == Some(&self.document.plan);
+        let is_kept = self.kept(self.document.work()) == Some(&self.document.plan);
         if !self.document.is_changed() {
             self.keep_now();
         } else if is_kept {
@@ -294,7 +294,9 @@ impl Live {
     }
 
     fn drop_kept(&mut self) {
-        self.slot().drop();
+        if let Some(mut slot) = self.slots.remove(&self.document.work()) {
+            slot.drop();
+        }
         self.unkept = None;
     }
 
@@ -302,17 +304,13 @@ impl Live {
     /// work from now on.
     pub fn drop_saved(&mut self) {
         self.drop_kept();
-        let kept = |work| {
-            self.slots
-                .get(&work)
-                .is_some_and(|slot| slot.kept().is_some())
-        };
+        let kept = |work| self.slots.get(&work).and_then(Slot::kept).is_some();
         self.document.join(|work| !kept(work));
     }
 
-    /// Where the work in the window is kept.
-    pub fn slot(&mut self) -> &mut Slot {
-        self.slots.entry(self.document.work()).or_default()
+    /// What this window has kept of a work.
+    fn kept(&self, work: u32) -> Option<&Plan> {
+        self.slots.get(&work).and_then(Slot::kept)
     }
 
     /// Keeps unsaved work, and returns whether all of it is kept. What cannot be read again takes the
@@ -321,7 +319,7 @@ impl Live {
         self.unkept = None;
         if !self.document.is_changed() {
             // All of it was undone.
-            if self.slot().kept().is_some() {
+            if self.kept(self.document.work()).is_some() {
                 self.drop_kept();
             }
             return true;

@@ -153,7 +153,7 @@ impl Heightfield {
         let fits = u32::BITS - (wide.min(1e6) as u32).leading_zeros();
         let most = fits.min(surface.maxima().coarsest());
         for level in (0..=most).rev() {
-            // The room in a window is at most as wide as one of its nodes.
+            // Within the map, the room in a window is at most as wide as one of its nodes.
             let node = f64::from(1 << level);
             if free >= enough.min(place.texel * node) {
                 break;

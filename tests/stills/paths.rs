@@ -125,13 +125,7 @@ fn both_executors_find_the_same_light() {
         }
         let [gpu, cpu] = both(&plan);
         let pairs = gpu.radiance.iter().zip(&cpu.radiance);
-        // Of so many channels one may be three errors off by chance.
-        for (weights, most) in [
-            ([1.0; 3], 3.0),
-            ([1.0, 0.0, 0.0], 4.0),
-            ([0.0, 1.0, 0.0], 4.0),
-            ([0.0, 0.0, 1.0], 4.0),
-        ] {
+        for weights in [[1.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
             let off = pairs
                 .clone()
                 .map(|(a, b)| (0..3).map(|c| weights[c] * f64::from(a[c] - b[c])).sum());
@@ -144,11 +138,14 @@ fn both_executors_find_the_same_light() {
             // In f32 all pixels of a relief may be off to one side, by a part of their last bit.
             let rounding = 1e-7;
             assert!(
-                mean.abs() <= most * error + rounding,
+                mean.abs() <= 3.0 * error + rounding,
                 "{name}: {mean} {error}"
             );
             // Most paths are the same on both.
-            let same = off.iter().filter(|x| x.abs() < 0.02).count() as f64;
+            let same = off
+                .iter()
+                .filter(|x| x.abs() < 0.007 * weights.iter().sum::<f64>())
+                .count() as f64;
             assert!(same > 0.7 * n, "{name}: {same} of {n}");
         }
     }

@@ -31,6 +31,13 @@ fn with_layer(command: &mut Command, folder: &Path) {
         .env("LOSE", folder);
 }
 
+/// A window whose device can be lost.
+fn open<'a>(desktop: &'a Desktop, folder: &Folder, line: &str) -> Preview<'a> {
+    let mut command = Preview::command(desktop, &folder.0, line);
+    with_layer(&mut command, &folder.0);
+    Preview::start(desktop, command)
+}
+
 /// Loses the device at the next submission.
 fn lose(folder: &Folder, what: &str) {
     folder.write(what, "");
@@ -55,9 +62,7 @@ fn a_lost_device_is_opened_again_and_nothing_is_lost() {
     let film = FILM.replace("length = 2\n", "length = 60\n");
     let film = film.replace("size = [320, 180]", "size = [1280, 720]");
     folder.write("film.toml", film);
-    let mut command = Preview::command(&desktop, &folder.0, &format!("film.toml {SIZE}"));
-    with_layer(&mut command, &folder.0);
-    let view = Preview::start(&desktop, command);
+    let view = open(&desktop, &folder, &format!("film.toml {SIZE}"));
     view.key("Tab");
     view.key("t");
     let lose = |what: &str| lose(&folder, what);
@@ -108,9 +113,7 @@ fn a_hidden_window_notices_a_lost_device() {
     // The still takes long enough to hide the window in the middle.
     let film = FILM.replace("size = [320, 180]", "size = [1280, 720]\nsamples = 64");
     folder.write("film.toml", film);
-    let mut command = Preview::command(&desktop, &folder.0, &format!("film.toml {SIZE}"));
-    with_layer(&mut command, &folder.0);
-    let view = Preview::start(&desktop, command);
+    let view = open(&desktop, &folder, &format!("film.toml {SIZE}"));
     view.key("F12");
     view.hide(true);
     sleep(Duration::from_millis(500));
@@ -123,9 +126,7 @@ fn a_hidden_window_notices_a_lost_device() {
 #[test]
 fn a_lost_device_and_a_question_are_answered_over_settings_that_do_not_fit() {
     let (desktop, folder) = (Desktop::new(), Folder::new());
-    let mut command = Preview::command(&desktop, &folder.0, "mandelbox --size 960x540");
-    with_layer(&mut command, &folder.0);
-    let view = Preview::start(&desktop, command);
+    let view = open(&desktop, &folder, "mandelbox --size 960x540");
     view.key("Tab");
     let first = view.at_rest();
     view.key("Tab");

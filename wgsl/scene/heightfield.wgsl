@@ -146,7 +146,7 @@ fn empty_radius(p: vec3<f32>, enough: f32) -> f32 {
     let fits = 32u - countLeadingZeros(u32(min(wide, 1e6)));
     var level = min(fits, heightmap.levels - 1u);
     for (var i = 0u; i < HEIGHTFIELD_SEARCHES; i++) {
-        // The room in a window is at most as wide as one of its nodes.
+        // Within the map, the room in a window is at most as wide as one of its nodes.
         if free >= min(enough, heightfield.texel * f32(1u << level)) {
             break;
         }
