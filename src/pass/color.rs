@@ -12,6 +12,7 @@ use crate::pass::look::Light;
 use crate::pass::quick::Spot;
 use crate::pass::turn::{background, until};
 use crate::pass::{fog, glow, layers, path, quick, shafts};
+use crate::plan::look::LightMode;
 use crate::plan::{Extras, Plan};
 use crate::scene::{AnySolid, Hit, Solid, Surface};
 use crate::wgsl;
@@ -84,12 +85,12 @@ pub fn colors<S: Solid>(
         surface,
     };
     let spots: Vec<Spot> = surfaces.zip(&met).map(spot).collect();
-    let lit = match &light.substance {
-        None => quick::shade(solid, light, &spots),
-        Some(of) => {
+    let lit = match light.look.mode {
+        LightMode::Quick => quick::shade(solid, light, &spots),
+        LightMode::Path => {
             let one = |(spot, sight): (&Spot, &&Sight)| {
                 let sample = (sight.pixel, before);
-                path::shade((solid, light, of), sample, &spot.ray, spot.t, &spot.surface)
+                path::shade((solid, light), sample, &spot.ray, spot.t, &spot.surface)
             };
             spots.iter().zip(&met).map(one).collect()
         }
@@ -127,7 +128,7 @@ fn finish<S: Solid>(
     let mut radiance = lit + glow::glow(solid, light, ray, t);
     decided &= clear || *state == State::Sky;
     // One of many paths says little of its pixel.
-    let dark = light.substance.is_none() && !decided;
+    let dark = light.look.mode == LightMode::Quick && !decided;
     if light.look.flag_unconverged && (*state == State::Unconverged || dark) {
         radiance = DVec3::new(1.0, 0.0, 1.0);
     }

@@ -97,13 +97,10 @@ pub fn modules(look: &Look) -> Vec<Module> {
         |f: &&LookFeature| f.mode() != Some(LightMode::Quick) || look.mode == LightMode::Quick;
     let features = LookFeature::ALL.iter().filter(is_called);
     let mut all: Vec<Module> = features.map(|f| f.module(f.is_on(look))).collect();
+    all.push(wgsl!("pass/material.wgsl"));
     match look.mode {
         LightMode::Quick => all.push(wgsl!("pass/quick.wgsl")),
-        LightMode::Path => all.extend([
-            wgsl!("base/random.wgsl"),
-            wgsl!("pass/material.wgsl"),
-            wgsl!("pass/path.wgsl"),
-        ]),
+        LightMode::Path => all.extend([wgsl!("base/random.wgsl"), wgsl!("pass/path.wgsl")]),
     }
     all
 }

@@ -94,7 +94,7 @@ pub struct LookUniform {
 pub struct LookParameters {
     /// The look.
     pub look: LookUniform,
-    /// What surfaces are made of; zeros where light is found by formulas.
+    /// What surfaces are made of.
     pub material: MaterialUniform,
     /// The lamps, and zeros after the last one.
     pub lamps: [LampUniform; MOST_LAMPS],
@@ -122,8 +122,8 @@ pub struct Light {
     pub world_up: DVec3,
     /// The lamps that shine, at most [`MOST_LAMPS`].
     pub lamps: Vec<LampSource>,
-    /// What surfaces are made of, if light is followed from one to another.
-    pub substance: Option<Substance>,
+    /// What surfaces are made of.
+    pub substance: Substance,
     /// Scale heights of the fog per unit of length; 0 for fog of one density.
     pub fog_rise: f64,
     /// How many of them the eye is above the fog's level.
@@ -188,7 +188,7 @@ impl Light {
             },
             world_up,
             lamps: LampSource::all(plan),
-            substance: (look.mode == LightMode::Path).then(|| Substance::of(&look)),
+            substance: Substance::of(&look),
             fog_rise,
             fog_start: fog_rise * above,
             glow: Glow::of(plan, PATH_ROUNDS / (solid.twin().rounds() + 1)),
@@ -254,14 +254,13 @@ impl Light {
 
     /// The values of the WGSL parameters.
     pub fn parameters(&self) -> LookParameters {
-        let material = self.substance.as_ref().map(Substance::uniform);
         let mut lamps = [LampUniform::zeroed(); MOST_LAMPS];
         for (to, lamp) in lamps.iter_mut().zip(&self.lamps) {
             *to = lamp.uniform();
         }
         LookParameters {
             look: self.uniform(),
-            material: material.unwrap_or(Zeroable::zeroed()),
+            material: self.substance.uniform(),
             lamps,
             glow: self.glow.uniform(),
             shafts: ShaftsUniform {

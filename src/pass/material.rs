@@ -6,6 +6,7 @@
 //! Vectors are in the frame of the surface, whose normal is z. Twin: `wgsl/pass/material.wgsl`.
 
 use std::f64::consts::PI;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec2, DVec3, Vec4};
@@ -45,8 +46,11 @@ pub struct Substance {
     pub specular: f64,
     /// The share of light that mirrors without absorption reflect, without and with the factor
     /// `(1 - v.h)^5`, for each direction.
-    shares: Vec<DVec2>,
+    shares: Arc<[DVec2]>,
 }
+
+/// The latest table of shares and its `alpha`: plans that follow one another mostly have the same.
+static LATEST: Mutex<Option<(f64, Arc<[DVec2]>)>> = Mutex::new(None);
 
 /// A point of a surface seen from a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +63,11 @@ pub struct Material {
     grazing: DVec3,
     /// The share of the next rays that mirrors choose.
     chosen: f64,
+}
+
+/// A direction to the eye in the frame of a surface. A normal of a rough surface may face away.
+pub fn material_view(v: DVec3) -> DVec3 {
+    v.truncate().extend(v.z.max(1e-3)).normalize()
 }
 
 /// The unit vector at an angle, in turns.
@@ -84,36 +93,31 @@ fn material_coat(specular: DVec3, all: f64) -> [DVec3; 2] {
     [specular * again, grazing * again]
 }
 
-impl Substance {
-    /// The substance of a look.
-    pub fn of(look: &Look) -> Self {
-        let alpha = look.roughness * look.roughness;
-        let bare = Self {
-            alpha,
-            metal: look.metal,
-            // The usual 4 % for the default.
-            specular: (0.5 * look.gloss).min(1.0),
-            shares: Vec::new(),
-        };
-        let share = |i: usize| {
-            let x = i as f64 / (DIRECTIONS - 1) as f64;
-            bare.share_of_light((x * x).max(1e-5))
-        };
-        Self {
-            shares: (0..DIRECTIONS).map(share).collect(),
-            ..bare
-        }
-    }
+/// The normal of a mirror that is seen from `v` (Dupuy and Benyoub, Sampling visible GGX normals
+/// with spherical caps, 2023).
+fn material_mirror(alpha: f64, v: DVec3, pair: DVec2) -> DVec3 {
+    let s = stretched(v, alpha);
+    let z = (1.0 - pair.y) * (1.0 + s.z) - s.z;
+    let cap = (1.0 - z * z).clamp(0.0, 1.0).sqrt() * material_turn(pair.x);
+    stretched(cap.extend(z) + s, alpha)
+}
 
-    /// The share of light that mirrors without absorption reflect towards a direction.
-    fn share_of_light(&self, z: f64) -> DVec2 {
-        let (v, aa) = (
-            DVec3::new((1.0 - z * z).sqrt(), 0.0, z),
-            self.alpha * self.alpha,
-        );
+/// The share of light that mirrors without absorption reflect towards directions: the table of
+/// [`Substance`].
+fn shares_of(alpha: f64) -> Arc<[DVec2]> {
+    let mut latest = LATEST.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, shares)) = latest.as_ref().filter(|(of, _)| *of == alpha) {
+        return Arc::clone(shares);
+    }
+    let pairs: Vec<DVec2> = (0..MIRRORS).map(|i| random_pair(0, i, 0)).collect();
+    let aa = alpha * alpha;
+    let share = |i: usize| {
+        let x = i as f64 / (DIRECTIONS - 1) as f64;
+        let z = (x * x).max(1e-5);
+        let v = DVec3::new((1.0 - z * z).sqrt(), 0.0, z);
         let mut sum = DVec2::ZERO;
-        for i in 0..MIRRORS {
-            let h = self.material_mirror(v, random_pair(0, i, 0));
+        for pair in &pairs {
+            let h = material_mirror(alpha, v, *pair);
             let l = 2.0 * v.dot(h) * h - v;
             if l.z > 0.0 {
                 let (sv, sl) = (smith(v.z, aa), smith(l.z, aa));
@@ -123,6 +127,23 @@ impl Substance {
             }
         }
         sum / f64::from(MIRRORS)
+    };
+    let shares: Arc<[DVec2]> = (0..DIRECTIONS).map(share).collect();
+    *latest = Some((alpha, Arc::clone(&shares)));
+    shares
+}
+
+impl Substance {
+    /// The substance of a look.
+    pub fn of(look: &Look) -> Self {
+        let alpha = look.roughness * look.roughness;
+        Self {
+            alpha,
+            metal: look.metal,
+            // The usual 4 % for the default.
+            specular: (0.5 * look.gloss).min(1.0),
+            shares: shares_of(alpha),
+        }
     }
 
     /// The values of the WGSL struct.
@@ -141,11 +162,15 @@ impl Substance {
         }
     }
 
-    /// The point of a surface of an albedo, seen from a direction.
-    pub fn material_at(&self, albedo: DVec3, v: DVec3) -> Material {
+    fn share(&self, v: DVec3) -> DVec2 {
         let at = v.z.clamp(0.0, 1.0).sqrt() * (DIRECTIONS - 1) as f64;
         let i = (at as usize).min(DIRECTIONS - 2);
-        let share = self.shares[i].lerp(self.shares[i + 1], at - i as f64);
+        self.shares[i].lerp(self.shares[i + 1], at - i as f64)
+    }
+
+    /// The point of a surface of an albedo, seen from a direction.
+    pub fn material_at(&self, albedo: DVec3, v: DVec3) -> Material {
+        let share = self.share(v);
         let all = share.x + share.y;
         let paint = material_coat(DVec3::splat(self.specular), all);
         let bare = material_coat(albedo, all);
@@ -160,6 +185,12 @@ impl Substance {
             grazing,
             chosen: of_coat / (of_coat + of_base).max(1e-20),
         }
+    }
+
+    /// The share of light from all sides that the coat sends towards `v`.
+    pub fn material_mirrors(&self, material: &Material, v: DVec3) -> DVec3 {
+        let share = self.share(v);
+        material.mirror * share.x + material.grazing * share.y
     }
 
     /// The share of light from a direction that leaves towards `v`, times the cosine: the
@@ -184,15 +215,6 @@ impl Substance {
         (material.base * diffuse + coat, all)
     }
 
-    /// The normal of a mirror that is seen from `v` (Dupuy and Benyoub, Sampling visible GGX normals
-    /// with spherical caps, 2023).
-    fn material_mirror(&self, v: DVec3, pair: DVec2) -> DVec3 {
-        let s = stretched(v, self.alpha);
-        let z = (1.0 - pair.y) * (1.0 + s.z) - s.z;
-        let cap = (1.0 - z * z).clamp(0.0, 1.0).sqrt() * material_turn(pair.x);
-        stretched(cap.extend(z) + s, self.alpha)
-    }
-
     /// A direction in which light may come that leaves towards `v`, and below 0 along z for none.
     /// `pair` and `choice` are from 0 to 1.
     pub fn material_scatter(
@@ -203,7 +225,7 @@ impl Substance {
         choice: f64,
     ) -> DVec3 {
         if choice < material.chosen {
-            let h = self.material_mirror(v, pair);
+            let h = material_mirror(self.alpha, v, pair);
             return 2.0 * v.dot(h) * h - v;
         }
         (pair.y.sqrt() * material_turn(pair.x)).extend((1.0 - pair.y).sqrt())

@@ -13,7 +13,7 @@ use crate::pass::color::albedo_of;
 use crate::pass::emission::emission;
 use crate::pass::lamp::{Lamp, lamp_from, lamp_light};
 use crate::pass::look::Light;
-use crate::pass::material::{Substance, material_frame, material_turn};
+use crate::pass::material::{material_frame, material_turn, material_view};
 use crate::scene::{Hit, Solid, Step, Surface};
 
 /// Bounces after which a path may end by chance.
@@ -63,13 +63,13 @@ pub(super) fn path_sight<S: Solid>(
 /// Radiance that leaves a surface towards the eye, by one path, and whether all its rays reached
 /// their ends.
 pub fn shade<S: Solid>(
-    (solid, light, substance): (&S, &Light, &Substance),
+    (solid, light): (&S, &Light),
     (pixel, before): ([u32; 2], u32),
     ray: &Beam,
     t: f64,
     surface: &Surface,
 ) -> (DVec3, bool) {
-    let look = &light.look;
+    let (look, substance) = (&light.look, &light.substance);
     let seed = random_seed(pixel);
     // Half a pixel's width, also for later hits.
     let grain = footprint(ray, t);
@@ -85,9 +85,7 @@ pub fn shade<S: Solid>(
     let (mut decided, mut left) = (true, light.path_steps);
     for bounce in 0..=look.bounces {
         let frame = material_frame(at.normal);
-        let local = frame.transpose() * -axis;
-        // A normal of a rough surface may face away.
-        let v = local.truncate().extend(local.z.max(1e-3)).normalize();
+        let v = material_view(frame.transpose() * -axis);
         let albedo = albedo_of(solid, light, &at, point).min(DVec3::ONE);
         let material = substance.material_at(albedo, v);
         let to = |axis| Beam {

@@ -1,13 +1,16 @@
-//! Light by formulas: key light with a soft shadow, and light from the sky and from the ground with
-//! occlusion. Twin: `wgsl/pass/quick.wgsl`.
+//! Light by formulas: the sun and lamps with soft shadows, and light from the sky and from the
+//! ground with occlusion. Twin: `wgsl/pass/quick.wgsl`.
 
-use glam::DVec3;
+use std::f64::consts::PI;
+
+use glam::{DMat3, DVec3};
 
 use crate::base::view::{Beam, footprint};
 use crate::pass::color::albedo_of;
 use crate::pass::emission::emission;
 use crate::pass::lamp::{Lamp, lamp_from, lamp_light};
 use crate::pass::look::{Light, Place};
+use crate::pass::material::{Material, material_frame, material_view};
 use crate::pass::occlusion::occlusions;
 use crate::pass::shadow::{self, Shadow};
 use crate::scene::{Solid, Surface};
@@ -33,6 +36,40 @@ impl Spot {
     }
 }
 
+/// The material of a surface as the eye sees it.
+struct Skin {
+    /// From the frame of the surface to the world.
+    frame: DMat3,
+    /// To the eye, in that frame.
+    v: DVec3,
+    material: Material,
+}
+
+impl Skin {
+    fn of<S: Solid>(solid: &S, light: &Light, spot: &Spot, place: &Place) -> Self {
+        let frame = material_frame(place.normal);
+        let v = material_view(frame.transpose() * -spot.ray.axis);
+        let albedo = albedo_of(solid, light, &spot.surface, place.q).min(DVec3::ONE);
+        Self {
+            frame,
+            v,
+            material: light.substance.material_at(albedo, v),
+        }
+    }
+
+    /// The radiance towards the eye by a light whose white wall has radiance 1.
+    fn reflects(&self, light: &Light, toward: DVec3) -> DVec3 {
+        let l = self.frame.transpose() * toward;
+        if l.z <= 0.0 {
+            return DVec3::ZERO;
+        }
+        PI * light
+            .substance
+            .material_reflects(&self.material, self.v, l)
+            .0
+    }
+}
+
 /// Radiance that leaves surfaces towards the eye, and whether the shadow rays reached their ends.
 pub fn shade<S: Solid>(solid: &S, light: &Light, spots: &[Spot]) -> Vec<(DVec3, bool)> {
     let look = &light.look;
@@ -44,33 +81,37 @@ pub fn shade<S: Solid>(solid: &S, light: &Light, spots: &[Spot]) -> Vec<(DVec3, 
         (facing(place) > 0.0).then_some(sun)
     });
     let opens = occlusions(solid, light, &places);
-    let albedo = |(spot, place): (&Spot, &Place)| albedo_of(solid, light, &spot.surface, place.q);
-    let albedos: Vec<DVec3> = spots.iter().zip(&places).map(albedo).collect();
+    let skins: Vec<Skin> = spots
+        .iter()
+        .zip(&places)
+        .map(|(spot, place)| Skin::of(solid, light, spot, place))
+        .collect();
     let unlit = |i: usize| {
-        let (n, open, albedo) = (places[i].normal, opens[i], albedos[i]);
-        let lit = facing(&places[i]).max(0.0) * keys[i].open;
+        let (n, open, skin) = (places[i].normal, opens[i], &skins[i]);
         let up = 0.5 + 0.5 * n.dot(light.world_up);
-        let ambient = light.sky_ambient(n);
         // Light from lit neighbours: warm, from below.
         let bounce = look.light_color * (0.12 * look.fill * (1.0 - up));
-        let half_way = (look.light - spots[i].ray.axis).normalize_or_zero();
-        let shine = n.dot(half_way).max(0.0).powi(40);
-        let c = albedo * (look.light_color * (look.key * lit) + (ambient + bounce) * open)
-            + look.light_color * (look.gloss * lit * shine);
+        let axis = spots[i].ray.axis;
+        let mirrored = light.sky_ambient(axis - 2.0 * axis.dot(n) * n);
+        let coated = open.powi(4) * (2.0 * skin.v.z).min(1.0);
+        let c = skin.reflects(light, look.light) * (look.key * keys[i].open) * look.light_color
+            + skin.material.base * (light.sky_ambient(n) + bounce) * open
+            + light.substance.material_mirrors(&skin.material, skin.v) * mirrored * coated;
         (c, keys[i].decided)
     };
     let mut all: Vec<(DVec3, bool)> = (0..spots.len()).map(unlit).collect();
     for nth in 0..light.lamps.len() {
         let lit = |place: &Place| {
             let lamp = lamp_from(light, nth, place.q);
-            let (to_lamp, strength) = (place.normal.dot(lamp.axis), lamp_light(light, nth, &lamp));
-            (to_lamp > 0.0 && strength != DVec3::ZERO).then_some((lamp, to_lamp, strength))
+            let strength = lamp_light(light, nth, &lamp);
+            let lit = place.normal.dot(lamp.axis) > 0.0 && strength != DVec3::ZERO;
+            lit.then_some((lamp, strength))
         };
         let lit: Vec<_> = places.iter().map(lit).collect();
         let near = shadows_of((solid, light), &places, |i, _| Some(lit[i]?.0));
         for (i, (c, decided)) in all.iter_mut().enumerate() {
-            if let Some((_, to_lamp, strength)) = lit[i] {
-                *c += albedos[i] * (to_lamp * near[i].open) * strength;
+            if let Some((lamp, strength)) = lit[i] {
+                *c += skins[i].reflects(light, lamp.axis) * (near[i].open * strength);
                 *decided &= near[i].decided;
             }
         }

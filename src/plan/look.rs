@@ -84,8 +84,8 @@ settings! {
         light_color: DVec3 = DVec3::new(1.0, 0.90, 0.76), triple(0.0, 1.0), "colour of the light, sRGB";
         mode: LightMode = LightMode::Quick, word(&LightMode::WORDS), "how light is found: quick by formulas, path by rays from surface to surface, whose noise goes away with many samples" => Program;
         bounces: u32 = 2, count(0, 16), "in mode path, how often light goes from surface to surface before the last one; 0 for light of the sun and the sky alone, which near surfaces stop within occlusion_reach";
-        roughness: f64 = 0.45, number(0.05, 1.0), "in mode path, roughness of the surface: 0.05 is a polished one, 1 a dull one";
-        metal: f64 = 0.0, number(0.0, 1.0), "in mode path, 1 for metal, whose reflections have the colour of the surface, and 0 for paint";
+        roughness: f64 = 0.45, number(0.05, 1.0), "roughness of the surface: 0.05 is a polished one, 1 a dull one";
+        metal: f64 = 0.0, number(0.0, 1.0), "1 for metal, whose reflections have the colour of the surface, and 0 for paint";
         key: f64 = 1.7, number(0.0, 100.0), "strength of the light";
         fill: f64 = 1.6, number(0.0, 100.0), "strength of the light from the sky";
         lamp: f64 = 0.0, number(0.0, 1e6), "strength of a lamp in the scene, 0 for none: a white wall that faces it at the distance from eye to target has this radiance, and at a tenth of it a hundred times more" => Program;
@@ -119,7 +119,7 @@ settings! {
         glow_width: f64 = 0.02, number(0.005, 1.0),
             "distance from the surface at which the glow of the air has fallen to 1/e, as a share of the distance from eye to target";
         glow_color: DVec3 = DVec3::new(0.30, 0.55, 1.0), triple(0.0, 1.0), "colour of the glow of the air, sRGB";
-        gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights, 0 for none; in mode path 0.08 is that of most materials but metal, 2 that of a mirror";
+        gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights, 0 for none, 0.08 for most materials but metal, 2 for a mirror";
         sky_high: DVec3 = DVec3::new(0.30, 0.42, 0.58), triple(0.0, 1.0), "colour of the sky overhead, sRGB";
         sky_low: DVec3 = DVec3::new(0.80, 0.77, 0.73), triple(0.0, 1.0), "colour of the sky below, sRGB";
         palette: Vec<DVec3> = vec![

@@ -38,6 +38,11 @@ fn material_coat(specular: vec3<f32>, all: f32) -> mat2x3<f32> {
     return mat2x3<f32>(specular * again, grazing * again);
 }
 
+/// A direction to the eye in the frame of a surface. A normal of a rough surface may face away.
+fn material_view(v: vec3<f32>) -> vec3<f32> {
+    return normalize(vec3<f32>(v.xy, max(v.z, 1e-3)));
+}
+
 fn material_at(albedo: vec3<f32>, v: vec3<f32>) -> Material {
     let metal = look_parameters.material.metal;
     let share = material_share(v.z);
@@ -50,6 +55,12 @@ fn material_at(albedo: vec3<f32>, v: vec3<f32>) -> Material {
     let weights = vec2<f32>(dot(coat, vec3<f32>(1.0)), dot(base, vec3<f32>(1.0)));
     let chosen = weights.x / max(weights.x + weights.y, 1e-20);
     return Material(base, mirror, grazing, chosen);
+}
+
+/// The share of light from all sides that the coat sends towards `v`.
+fn material_mirrors(material: Material, v: vec3<f32>) -> vec3<f32> {
+    let share = material_share(v.z);
+    return material.mirror * share.x + material.grazing * share.y;
 }
 
 /// The share of light from a direction that leaves towards `v`, times the cosine: the reflectance

@@ -71,9 +71,7 @@ fn shade(ray: Beam, q: vec3<f32>, seen: Surroundings, grain: f32, pixel: vec2<u3
     var left = look.path_steps;
     for (var bounce = 0u; bounce <= look.bounces; bounce++) {
         let frame = material_frame(at.normal);
-        var v = -axis * frame;
-        // A normal of a rough surface may face away.
-        v = normalize(vec3<f32>(v.xy, max(v.z, 1e-3)));
+        let v = material_view(-axis * frame);
         let material = material_at(min(albedo_of(at, point), vec3<f32>(1.0)), v);
         let start = point + lift * at.normal;
         // The rays of a surface begin with the same step. The CPU repeats it: the bits are the same.
