@@ -53,6 +53,22 @@ fn proven_balls_are_empty_in_f32() {
     }
 }
 
+#[test]
+fn proven_balls_are_empty_in_f32_in_julia_mode_and_with_a_rotation() {
+    for mut m in [2, 6, 7, 8].map(|i| settings().swap_remove(i)) {
+        m.julia_constant = m.fold_limit * DVec3::new(0.7, -0.4, 1.1);
+        m.julia = true;
+        let worst = search(&m, 12_500, 1);
+        assert!(worst.ratio < 1.0, "{m:?}: {worst:?}");
+        assert!(worst.ratio > 0.5, "{m:?}: {worst:?}");
+        m.julia = false;
+        m.rotation = DVec3::new(12.0, -8.0, 25.0);
+        let worst = search(&m, 12_500, 1);
+        assert!(worst.ratio < 1.0, "{m:?}: {worst:?}");
+        assert!(worst.ratio > 0.1, "{m:?}: {worst:?}");
+    }
+}
+
 /// Those boxes have these bounds in the table of docs/method.md, 3.
 #[test]
 fn steps_in_f32_are_too_long_by_as_much_as_is_said() {

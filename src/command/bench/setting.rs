@@ -1,5 +1,5 @@
 //! The settings that `bench error` measures: every mode without changes, and sweeps that
-//! change one key of `[march]` at a time.
+//! change one key of `[march]` or `[scene]` at a time.
 
 use serde_json::{Map, json};
 use toml::Value;
@@ -7,7 +7,7 @@ use toml::Value;
 use crate::plan::Plan;
 use crate::plan::march::Mode;
 
-/// A mode, and perhaps a key of `[march]` that is changed.
+/// A mode, and perhaps a key of `[march]` or `[scene]` that is changed.
 #[derive(Clone, Debug)]
 pub struct Setting {
     /// The mode.
@@ -44,8 +44,10 @@ impl Setting {
         plan.march.mode = self.mode;
         if let Some((name, value)) = &self.change {
             let mut keys = plan.march.keys();
+            keys.extend(plan.scene.keys());
             let key = keys.iter_mut().find(|k| k.name == *name)?;
             key.slot.set(value).ok()?;
+            drop(keys);
         }
         plan.check().is_ok().then_some(plan)
     }
@@ -71,7 +73,7 @@ pub fn baselines() -> Vec<Setting> {
 /// One key changed at a time.
 pub fn sweeps() -> Vec<Setting> {
     const FUDGES: [&[f64]; 4] = [&[0.9], &[0.8], &[0.6], &[1.0, 1.0, 0.8, 0.6]];
-    let swept: [(Mode, &'static str, Vec<Value>); 7] = [
+    let swept: [(Mode, &'static str, Vec<Value>); 8] = [
         (Mode::Safe, "coarsest", values([32, 8, 4, 2])),
         (Mode::Safe, "shell", values([0.0, 0.15, 0.3, 0.6, 0.8])),
         (
@@ -80,6 +82,7 @@ pub fn sweeps() -> Vec<Setting> {
             vec!["off".into(), 1.2.into(), 1.5.into()],
         ),
         (Mode::Safe, "steps", values([16, 64, 1024])),
+        (Mode::Safe, "lipschitz", values([1.1, 1.25, 1.45])),
         (
             Mode::Calibrated,
             "fudge",
