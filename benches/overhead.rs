@@ -46,6 +46,17 @@ const SMALL_RUNS: usize = 15;
 const TODAY: [&str; 2] = ["march.coarsest=auto", "march.shell=auto"];
 /// The factor on the steps to the set.
 const STRIDE: f64 = 0.1;
+/// The old build's strongest way without cones, in views of Mandelboxes.
+const RIVAL: [&str; 2] = ["march.mode=ray-relaxed", "march.clip=on"];
+const RIVAL_SIZE: [u32; 2] = [1920, 1080];
+const VIEWS: [&str; 6] = [
+    "bench-far",
+    "bench-graze",
+    "bench-inside",
+    "bench-outside",
+    "bench-thin",
+    "mandelbox-gate",
+];
 /// Presets whose second frame is looked at.
 const LIVE: [&str; 3] = ["mandelbox", "mandelbox-gate", "terrain"];
 /// Its sizes: kernels take little at the first, and rays tell whether cones pay at the others.
@@ -61,9 +72,14 @@ fn main() -> Result<()> {
     }
     ensure!(args.len() >= 2, "give the old and the new program");
     let presets = old_presets(&args[0])?;
+    if args.iter().any(|a| a == RIVALS) {
+        println!("{}", rivals(&args, presets.path())?);
+        return Ok(());
+    }
     let text = [
         small(&args, presets.path())?,
         large(&args, presets.path())?,
+        rivals(&args, presets.path())?,
         processes(&args, presets.path())?,
         frames()?,
         cancels_of_first_starts()?,
@@ -192,7 +208,8 @@ fn large(args: &[String], presets: &Path) -> Result<String> {
         // Heightfields have no estimate.
         let has_formula = std::fs::read_to_string(&file)?.contains("formula");
         let same = scalar.get(..if has_formula { 2 } else { 0 });
-        let detail = has_formula.then(|| detail_before(&file)).transpose()?;
+        let before = || detail_before(&file, [640, 360], &[]);
+        let detail = has_formula.then(before).transpose()?;
         let detail = detail.map(|d| format!("march.detail={d:.3}"));
         let as_sharp = detail.as_ref().map(|d| ["--set", d]);
         let runs = [
@@ -261,15 +278,54 @@ fn means<const N: usize>(rows: &[[f64; N]]) -> [f64; N] {
     })
 }
 
-/// The `detail` with which the old estimate shows as sharp a picture of a preset as today's.
-fn detail_before(file: &Path) -> Result<f64> {
+/// March and trace of the old build's rival, with pictures as sharp as those of today's default.
+fn rivals(args: &[String], presets: &Path) -> Result<String> {
+    let (mut rows, mut ratios) = (Vec::new(), Vec::new());
+    let [w, h] = RIVAL_SIZE;
+    let size = format!("{w}x{h}");
+    let today = TODAY.map(|setting| ["--set", setting]).concat();
+    for name in VIEWS {
+        let file = presets.join(name).with_extension("toml");
+        let detail = detail_before(&file, RIVAL_SIZE, &RIVAL)?;
+        let sharp = format!("march.detail={detail:.3}");
+        let rival = [RIVAL[0], RIVAL[1], &sharp].map(|setting| ["--set", setting]);
+        let runs = [(&args[0], &rival.concat()), (&args[1], &today)];
+        let mut all = [vec![], vec![]];
+        for _ in 0..RUNS {
+            for (times, (program, settings)) in all.iter_mut().zip(runs) {
+                times.push(run(program, &file, &size, settings)?.device);
+            }
+        }
+        let [old, new] = all.map(median);
+        rows.push(format!(
+            "{name} | {detail:.3} | {old:.0} | {new:.0} | {:.2}",
+            old / new
+        ));
+        if name.starts_with("bench-") {
+            ratios.push([old / new]);
+        }
+    }
+    let [mean] = means(&ratios);
+    rows.push(format!("mean of `bench-*` | | | | {mean:.2}"));
+    let head = format!(
+        "march and trace on the device, {w} x {h} | detail before | rival before, ms | `safe` now, ms | ratio"
+    );
+    Ok(markdown::table(&head, "lr", rows))
+}
+
+/// The `detail` with which the old estimate, with other settings, shows as sharp a picture of a preset
+/// as today's default.
+fn detail_before(file: &Path, size: [u32; 2], others: &[&str]) -> Result<f64> {
     let load = |settings: &[&str]| -> Result<Plan> {
         let settings: Result<Vec<_>, _> = settings.iter().map(|s| Override::read(s)).collect();
         let mut plan = preset::load(file, &settings?)?.plan.one_sample();
-        plan.size = [640, 360];
+        plan.size = size;
         Ok(plan)
     };
-    let (now, before) = (load(&TODAY)?, load(&["scene.estimate=scalar"])?);
+    let (now, before) = (
+        load(&TODAY)?,
+        load(&[&["scene.estimate=scalar"], others].concat())?,
+    );
     let (mut executor, _) = Executor::open(&Choice::Auto)?;
     let assets = Assets::default();
     let extras = Extras {
@@ -371,6 +427,8 @@ const CANCEL_AFTER: Duration = Duration::from_millis(5);
 const CANCELLED_WITHIN: Duration = Duration::from_millis(4000);
 /// The argument that asks for the table of cancelled renders alone.
 const CANCELS: &str = "--cancels";
+/// The argument that asks for the table of rivals alone.
+const RIVALS: &str = "--rivals";
 
 /// The table of cancelled renders from a process in which Mesa keeps no compiled program, so that each
 /// render is that of a first start.
