@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::{Mutex, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
@@ -326,16 +326,31 @@ fn detail_before(file: &Path, size: [u32; 2], others: &[&str]) -> Result<f64> {
         load(&TODAY)?,
         load(&[&["scene.estimate=scalar"], others].concat())?,
     );
-    let (mut executor, _) = Executor::open(&Choice::Auto)?;
+    let [mut executor, mut old] = [
+        Executor::open(&Choice::Auto)?.0,
+        Executor::open(&Choice::Auto)?.0,
+    ];
+    if let Executor::Gpu(renderer) = &mut old {
+        renderer.sources = Some(Arc::new(old_hits));
+    }
     let assets = Assets::default();
     let extras = Extras {
         depth_only: true,
         ..Extras::default()
     };
-    let mut render = |plan: &Plan| Ok(executor.render(plan, &assets, extras, &mut |_| true)?);
     let set = sharpness::sample(&now, &assets, STRIDE)?;
-    let seen = sharpness(&render(&now)?, &set, &now);
+    let frame = executor.render(&now, &assets, extras, &mut |_| true)?;
+    let seen = sharpness(&frame, &set, &now);
+    let render = |plan: &Plan| Ok(old.render(plan, &assets, extras, &mut |_| true)?);
     as_sharp(&before, &set, seen.before_set.median, render)
+}
+
+/// The shaders with hits where the old build has them: at the first point within the threshold.
+fn old_hits(path: &str) -> Option<String> {
+    let text = include_str!("../wgsl/scene/distance.wgsl");
+    let met = "if above > 0.0 {";
+    assert!(text.contains(met));
+    (path == "wgsl/scene/distance.wgsl").then(|| text.replace(met, "if false {"))
 }
 
 /// From nothing to a file: whole processes.

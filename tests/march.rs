@@ -27,6 +27,7 @@ use common::plans::{camera, compared, preset, sized};
 use common::solved::{balls, cameras, rays, slab, solids, solved};
 use conemarch::base::outcome::Counts;
 use conemarch::base::projection::Projection;
+use conemarch::base::view::footprint;
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::render::{Cutting, Renderer};
@@ -411,6 +412,42 @@ fn passes_do_not_know_what_they_march() {
             // Only pixels whose ray touches the rim within a rounding.
             assert!(differ <= 2, "{differ} pixels differ");
         }
+    }
+}
+
+/// Rays after cones and rays alone take other steps, and find the place where the field meets the
+/// threshold.
+#[test]
+fn a_hit_depends_little_on_the_steps_of_its_ray() {
+    for name in ["mandelbox-gate", "mandelbox-canyon", "mandelbox-julia"] {
+        let ways = [
+            [
+                "image.size=[320, 180]",
+                "march.coarsest=16",
+                "march.shell=0.2",
+            ],
+            [
+                "image.size=[320, 180]",
+                "march.coarsest=1",
+                "march.shell=0.05",
+            ],
+        ];
+        let plans = ways.map(|way| preset(name, &way));
+        let [cones, alone] = plans.each_ref().map(|plan| render(plan, DEPTHS));
+        let detail = plans[0].march.detail;
+        let view = plans[0].view();
+        let mut apart = Vec::new();
+        for (i, (a, b)) in cones.depth.iter().zip(&alone.depth).enumerate() {
+            if cones.state[i] == HIT && alone.state[i] == HIT {
+                let pixel = [i as u32 % 320, i as u32 / 320];
+                let width = footprint(&view.view_ray(pixel), f64::from(*a));
+                apart.push(f64::from((a - b).abs()) / (detail * width));
+            }
+        }
+        apart.sort_by(f64::total_cmp);
+        let median = apart[apart.len() / 2];
+        println!("{name}: {median:.3} thresholds");
+        assert!(median < 0.05, "{name}: {median}");
     }
 }
 

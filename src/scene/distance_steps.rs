@@ -61,6 +61,8 @@ pub(super) struct Ahead {
     pub(super) q: DVec3,
     /// The hit threshold there.
     pub(super) eps: f64,
+    /// The hit threshold at the last point.
+    pub(super) last_eps: f64,
     /// By how much the step keeps clear.
     pub(super) clear: f64,
     /// The ball that is tried.
@@ -143,6 +145,7 @@ impl Distance {
             t,
             q: ray.at(t),
             eps,
+            last_eps: self.threshold(ray, w.t),
             clear: self.stepping.shell * eps,
             trial: DISTANCE_TRIAL * w.radius + 2.0 * eps,
         })
@@ -166,6 +169,12 @@ impl Distance {
         }
         walk.t = t;
         if value <= eps {
+            // Where the field meets the threshold, by its last two values. So a hit depends little on
+            // where the ray's points are.
+            let above = w.room - ahead.last_eps;
+            if above > 0.0 {
+                walk.t = w.t + gone * (above / (above + (eps - value)));
+            }
             return Step::Hit;
         }
         let factor = match self.stepping.relaxation {

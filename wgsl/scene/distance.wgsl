@@ -241,6 +241,12 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     }
     (*walk).t = t;
     if f.x <= eps {
+        // Where the field meets the threshold, by its last two values. So a hit depends little on
+        // where the ray's points are.
+        let above = w.room - distance_scene.detail * footprint(ray, w.t);
+        if above > 0.0 {
+            (*walk).t = w.t + gone * (above / (above + (eps - f.x)));
+        }
         return STATE_HIT;
     }
     var slope = w.slope;
