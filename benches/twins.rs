@@ -58,7 +58,13 @@ fn main() -> Result<()> {
             plan.march.coarsest = Some(coarsest);
             cells.push(format!("{:.4}", looks(&on_gpu(&plan)?, &on_cpu(&plan)?)));
         }
-        cells.push(format!("{:.4}", looks(&on_gpu(&quick)?, &on_cpu(&quick)?)));
+        for samples in [1, 16] {
+            let plan = Plan {
+                samples,
+                ..quick.clone()
+            };
+            cells.push(format!("{:.4}", looks(&on_gpu(&plan)?, &on_cpu(&plan)?)));
+        }
         let mut paths = own;
         (paths.size, paths.samples, paths.until) = (PATHS.0, PATHS.1, 0.0);
         (paths.look.mode, paths.march.coarsest) = (LightMode::Path, Some(1));
@@ -68,7 +74,7 @@ fn main() -> Result<()> {
         rows.push(cells.join(" | "));
     }
     let table = markdown::table(
-        "preset | FLIP, rays alone | with cones | as chosen | paths, standard errors of the means | of the difference: red | green | blue",
+        "preset | FLIP, rays alone | with cones | as chosen | as chosen, 16 samples | paths, standard errors of the means | of the difference: red | green | blue",
         "lr",
         rows,
     );

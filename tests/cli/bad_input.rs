@@ -39,7 +39,7 @@ const OPTIONS: &str = r#"
 --set camera.fow=40 ; 2 ; unknown key|`fov`
 --set cam.fov=40 ; 2 ; unknown section `cam`
 --set camera.fov ; 2 ; no `=`|camera.fov=30
---set camera.eye=[0,0,0] ; 2 ; --set camera.eye=[0,0,0]|same point
+--set camera.eye=[4.16,-1.4,3.84] ; 2 ; --set camera.eye=[4.16,-1.4,3.84]|same point
 --set scene.formula=mandelbx ; 2 ; perhaps "mandelbox"
 --size=0x5 ; 2 ; --size|like 1280x720
 --size=5x0 ; 2 ; --size|like 1280x720

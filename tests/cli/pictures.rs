@@ -89,7 +89,7 @@ fn files_tell_their_title_and_density() {
     rendered(&folder, "mandelbox", &format!("{set} -o a.exr"));
     let own = exr_layer(&folder.0.join("a.exr")).attributes;
     assert_eq!(own.horizontal_density, Some(300.0));
-    assert!(own.comments.unwrap() == *"Mandelbox, scale 2");
+    assert!(own.comments.unwrap() == *"Mandelbox, scale 2, pale stone from below");
     rendered(&folder, "mandelbox", &format!("{set} -o a.webp"));
     for name in ["a.jpg", "a.webp"] {
         let mut bytes = Cursor::new(folder.bytes(name));
@@ -100,7 +100,7 @@ fn files_tell_their_title_and_density() {
                 .display_value()
         };
         let title = value(exif::Tag::ImageDescription).to_string();
-        assert_eq!(title, "\"Mandelbox, scale 2\"", "{name}");
+        assert_eq!(title, "\"Mandelbox, scale 2, pale stone from below\"", "{name}");
         let program = value(exif::Tag::Software).to_string();
         assert!(program.starts_with("\"conemarch "), "{name}: {program}");
         assert_eq!(value(exif::Tag::XResolution).to_string(), "300", "{name}");
@@ -221,9 +221,9 @@ fn an_exr_has_exactly_the_promised_channels() {
     assert!(state.contains(&1.0) && state.contains(&0.0));
     // Both are the same on the axis, and the planar one is shorter beside it: by the ray's
     // angle to the view, which positions tell too.
-    let forward = [-10.0_f32, 17.0, -12.0].map(|x| x / 533.0_f32.sqrt());
+    let forward = [-3.84_f32, 9.6, 11.84].map(|x| x / 247.0912_f32.sqrt());
     let position = ["X", "Y", "Z"].map(|x| of(&format!("position.{x}")));
-    let eye = [10.0, -17.0, 12.0];
+    let eye = [8.0, -11.0, -8.0];
     let mut shorter = 0;
     for i in (0..state.len()).filter(|i| state[*i] == 1.0) {
         let along: f32 = (0..3).map(|a| (position[a][i] - eye[a]) * forward[a]).sum();
@@ -257,7 +257,7 @@ fn an_exr_tells_where_it_comes_from_and_is_the_same_every_time() {
         .map(|(name, value)| (name.to_string(), value.into_text().unwrap().to_string()))
         .collect();
     let text = |name: &str| &texts.iter().find(|(n, _)| n == name).expect(name).1;
-    assert!(text("conemarch camera").starts_with("eye = [10.0, -17.0, 12.0]\ntarget = "));
+    assert!(text("conemarch camera").starts_with("eye = [8.0, -11.0, -8.0]\ntarget = "));
     folder.write("again.toml", text("conemarch preset"));
     rendered(&folder, "again.toml", "-o c.exr");
     let again = bytes == folder.bytes("c.exr");

@@ -11,7 +11,7 @@ use crate::pictures::{exr_layer, values};
 /// Eyes half a unit beside the middle, exactly; light at the eye, which must stay there; alpha,
 /// variance and counts, so that there is every layer.
 const SCENE: &str = "--device cpu --samples 2 --stats s.json --set camera.eye=[0,-16,0] \
-    --set look.lamp=2 --set image.background=transparent --set look.shadow=false";
+    --set camera.target=[0,0,0] --set camera.fov=40 --set look.lamp=2 --set image.background=transparent --set look.shadow=false";
 const PAIR: &str = "--size 24x14 --set camera.eyes=0.0625 --set camera.stereo";
 
 /// The command of one eye as a picture of its own.
