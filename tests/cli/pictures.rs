@@ -100,7 +100,10 @@ fn files_tell_their_title_and_density() {
                 .display_value()
         };
         let title = value(exif::Tag::ImageDescription).to_string();
-        assert_eq!(title, "\"Mandelbox, scale 2, pale stone from below\"", "{name}");
+        assert_eq!(
+            title, "\"Mandelbox, scale 2, pale stone from below\"",
+            "{name}"
+        );
         let program = value(exif::Tag::Software).to_string();
         assert!(program.starts_with("\"conemarch "), "{name}: {program}");
         assert_eq!(value(exif::Tag::XResolution).to_string(), "300", "{name}");
