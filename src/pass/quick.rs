@@ -63,10 +63,8 @@ impl Skin {
         if l.z <= 0.0 {
             return DVec3::ZERO;
         }
-        PI * light
-            .substance
-            .material_reflects(&self.material, self.v, l)
-            .0
+        let (share, _) = light.substance.material_reflects(&self.material, self.v, l);
+        PI * share
     }
 }
 

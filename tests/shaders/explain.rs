@@ -192,7 +192,7 @@ fn the_rule_of_the_slides_takes_the_place_of_the_exact_one() {
 fn the_mandelbox_is_explained() {
     insta::assert_snapshot!(explained("mandelbox", &[]), @r"
     1280 x 720, mode safe
-    mandelbox: 14 iterations, lipschitz 1
+    mandelbox: 15 iterations, lipschitz 1
     passes
       march 1/16       80 x 45     steps 256
       march 1/8       160 x 90     steps 256
@@ -254,6 +254,8 @@ fn the_mandelbox_is_explained() {
         wgsl/pass/sky.wgsl
         wgsl/pass/shadow.wgsl
         wgsl/pass/occlusion.wgsl
+        wgsl/pass/fog.wgsl
+        wgsl/pass/material.wgsl
         wgsl/pass/quick.wgsl
         wgsl/pass/color.wgsl  COLOR_KEEPS_NORMALS=0  COLOR_KEEPS_VARIANCE=0  COLOR_IS_PIGMENT=0
     ");

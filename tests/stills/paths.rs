@@ -160,10 +160,16 @@ fn paths_are_the_same_in_blocks_and_slices() {
 /// Who looks at the quick light while they work gets about the same picture.
 #[test]
 fn quick_light_is_about_as_bright() {
-    for name in ["mandelbox", "mandelbox-canyon", "terrain", "stones"] {
+    let views = [
+        "mandelbox",
+        "mandelbox-canyon",
+        "mandelbox-gold",
+        "mandelbox-shell",
+        "terrain",
+        "stones",
+    ];
+    for name in views {
         let mut plan = followed(sized(name, [48, 27]), 32);
-        // The quick light has no mirror image of the sky.
-        plan.look.gloss = 0.0;
         let path = mean(&render(&plan, Extras::default()));
         plan.look.mode = LightMode::Quick;
         let quick = mean(&on_cpu(&plan, Extras::default()));
