@@ -35,6 +35,13 @@ const FORMULAS: [&str; 6] = [
 ];
 /// Presets of heights.
 const FIELDS: [&str; 4] = ["bricks", "spikes", "stones", "terrain"];
+/// More presets whose rays to the sun are counted.
+const SUNNY: [&str; 4] = [
+    "mandelbox",
+    "mandelbox-canyon",
+    "mandelbox-hall",
+    "mandelbox-towers",
+];
 /// One group in so many along each axis is counted.
 const EVERY: u32 = 5;
 /// Pixels of a group.
@@ -107,7 +114,9 @@ impl Task for Follow<'_> {
         groups
             .map(|group| {
                 let [x, y] = [0, 1].map(|axis| group[axis] * GROUP[axis] * EVERY);
-                let pixels = (0..GROUP[0] * GROUP[1]).map(|i| [x + i % GROUP[0], y + i / GROUP[0]]);
+                // Groups of 4 x 2 within it, one after the other.
+                let pixels =
+                    (0..32).map(|i| [x + i / 8 % 2 * 4 + i % 4, y + i / 16 * 2 + i % 8 / 4]);
                 pixels.map(follow).collect()
             })
             .collect()
@@ -132,17 +141,13 @@ fn walk<S: Solid>(
     (step, walk)
 }
 
-/// Cost per pixel: in the mean, and if the pixels of a group wait for the longest.
-fn cost(groups: &[Vec<Counts>], of: fn(&Counts) -> u32) -> [f64; 2] {
-    let pixels = groups.iter().flatten().count() as f64;
-    let mean = groups
-        .iter()
-        .flatten()
-        .map(|c| f64::from(of(c)))
-        .sum::<f64>()
-        / pixels;
-    let most = groups.iter().filter_map(|group| group.iter().map(of).max());
-    [mean, most.map(f64::from).sum::<f64>() / groups.len() as f64]
+/// Cost per pixel if the pixels of each group of `width` wait for the longest.
+fn cost(groups: &[Vec<Counts>], width: usize, of: fn(&Counts) -> u32) -> f64 {
+    let most = groups.iter().flat_map(|group| group.chunks(width));
+    let most: Vec<f64> = most
+        .filter_map(|lanes| lanes.iter().map(of).max().map(f64::from))
+        .collect();
+    most.iter().sum::<f64>() / most.len() as f64
 }
 
 fn counted(
@@ -166,12 +171,12 @@ fn counted(
     }))
 }
 
-fn row(name: &str, alone: [f64; 2], ideal: [f64; 2]) -> String {
-    let [a, b] = [0, 1].map(|i| alone[i] / ideal[i]);
-    format!(
-        "{name} | {:.1} | {:.1} | {b:.2} | {:.1} | {:.1} | {a:.2}",
-        alone[1], ideal[1], alone[0], ideal[0]
-    )
+fn row(name: &str, rays: &[Vec<Counts>], ideal: &[Vec<Counts>], of: fn(&Counts) -> u32) -> String {
+    let part = |width| {
+        let [rays, ideal] = [rays, ideal].map(|groups| cost(groups, width, of));
+        format!("{rays:.1} | {ideal:.1} | {:.2}", rays / ideal)
+    };
+    format!("{name} | {} | {}", part(32), part(1))
 }
 
 fn main() -> Result<()> {
@@ -182,8 +187,7 @@ fn main() -> Result<()> {
         let rival = ["march.mode=ray-relaxed", "march.clip=on"];
         let rival = counted(name, size, &rival, [false; 2])?;
         let ideal = counted(name, size, &[], [true, false])?;
-        let iterations = |groups: &[Vec<Counts>]| cost(groups, |c| c.iterations);
-        rows.push(row(name, iterations(&rival), iterations(&ideal)));
+        rows.push(row(name, &rival, &ideal, |c| c.iterations));
     }
     let formulas = markdown::table(
         "iterations per pixel, 1920 x 1080 | rival, in groups | ideal cones, in groups | ratio | rival, alone | ideal cones, alone | ratio",
@@ -196,8 +200,7 @@ fn main() -> Result<()> {
         let size = [1280, 720];
         let rival = counted(name, size, &[], [false; 2])?;
         let ideal = counted(name, size, &[], [true, false])?;
-        let steps = |groups: &[Vec<Counts>]| cost(groups, |c| c.evaluations);
-        rows.push(row(name, steps(&rival), steps(&ideal)));
+        rows.push(row(name, &rival, &ideal, |c| c.evaluations));
     }
     let fields = markdown::table(
         "steps per pixel, 1280 x 720 | rays, in groups | ideal cones, in groups | ratio | rays, alone | ideal cones, alone | ratio",
@@ -205,17 +208,19 @@ fn main() -> Result<()> {
         rows,
     );
     let mut rows = Vec::new();
-    for name in FORMULAS.into_iter().chain(FIELDS) {
+    for name in FORMULAS.into_iter().chain(SUNNY).chain(FIELDS) {
         eprintln!("{name}, to the sun");
         let groups = counted(name, [1280, 720], &[], [false, true])?;
-        let [alone, waiting] = cost(&groups, |c| c.iterations.max(c.evaluations));
+        let of = |c: &Counts| c.iterations.max(c.evaluations);
+        let [wide, narrow, alone] = [32, 8, 1].map(|width| cost(&groups, width, of));
         rows.push(format!(
-            "{name} | {waiting:.1} | {alone:.1} | {:.2}",
-            waiting / alone
+            "{name} | {wide:.1} | {narrow:.1} | {alone:.1} | {:.2} | {:.2}",
+            wide / alone,
+            narrow / alone
         ));
     }
     let sun = markdown::table(
-        "rays to the sun per pixel, 1280 x 720 | in groups | alone | ratio",
+        "rays to the sun per pixel, 1280 x 720 | in groups of 32 | in groups of 8 | alone | 32 / alone | 8 / alone",
         "lr",
         rows,
     );
