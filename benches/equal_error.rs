@@ -2,11 +2,15 @@
 //! `cargo bench --bench equal_error`. With `-- --write` it writes its table into
 //! docs/benchmarks.md. It takes ten minutes or more on two cores.
 //!
-//! The *rival* is mode `ray-relaxed` with `clip` on, as in `rival.rs`. Errors are those of a small
+//! The *rival* is mode `ray-relaxed` with `clip` on, as in `rival.rs`, and each of its rays of light makes
+//! its first step by itself. Errors are those of a small
 //! picture against one of `safe` with many samples, which begin with those of the tested pictures.
 //! Times are medians of warm runs in turns. The error falls with the number of samples, so a time is
 //! multiplied by the error that remains.
 
+use std::sync::Arc;
+
+use alone::alone;
 use anyhow::{Context, Result};
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
@@ -18,6 +22,8 @@ use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 use publish::publish;
 
+#[path = "common/alone.rs"]
+mod alone;
 #[path = "common/markdown.rs"]
 mod markdown;
 #[path = "common/publish.rs"]
@@ -43,12 +49,19 @@ const TIMED: ([u32; 2], u32) = ([640, 360], 16);
 const RUNS: usize = 3;
 
 struct Bench {
-    renderer: Renderer,
+    /// Those of `safe` and of the rival.
+    renderers: [Renderer; 2],
     assets: Assets,
 }
 
 impl Bench {
-    fn render(&mut self, plan: &Plan, size: [u32; 2], samples: u32, unread: bool) -> Result<Frame> {
+    fn render(
+        &mut self,
+        (plan, nth): (&Plan, usize),
+        size: [u32; 2],
+        samples: u32,
+        unread: bool,
+    ) -> Result<Frame> {
         let mut plan = plan.clone();
         (plan.size, plan.samples) = (size, samples);
         let extras = Extras {
@@ -57,15 +70,15 @@ impl Bench {
             ..Extras::default()
         };
         let watch = &mut |_: &_| true;
-        Ok(self.renderer.render(&plan, &self.assets, extras, watch)?)
+        Ok(self.renderers[nth].render(&plan, &self.assets, extras, watch)?)
     }
 
     /// The mean squared errors of both plans.
     fn errors(&mut self, plans: &[Plan; 2]) -> Result<[f64; 2]> {
-        let truth = self.render(&plans[0], SMALL, REFERENCE, false)?;
+        let truth = self.render((&plans[0], 0), SMALL, REFERENCE, false)?;
         let mut errors = [0.0; 2];
-        for (plan, error) in plans.iter().zip(&mut errors) {
-            let frame = self.render(plan, SMALL, TESTED, false)?;
+        for (nth, error) in errors.iter_mut().enumerate() {
+            let frame = self.render((&plans[nth], nth), SMALL, TESTED, false)?;
             let channels = frame.radiance.iter().zip(&truth.radiance);
             let squares = channels.flat_map(|(a, b)| [0, 1, 2].map(|i| f64::from(a[i] - b[i])));
             *error = squares.map(|off| off * off).sum::<f64>() / frame.radiance.len() as f64;
@@ -77,8 +90,8 @@ impl Bench {
     fn times(&mut self, plans: &[Plan; 2]) -> Result<[[f64; 2]; 2]> {
         let mut times = [[Vec::new(), Vec::new()], [Vec::new(), Vec::new()]];
         for run in 0..=RUNS {
-            for (plan, times) in plans.iter().zip(&mut times) {
-                let frame = self.render(plan, TIMED.0, TIMED.1, true)?;
+            for (nth, times) in times.iter_mut().enumerate() {
+                let frame = self.render((&plans[nth], nth), TIMED.0, TIMED.1, true)?;
                 // The first run compiles.
                 if run > 0 {
                     let of = |some: fn(&Pass) -> bool| {
@@ -104,8 +117,11 @@ fn main() -> Result<()> {
     let (adapter, _) = adapters
         .choose(&Choice::Auto)?
         .context("there is no adapter")?;
+    let open = || Ok::<_, anyhow::Error>(Renderer::new(Device::open(adapter)?));
+    let mut renderers = [open()?, open()?];
+    renderers[1].sources = Some(Arc::new(alone));
     let mut bench = Bench {
-        renderer: Renderer::new(Device::open(adapter)?),
+        renderers,
         assets: Assets::default(),
     };
     let mut measured = Vec::new();

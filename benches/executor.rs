@@ -91,9 +91,11 @@ fn table(old: &str, new: &str) -> Result<String> {
         }
         .push(ratios);
     }
+    let all = [&formulas[..], &maps].concat();
     for (name, all) in [
         ("mean of formulas", formulas),
         ("mean of heightfields", maps),
+        ("mean of all", all),
     ] {
         let mean = |of: usize, at: usize| {
             let logs: f64 = all

@@ -1,4 +1,6 @@
-//! Every preset on a hardware GPU: `cargo bench --bench hardware [-- [--write] [--size WxH] [PRESET...]]`.
+//! Every preset on a hardware GPU:
+//! `cargo bench --bench hardware [-- [--software] [--write] [--size WxH] [PRESET...]]`. With `--software`
+//! it has a table of its own, at a smaller size.
 //!
 //! The rival (mode `ray-relaxed` with `clip` on), the method that the program chooses and `safe` with
 //! cones render in turns, forwards and backwards. The times are the device's own, medians of warm runs, with one sample per
@@ -21,14 +23,17 @@ mod markdown;
 mod publish;
 
 const SIZE: [u32; 2] = [1920, 1080];
-/// Warm runs that a median is taken of. A GPU takes some runs to reach its clock.
-const RUNS: usize = 31;
-const WARM: usize = 10;
+const SOFTWARE_SIZE: [u32; 2] = [1280, 720];
+/// Warm runs that a median is taken of, and runs before. A GPU takes some runs to reach its clock.
+const RUNS: [usize; 2] = [31, 10];
+const SOFTWARE_RUNS: [usize; 2] = [5, 1];
 /// What is compared, and the changes of the preset.
-const PLANS: [&[&str]; 3] = [
+const PLANS: [&[&str]; 4] = [
     &["march.mode=ray-relaxed", "march.clip=on"],
     &[],
     &["march.coarsest=16"],
+    // In software only.
+    &["march.mode=proven"],
 ];
 
 /// The method that the program chooses.
@@ -38,7 +43,9 @@ const CHOSEN: usize = 1;
 struct Row {
     name: String,
     /// March and trace of each plan.
-    marched: [f64; 3],
+    marched: Vec<f64>,
+    /// Levels of cones of the chosen method.
+    levels: usize,
     /// Colour, and a whole frame on the clock, of the chosen method.
     colored: f64,
     frame: f64,
@@ -59,9 +66,13 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-fn row(executor: &mut Executor, name: &str, size: [u32; 2]) -> Result<Row> {
+fn row(executor: &mut Executor, name: &str, size: [u32; 2], in_software: bool) -> Result<Row> {
+    let (count, [runs, warm]) = match in_software {
+        true => (4, SOFTWARE_RUNS),
+        false => (3, RUNS),
+    };
     let mut plans: Vec<Plan> = Vec::new();
-    for changes in PLANS {
+    for changes in &PLANS[..count] {
         let changes: Result<Vec<_>, _> = changes.iter().map(|c| Override::read(c)).collect();
         let mut plan = preset::load(name, &changes?)?.plan.one_sample();
         plan.size = size;
@@ -73,8 +84,9 @@ fn row(executor: &mut Executor, name: &str, size: [u32; 2]) -> Result<Row> {
         ..Extras::default()
     };
     let assets = Assets::default();
-    let (mut marched, mut colored, mut frames) = ([const { Vec::new() }; 3], vec![], vec![]);
-    for run in 0..WARM + RUNS {
+    let (mut marched, mut colored, mut frames) = (vec![vec![]; count], vec![], vec![]);
+    let mut levels = 0;
+    for run in 0..warm + runs {
         // What comes first may find a card that has slowed down.
         let mut turns: Vec<_> = plans.iter().zip(&mut marched).enumerate().collect();
         if run % 2 == 1 {
@@ -83,10 +95,11 @@ fn row(executor: &mut Executor, name: &str, size: [u32; 2]) -> Result<Row> {
         for (nth, (plan, marched)) in turns {
             let begun = Instant::now();
             let frame = executor.render(plan, &assets, extras, &mut |_: &_| true)?;
-            if run < WARM {
+            if run < warm {
                 continue;
             }
             if nth == CHOSEN {
+                levels = frame.passes.iter().filter(|p| p.pass.marches()).count() - 1;
                 colored.push(on_device(&frame, false)?);
                 frames.push(begun.elapsed().as_secs_f64() * 1e3);
             }
@@ -95,28 +108,37 @@ fn row(executor: &mut Executor, name: &str, size: [u32; 2]) -> Result<Row> {
     }
     Ok(Row {
         name: name.into(),
-        marched: marched.map(median),
+        marched: marched.into_iter().map(median).collect(),
+        levels,
         colored: median(colored),
         frame: median(frames),
     })
 }
 
 fn table(rows: &[Row]) -> String {
-    let head = "preset | rival, ms | safe, ms | with cones, ms | rival / safe | with cones / safe | colour, ms | frame, ms";
+    let mut head = "preset | rival, ms | safe, ms | with cones, ms | rival / safe | with cones / safe | colour, ms | frame, ms".to_string();
+    if rows.iter().any(|row| row.marched.len() > 3) {
+        head += " | proven / safe | levels of cones";
+    }
     let lines = rows.iter().map(|row| {
-        let [rival, safe, cones] = row.marched;
+        let [rival, safe, cones] = [0, 1, 2].map(|nth| row.marched[nth]);
+        let proven = row.marched.get(3).map_or(String::new(), |proven| {
+            format!(" | {:.2} | {}", proven / safe, row.levels)
+        });
         let times = format!("{rival:.2} | {safe:.2} | {cones:.2}");
         let ratios = format!("{:.2} | {:.2}", rival / safe, cones / safe);
         format!(
-            "{} | {times} | {ratios} | {:.2} | {:.1}",
+            "{} | {times} | {ratios} | {:.2} | {:.1}{proven}",
             row.name, row.colored, row.frame
         )
     });
-    markdown::table(head, "lr", lines)
+    markdown::table(&head, "lr", lines)
 }
 
 fn main() -> Result<()> {
-    let mut size = SIZE;
+    let in_software = std::env::args().any(|a| a == "--software");
+    let usual = if in_software { SOFTWARE_SIZE } else { SIZE };
+    let mut size = usual;
     let mut names = Vec::new();
     let mut args = std::env::args().skip(1).filter(|a| a != "--bench");
     while let Some(arg) = args.next() {
@@ -126,12 +148,12 @@ fn main() -> Result<()> {
                 let (w, h) = text.split_once('x').context("--size needs WxH")?;
                 size = [w.parse()?, h.parse()?];
             }
-            "--write" => {}
+            "--write" | "--software" => {}
             _ if arg.starts_with('-') => bail!("unknown option {arg}"),
             _ => names.push(arg),
         }
     }
-    let is_usual = names.is_empty() && size == SIZE;
+    let is_usual = names.is_empty() && size == usual;
     let writes = std::env::args().any(|a| a == "--write");
     ensure!(
         is_usual || !writes,
@@ -143,18 +165,21 @@ fn main() -> Result<()> {
             .map(|(name, _)| name.to_string())
             .collect();
     }
-    let device = if writes {
-        Choice::Hardware
-    } else {
-        Choice::Auto
+    let device = match (in_software, writes) {
+        (true, _) => Choice::Software,
+        (_, true) => Choice::Hardware,
+        _ => Choice::Auto,
     };
     let (mut executor, who) = Executor::open(&device)?;
     let mut rows = Vec::new();
     for name in &names {
         eprintln!("{name}");
-        rows.push(row(&mut executor, name, size)?);
+        rows.push(row(&mut executor, name, size, in_software)?);
     }
     println!("{} x {} on {who}:\n", size[0], size[1]);
-    let marks = ["<!-- hardware -->", "<!-- /hardware -->"];
+    let marks = match in_software {
+        true => ["<!-- software -->", "<!-- /software -->"],
+        false => ["<!-- hardware -->", "<!-- /hardware -->"],
+    };
     publish::publish("benchmarks.md", marks, &table(&rows))
 }

@@ -1,11 +1,12 @@
 //! What rays of light cost: `cargo bench --bench light -- --write`.
 //!
 //! Renders Mandelboxes with light by paths, in turns: as they are; with each ray making its first step
-//! by itself; without rays to the sun; with light of the sky alone that nothing stops. `--write` puts
+//! by itself; both without rays to the sun; with light of the sky alone that nothing stops. `--write` puts
 //! the table into docs/benchmarks.md.
 
 use std::sync::Arc;
 
+use alone::alone;
 use anyhow::{Context, Result};
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
@@ -16,6 +17,8 @@ use conemarch::preset;
 use conemarch::scene::Assets;
 use publish::publish;
 
+#[path = "common/alone.rs"]
+mod alone;
 #[path = "common/markdown.rs"]
 mod markdown;
 #[path = "common/publish.rs"]
@@ -23,16 +26,15 @@ mod publish;
 
 /// The marks around the table in the page.
 const MARKS: [&str; 2] = ["<!-- light -->", "<!-- /light -->"];
-const PRESETS: [&str; 3] = ["mandelbox", "mandelbox-gate", "mandelbox-julia"];
+const PRESETS: [&str; 5] = [
+    "mandelbox",
+    "mandelbox-canyon",
+    "mandelbox-gate",
+    "mandelbox-julia",
+    "terrain",
+];
 /// Warm runs, of which the median is taken.
 const RUNS: usize = 3;
-
-/// The program in which each ray makes its first step by itself.
-fn alone(path: &str) -> Option<String> {
-    let text = include_str!("../wgsl/pass/path.wgsl");
-    let shared = "begin_opened(ray, reach, opened)";
-    (path == "wgsl/pass/path.wgsl").then(|| text.replace(shared, "begin(ray, 0.0, reach)"))
-}
 
 fn main() -> Result<()> {
     let adapters = Adapters::find();
@@ -49,11 +51,11 @@ fn main() -> Result<()> {
         let mut open = sunless.clone();
         open.look.bounces = 0;
         open.look.occlusion_reach = 1e-4;
-        let plans: [&Plan; 4] = [&plan, &plan, &sunless, &open];
+        let plans: [&Plan; 5] = [&plan, &plan, &sunless, &sunless, &open];
         let mut renderers = Vec::new();
         for nth in 0..plans.len() {
             let mut renderer = Renderer::new(Device::open(adapter)?);
-            renderer.sources = (nth == 1).then(|| Arc::new(alone) as _);
+            renderer.sources = (nth % 2 == 1).then(|| Arc::new(alone) as _);
             renderers.push(renderer);
         }
         let extras = Extras {
@@ -83,17 +85,20 @@ fn main() -> Result<()> {
             times.sort_by(f64::total_cmp);
             times[times.len() / 2]
         };
-        let [all, alone, sunless, open] = [0, 1, 2, 3].map(|nth| median(&mut times[nth]));
+        let [all, alone, sunless, sunless_alone, open] =
+            [0, 1, 2, 3, 4].map(|nth| median(&mut times[nth]));
         let rays = median(&mut rays);
         rows.push(format!(
-            "{name} | {rays:.0} | {all:.0} | {alone:.0} | {:.2} | {:.2} | {:.2}",
+            "{name} | {rays:.0} | {all:.0} | {alone:.0} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2}",
             all / alone,
+            (all - sunless) / (alone - sunless_alone),
+            sunless / sunless_alone,
             (all - sunless) / (rays + all),
             (sunless - open) / (rays + all),
         ));
     }
     let table = markdown::table(
-        "640 x 360, 4 samples, 2 bounces | march and trace, ms | colour, ms | each ray alone, ms | colour / alone | share of rays to the sun | of all other rays of light",
+        "640 x 360, 4 samples, 2 bounces | march and trace, ms | colour, ms | each ray alone, ms | colour / alone | of rays to the sun | of the others | share of rays to the sun | of all other rays of light",
         "lr",
         rows,
     );

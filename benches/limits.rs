@@ -51,12 +51,19 @@ const STEPS: u32 = 512;
 /// A cone ends after a step that gains less than this share of its front.
 const LEAST: f64 = 1e-4;
 
-/// Follows the rays of groups of pixels, alone or from ideal cones.
+/// Which rays are counted.
+#[derive(Clone, Copy, PartialEq)]
+enum Rays {
+    Alone,
+    FromIdealCones,
+    /// From the hits.
+    ToSun,
+}
+
+/// Follows the rays of groups of pixels.
 struct Follow<'a> {
     plan: &'a Plan,
-    has_cones: bool,
-    /// Counts rays from the hits to the sun instead.
-    to_sun: bool,
+    rays: Rays,
 }
 
 impl Task for Follow<'_> {
@@ -71,7 +78,7 @@ impl Task for Follow<'_> {
         let groups = (0..rows).flat_map(|y| (0..columns).map(move |x| [x, y]));
         let follow = |pixel: [u32; 2]| {
             let mut front = 0.0;
-            if self.has_cones {
+            if self.rays == Rays::FromIdealCones {
                 let cone = view.view_cone(pixel.map(|n| n / 2), 2);
                 let mut at = Advance::at(0.0, true);
                 for _ in 0..STEPS {
@@ -88,12 +95,12 @@ impl Task for Follow<'_> {
                 return work;
             }
             let ray = view.view_ray(pixel);
-            let (end, walk) = walk(solid, &ray, [front, far], &mut work);
-            if !self.to_sun {
+            let (end, walk) = follow_ray(solid, &ray, [front, far], &mut work);
+            if self.rays != Rays::ToSun {
                 return work;
             }
             let mut work = Counts::default();
-            if end != Step::Out {
+            if end == Step::Hit {
                 let hit = solid.walk_hit(&walk);
                 let normal = solid.surface(&ray, &hit).normal;
                 let grain = footprint(&ray, hit.t);
@@ -106,7 +113,7 @@ impl Task for Follow<'_> {
                     grain: 0.0,
                 };
                 if normal.dot(sun) > 0.0 {
-                    self::walk(solid, &ray, [0.0, 2.0 * far], &mut work);
+                    follow_ray(solid, &ray, [0.0, 2.0 * far], &mut work);
                 }
             }
             work
@@ -124,7 +131,7 @@ impl Task for Follow<'_> {
 }
 
 /// Follows a ray from one distance to another.
-fn walk<S: Solid>(
+fn follow_ray<S: Solid>(
     solid: &S,
     ray: &Beam,
     [from, to]: [f64; 2],
@@ -150,12 +157,7 @@ fn cost(groups: &[Vec<Counts>], width: usize, of: fn(&Counts) -> u32) -> f64 {
     most.iter().sum::<f64>() / most.len() as f64
 }
 
-fn counted(
-    name: &str,
-    size: [u32; 2],
-    changes: &[&str],
-    [has_cones, to_sun]: [bool; 2],
-) -> Result<Vec<Vec<Counts>>> {
+fn counted(name: &str, size: [u32; 2], changes: &[&str], rays: Rays) -> Result<Vec<Vec<Counts>>> {
     let changes: Result<Vec<_>, _> = changes.iter().map(|c| Override::read(c)).collect();
     let mut plan = preset::load(name, &changes?)?.plan.one_sample();
     // A small picture makes the maps.
@@ -164,11 +166,7 @@ fn counted(
     cpu::render(&plan, &assets, Extras::default(), &mut |_| true)?;
     plan.size = size;
     let solid = plan.scene.solid(&plan.viewpoint(), &assets)?;
-    Ok(solid.run(Follow {
-        plan: &plan,
-        has_cones,
-        to_sun,
-    }))
+    Ok(solid.run(Follow { plan: &plan, rays }))
 }
 
 fn row(name: &str, rays: &[Vec<Counts>], ideal: &[Vec<Counts>], of: fn(&Counts) -> u32) -> String {
@@ -185,8 +183,8 @@ fn main() -> Result<()> {
         eprintln!("{name}");
         let size = [1920, 1080];
         let rival = ["march.mode=ray-relaxed", "march.clip=on"];
-        let rival = counted(name, size, &rival, [false; 2])?;
-        let ideal = counted(name, size, &[], [true, false])?;
+        let rival = counted(name, size, &rival, Rays::Alone)?;
+        let ideal = counted(name, size, &[], Rays::FromIdealCones)?;
         rows.push(row(name, &rival, &ideal, |c| c.iterations));
     }
     let formulas = markdown::table(
@@ -198,8 +196,8 @@ fn main() -> Result<()> {
     for name in FIELDS {
         eprintln!("{name}");
         let size = [1280, 720];
-        let rival = counted(name, size, &[], [false; 2])?;
-        let ideal = counted(name, size, &[], [true, false])?;
+        let rival = counted(name, size, &[], Rays::Alone)?;
+        let ideal = counted(name, size, &[], Rays::FromIdealCones)?;
         rows.push(row(name, &rival, &ideal, |c| c.evaluations));
     }
     let fields = markdown::table(
@@ -210,7 +208,7 @@ fn main() -> Result<()> {
     let mut rows = Vec::new();
     for name in FORMULAS.into_iter().chain(SUNNY).chain(FIELDS) {
         eprintln!("{name}, to the sun");
-        let groups = counted(name, [1280, 720], &[], [false, true])?;
+        let groups = counted(name, [1280, 720], &[], Rays::ToSun)?;
         let of = |c: &Counts| c.iterations.max(c.evaluations);
         let [wide, narrow, alone] = [32, 8, 1].map(|width| cost(&groups, width, of));
         rows.push(format!(

@@ -1,5 +1,5 @@
 //! What a render costs beside its kernels, in two builds of this program; `scripts/overhead`
-//! makes the builds and calls it: `cargo bench --bench overhead -- OLD NEW [--write]`.
+//! makes the builds and calls it: `cargo bench --bench overhead -- OLD NEW [--rivals] [--write]`.
 //!
 //! Times are medians of warm runs. The overhead is march and trace on the clock less the
 //! device's own time for them.
@@ -23,6 +23,7 @@ use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 use one_sample::one_sample;
+use publish::publish;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -32,12 +33,15 @@ mod as_sharp;
 mod markdown;
 #[path = "common/one_sample.rs"]
 mod one_sample;
+#[path = "common/publish.rs"]
+mod publish;
 
 /// The marks around the tables in the page.
 const MARKS: [&str; 2] = [
     "<!-- scripts/overhead COMMIT --write: begin -->",
     "<!-- scripts/overhead COMMIT --write: end -->",
 ];
+const RIVAL_MARKS: [&str; 2] = ["<!-- rivals -->", "<!-- /rivals -->"];
 /// Processes of each build per row; each has warm runs of its own.
 const RUNS: usize = 3;
 /// The same of the overhead at a small size, which is tenths of a millisecond.
@@ -73,26 +77,18 @@ fn main() -> Result<()> {
     ensure!(args.len() >= 2, "give the old and the new program");
     let presets = old_presets(&args[0])?;
     if args.iter().any(|a| a == RIVALS) {
-        println!("{}", rivals(&args, presets.path())?);
-        return Ok(());
+        let table = rivals(&args, presets.path())?;
+        return publish("benchmarks.md", RIVAL_MARKS, &table);
     }
     let text = [
         small(&args, presets.path())?,
         large(&args, presets.path())?,
-        rivals(&args, presets.path())?,
         processes(&args, presets.path())?,
         frames()?,
         cancels_of_first_starts()?,
     ]
     .join("\n");
-    println!("{text}");
-    if args.iter().any(|a| a == "--write") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md");
-        let mut page = std::fs::read_to_string(&path)?;
-        markdown::replace(&mut page, MARKS, &format!("\n{text}\n"))?;
-        std::fs::write(path, page)?;
-    }
-    Ok(())
+    publish("architecture.md", MARKS, &text)
 }
 
 /// Files of the old build's presets. Both builds render these, as today's may differ.
@@ -330,9 +326,10 @@ fn detail_before(file: &Path, size: [u32; 2], others: &[&str]) -> Result<f64> {
         Executor::open(&Choice::Auto)?.0,
         Executor::open(&Choice::Auto)?.0,
     ];
-    if let Executor::Gpu(renderer) = &mut old {
-        renderer.sources = Some(Arc::new(old_hits));
-    }
+    let Executor::Gpu(renderer) = &mut old else {
+        bail!("hits of the old program need a device");
+    };
+    renderer.sources = Some(Arc::new(old_hits));
     let assets = Assets::default();
     let extras = Extras {
         depth_only: true,
@@ -442,7 +439,7 @@ const CANCEL_AFTER: Duration = Duration::from_millis(5);
 const CANCELLED_WITHIN: Duration = Duration::from_millis(4000);
 /// The argument that asks for the table of cancelled renders alone.
 const CANCELS: &str = "--cancels";
-/// The argument that asks for the table of rivals alone.
+/// The argument that asks for the table of rivals alone, which is in another page.
 const RIVALS: &str = "--rivals";
 
 /// The table of cancelled renders from a process in which Mesa keeps no compiled program, so that each

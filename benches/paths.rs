@@ -1,6 +1,8 @@
 //! How exact light by paths is: `cargo bench --bench paths`. With `-- --write` it writes its tables
 //! into docs/accuracy.md. It takes ten minutes on two cores.
 
+use std::sync::Arc;
+
 use anyhow::{Context, Result};
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
@@ -32,8 +34,16 @@ const WHITE: [&str; 8] = [
     "look.fog=0",
     "image.reference=auto",
 ];
+/// More bounces than can be set.
+const MORE_BOUNCES: u32 = 64;
 /// The scenes of the furnace, with their settings and limits of bounces.
-const FURNACE: [(&str, &[&str], &[u32]); 3] = [
+const FURNACE: [(&str, &[&str], &[u32]); 9] = [
+    ("terrain", &["look.roughness=0.05"], &[8]),
+    ("terrain", &["look.roughness=0.2"], &[8]),
+    ("terrain", &["look.roughness=1"], &[8]),
+    ("terrain", &["look.roughness=0.05", "look.metal=1"], &[8]),
+    ("terrain", &["look.roughness=0.2", "look.metal=1"], &[8]),
+    ("terrain", &["look.roughness=1", "look.metal=1"], &[8]),
     ("mandelbox", &["look.trap=point"], &[0, 2, 8, 16]),
     (
         "mandelbox",
@@ -43,7 +53,7 @@ const FURNACE: [(&str, &[&str], &[u32]); 3] = [
     (
         "mandelbox-gate",
         &["look.trap=point", "image.reference=2160"],
-        &[2, 4, 8, 16],
+        &[2, 4, 8, 16, MORE_BOUNCES],
     ),
 ];
 /// Scenes whose noise is measured, at so many samples.
@@ -75,6 +85,12 @@ fn light(frame: &Frame) -> [f64; 3] {
     sum.map(|s| s / count)
 }
 
+/// The shaders with four times the bounces that are set.
+fn more_bounces(path: &str) -> Option<String> {
+    let text = include_str!("../wgsl/pass/path.wgsl");
+    (path == "wgsl/pass/path.wgsl").then(|| text.replace("look.bounces", "(4u * look.bounces)"))
+}
+
 impl Bench {
     fn render(&mut self, plan: &Plan, mode: LightMode, samples: u32) -> Result<Frame> {
         let mut plan = plan.clone();
@@ -90,7 +106,10 @@ impl Bench {
         let mut rows = Vec::new();
         for (name, own, bounces) in FURNACE {
             for bounces in bounces {
-                let limit = format!("look.bounces={bounces}");
+                let is_more = *bounces == MORE_BOUNCES;
+                self.renderer.sources = is_more.then(|| Arc::new(more_bounces) as _);
+                let set = if is_more { MORE_BOUNCES / 4 } else { *bounces };
+                let limit = format!("look.bounces={set}");
                 let settings = [&WHITE[..], own, &[&limit]].concat();
                 let frame = self.render(&plan(name, &settings)?, LightMode::Path, 64)?;
                 let own: Vec<_> = own.iter().map(|s| format!("`{s}`")).collect();
@@ -101,6 +120,7 @@ impl Bench {
                 ));
             }
         }
+        self.renderer.sources = None;
         let head = "white scene in white light | settings | bounces | mean light of the hits";
         Ok(markdown::table(head, "llr", rows))
     }

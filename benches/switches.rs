@@ -16,7 +16,7 @@ use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 use conemarch::scene::distance_settings::DistanceSettings;
 
-/// A changed setting: its name, and a function that changes it.
+/// A changed setting: its name, and a function that changes it. The preset is compared without fog.
 type Switch = (&'static str, fn(&mut Plan, &mut Extras));
 
 const SWITCHES: &[Switch] = &[
@@ -105,20 +105,21 @@ fn rotate(plan: &mut Plan, degrees: f64) {
 
 fn main() -> Result<()> {
     let mut plan = preset::load("mandelbox", &[])?.plan.one_sample();
+    plan.look.fog = 0.0;
     plan.size = [640, 360];
     let (mut executor, who) = Executor::open(&Choice::Auto)?;
-    println!("Switches of `mandelbox` at 640 x 360 on {who}\n");
+    println!("Switches of `mandelbox` without fog at 640 x 360 on {who}\n");
     println!("| switch | march and trace | colour |\n|---|---:|---:|");
     for (name, change) in SWITCHES {
         let (mut changed, mut extras) = (plan.clone(), Extras::default());
         change(&mut changed, &mut extras);
         row(&mut executor, name, &plan, (&changed, extras), RUNS)?;
     }
-    println!("\nFeatures of `mandelbox` at 320 x 180 with 4 samples\n");
+    println!("\nFeatures of `mandelbox` without fog at 320 x 180 with 4 samples\n");
     println!("| feature | march and trace | colour |\n|---|---:|---:|");
     let mut base = None;
     for (name, keys) in FEATURES {
-        let own = ["image.size=[320, 180]", "image.samples=4"];
+        let own = ["image.size=[320, 180]", "image.samples=4", "look.fog=0"];
         let keys = own.iter().chain(*keys).map(|key| Override::read(key));
         let changed = preset::load("mandelbox", &keys.collect::<Result<Vec<_>, _>>()?)?.plan;
         let base = base.get_or_insert_with(|| changed.clone());

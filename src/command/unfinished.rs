@@ -246,7 +246,7 @@ impl Owner {
         }
         if self.picture != now.picture {
             return Err(anyhow!(
-                "`{path}` keeps bands of a picture with other settings; give those, name this picture with another -o, or remove it to begin again"
+                "`{path}` keeps bands of a picture with other settings or files; give those, name this picture with another -o, or remove it to begin again"
             ));
         }
         Ok(())

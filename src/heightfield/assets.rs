@@ -241,7 +241,9 @@ impl Assets {
         if settings.reads_heights()
             && let Ok(surface) = self.surface(settings)
         {
-            all.extend_from_slice(cast_slice(surface.heights().data()));
+            let heights = surface.heights();
+            all.extend_from_slice(cast_slice(&heights.size()));
+            all.extend_from_slice(cast_slice(heights.data()));
         }
         if let Ok(Some(texture)) = self.texture(settings) {
             all.extend(texture.bytes());

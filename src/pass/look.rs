@@ -44,8 +44,8 @@ pub struct LookUniform {
     pub fog: f32,
     /// Sky below.
     pub sky_low: Vec3,
-    /// Specular share.
-    pub gloss: f32,
+    /// Unused.
+    pub pad: f32,
     /// Unit vector up.
     pub world_up: Vec3,
     /// Tangent of the light's angular radius.
@@ -228,7 +228,7 @@ impl Light {
             sky_high: look.sky_high.as_vec3(),
             fog: look.fog as f32,
             sky_low: look.sky_low.as_vec3(),
-            gloss: look.gloss as f32,
+            pad: 0.0,
             world_up: self.world_up.as_vec3(),
             softness: self.softness as f32,
             occlusion_reach: look.occlusion_reach as f32,

@@ -61,11 +61,14 @@ pub struct Material {
     mirror: DVec3,
     /// The same at grazing angles.
     grazing: DVec3,
+    /// The share of light from all sides that the coat sends towards the direction.
+    pub coat: DVec3,
     /// The share of the next rays that mirrors choose.
     chosen: f64,
 }
 
-/// A direction to the eye in the frame of a surface. A normal of a rough surface may face away.
+/// A direction to the eye in the frame of a surface. Its z is at least 1e-3, as the normal of a rough
+/// surface may face away from the eye.
 pub fn material_view(v: DVec3) -> DVec3 {
     v.truncate().extend(v.z.max(1e-3)).normalize()
 }
@@ -162,6 +165,7 @@ impl Substance {
         }
     }
 
+    /// The entry of the table for a direction.
     fn share(&self, v: DVec3) -> DVec2 {
         let at = v.z.clamp(0.0, 1.0).sqrt() * (DIRECTIONS - 1) as f64;
         let i = (at as usize).min(DIRECTIONS - 2);
@@ -183,26 +187,28 @@ impl Substance {
             base,
             mirror,
             grazing,
+            coat,
             chosen: of_coat / (of_coat + of_base).max(1e-20),
         }
     }
 
-    /// The share of light from all sides that the coat sends towards `v`.
-    pub fn material_mirrors(&self, material: &Material, v: DVec3) -> DVec3 {
-        let share = self.share(v);
-        material.mirror * share.x + material.grazing * share.y
-    }
-
     /// The share of light from a direction that leaves towards `v`, times the cosine: the
     /// reflectance times `l.z`; and the density of the directions of
-    /// [`material_scatter`](Self::material_scatter).
-    pub fn material_reflects(&self, material: &Material, v: DVec3, l: DVec3) -> (DVec3, f64) {
+    /// [`material_scatter`](Self::material_scatter). Light of a disc, `radius` the tangent of its angular
+    /// radius, comes from its centre, and mirrors are rougher by that. Then the density is of no use.
+    pub fn material_reflects(
+        &self,
+        material: &Material,
+        v: DVec3,
+        l: DVec3,
+        radius: f64,
+    ) -> (DVec3, f64) {
         let diffuse = l.z / PI;
         if material.chosen == 0.0 {
             return (material.base * diffuse, diffuse);
         }
         let h = (v + l).normalize();
-        let aa = self.alpha * self.alpha;
+        let aa = (self.alpha * self.alpha + 0.25 * radius * radius).min(1.0);
         let spread = aa * h.z * h.z + h.truncate().length_squared();
         let density = aa / (PI * spread * spread);
         let (sv, sl) = (smith(v.z, aa), smith(l.z, aa));
@@ -276,7 +282,8 @@ mod tests {
                         let pair = random_pair(1, i, 2);
                         let l = substance.material_scatter(&material, v, pair, choice);
                         if l.z > 0.0 {
-                            let (light, density) = substance.material_reflects(&material, v, l);
+                            let (light, density) =
+                                substance.material_reflects(&material, v, l, 0.0);
                             mean += light.x / density / f64::from(n);
                         }
                     }
@@ -284,6 +291,23 @@ mod tests {
                     assert!((mean - 1.0).abs() < 5e-3, "{of:?}: {mean}");
                 }
             }
+        }
+    }
+
+    /// A smooth mirror shows the disc of a light as bright as it is.
+    #[test]
+    fn a_mirrored_disc_is_as_bright_as_the_light() {
+        let look = Look {
+            roughness: 0.05,
+            metal: 1.0,
+            ..Look::default()
+        };
+        let substance = Substance::of(&look);
+        let material = substance.material_at(DVec3::ONE, DVec3::Z);
+        for radius in [0.05, 0.2] {
+            let (light, _) = substance.material_reflects(&material, DVec3::Z, DVec3::Z, radius);
+            let bright = light.x * PI * radius * radius;
+            assert!((bright - 1.0).abs() < 0.02, "{radius}: {bright}");
         }
     }
 

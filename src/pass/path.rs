@@ -111,7 +111,7 @@ pub fn shade<S: Solid>(
             }
             let (step, _) = path_sight((solid, light), &to(toward), lamp.far, &mut left);
             if step == Step::Out {
-                let reflected = substance.material_reflects(&material, v, l).0;
+                let reflected = substance.material_reflects(&material, v, l, 0.0).0;
                 sum += through * reflected * (PI * strength);
             }
             decided &= matches!(step, Step::Hit | Step::Out);
@@ -125,7 +125,7 @@ pub fn shade<S: Solid>(
                 let (step, _) = path_sight((solid, light), &to(toward), reach, &mut left);
                 if step == Step::Out {
                     // The balance heuristic (Veach 1997): both rays may find the same light.
-                    let (reflected, own) = substance.material_reflects(&material, v, l);
+                    let (reflected, own) = substance.material_reflects(&material, v, l, 0.0);
                     sum += through * reflected / (other + own) * light.sky_light(toward);
                 }
                 decided &= matches!(step, Step::Hit | Step::Out);
@@ -137,7 +137,7 @@ pub fn shade<S: Solid>(
         if l.z <= 0.0 {
             break;
         }
-        let (reflected, density) = substance.material_reflects(&material, v, l);
+        let (reflected, density) = substance.material_reflects(&material, v, l, 0.0);
         through *= reflected / density.max(1e-20);
         if bounce >= PATH_SURE {
             let stays = through.max_element().clamp(0.05, 1.0);

@@ -57,13 +57,15 @@ impl Skin {
         }
     }
 
-    /// The radiance towards the eye by a light whose white wall has radiance 1.
-    fn reflects(&self, light: &Light, toward: DVec3) -> DVec3 {
+    /// The radiance towards the eye of a light in which a white wall has radiance 1. `radius` is the
+    /// tangent of its angular radius.
+    fn reflects(&self, light: &Light, toward: DVec3, radius: f64) -> DVec3 {
         let l = self.frame.transpose() * toward;
         if l.z <= 0.0 {
             return DVec3::ZERO;
         }
-        let (share, _) = light.substance.material_reflects(&self.material, self.v, l);
+        let of = &light.substance;
+        let (share, _) = of.material_reflects(&self.material, self.v, l, radius);
         PI * share
     }
 }
@@ -92,9 +94,11 @@ pub fn shade<S: Solid>(solid: &S, light: &Light, spots: &[Spot]) -> Vec<(DVec3, 
         let axis = spots[i].ray.axis;
         let mirrored = light.sky_ambient(axis - 2.0 * axis.dot(n) * n);
         let coated = open.powi(4) * (2.0 * skin.v.z).min(1.0);
-        let c = skin.reflects(light, look.light) * (look.key * keys[i].open) * look.light_color
+        let c = skin.reflects(light, look.light, light.softness)
+            * (look.key * keys[i].open)
+            * look.light_color
             + skin.material.base * (light.sky_ambient(n) + bounce) * open
-            + light.substance.material_mirrors(&skin.material, skin.v) * mirrored * coated;
+            + skin.material.coat * mirrored * coated;
         (c, keys[i].decided)
     };
     let mut all: Vec<(DVec3, bool)> = (0..spots.len()).map(unlit).collect();
@@ -109,7 +113,8 @@ pub fn shade<S: Solid>(solid: &S, light: &Light, spots: &[Spot]) -> Vec<(DVec3, 
         let near = shadows_of((solid, light), &places, |i, _| Some(lit[i]?.0));
         for (i, (c, decided)) in all.iter_mut().enumerate() {
             if let Some((lamp, strength)) = lit[i] {
-                *c += skins[i].reflects(light, lamp.axis) * (near[i].open * strength);
+                *c +=
+                    skins[i].reflects(light, lamp.axis, lamp.softness) * (near[i].open * strength);
                 *decided &= near[i].decided;
             }
         }

@@ -119,7 +119,7 @@ settings! {
         glow_width: f64 = 0.02, number(0.005, 1.0),
             "distance from the surface at which the glow of the air has fallen to 1/e, as a share of the distance from eye to target";
         glow_color: DVec3 = DVec3::new(0.30, 0.55, 1.0), triple(0.0, 1.0), "colour of the glow of the air, sRGB";
-        gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights, 0 for none, 0.08 for most materials but metal, 2 for a mirror";
+        gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights of paint: 0 for none, 0.08 for most materials, 2 for a mirror; a metal has its own";
         sky_high: DVec3 = DVec3::new(0.30, 0.42, 0.58), triple(0.0, 1.0), "colour of the sky overhead, sRGB";
         sky_low: DVec3 = DVec3::new(0.80, 0.77, 0.73), triple(0.0, 1.0), "colour of the sky below, sRGB";
         palette: Vec<DVec3> = vec![

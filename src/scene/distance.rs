@@ -317,7 +317,7 @@ impl Solid for Distance {
             return Step::Out;
         };
         let field = self.field(ahead.q, ahead.clear, ahead.trial, work);
-        self.go_on(walk, &ahead, field)
+        self.go_on(ray, walk, &ahead, field)
     }
 
     fn has_lanes(&self) -> bool {

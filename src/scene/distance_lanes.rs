@@ -84,7 +84,7 @@ impl Distance {
             Some(ahead) => {
                 let reading = self.cleared(readings[i], ahead.clear);
                 let field = self.read(ahead.q, reading, ahead.clear, &mut work[i]);
-                self.go_on(&mut walks[i], ahead, field)
+                self.go_on(&rays[i], &mut walks[i], ahead, field)
             }
         })
     }

@@ -61,8 +61,6 @@ pub(super) struct Ahead {
     pub(super) q: DVec3,
     /// The hit threshold there.
     pub(super) eps: f64,
-    /// The hit threshold at the last point.
-    pub(super) last_eps: f64,
     /// By how much the step keeps clear.
     pub(super) clear: f64,
     /// The ball that is tried.
@@ -145,14 +143,19 @@ impl Distance {
             t,
             q: ray.at(t),
             eps,
-            last_eps: self.threshold(ray, w.t),
             clear: self.stepping.shell * eps,
             trial: DISTANCE_TRIAL * w.radius + 2.0 * eps,
         })
     }
 
     /// Goes on to the next point, where the field is known.
-    pub(super) fn go_on(&self, walk: &mut Walk, ahead: &Ahead, (value, ball): (f64, f64)) -> Step {
+    pub(super) fn go_on(
+        &self,
+        ray: &Beam,
+        walk: &mut Walk,
+        ahead: &Ahead,
+        (value, ball): (f64, f64),
+    ) -> Step {
         let (w, &Ahead { t, eps, clear, .. }) = (*walk, ahead);
         let gone = t - w.t;
         // Near a fold the ball may be tiny, and rays would creep.
@@ -171,7 +174,7 @@ impl Distance {
         if value <= eps {
             // Where the field meets the threshold, by its last two values. So a hit depends little on
             // where the ray's points are.
-            let above = w.room - ahead.last_eps;
+            let above = w.room - self.threshold(ray, w.t);
             if above > 0.0 {
                 walk.t = w.t + gone * (above / (above + (eps - value)));
             }

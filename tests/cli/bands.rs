@@ -6,6 +6,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use crate::folder::{Folder, holds, output, said};
+use crate::sky::even;
 
 /// A picture of ten bands, 64 rows each but the last.
 const PICTURE: &str = "render mandelbox --device cpu --size 90x600 --set look.shadow=false";
@@ -291,6 +292,30 @@ fn bands_of_another_picture_program_or_device_are_refused() {
         folder.fails(&format!("{PICTURE} {wrong} --resume"), 2, "--resume|.png");
     }
     folder.fails(&format!("{resumed} --stats s.json"), 2, "--stats");
+}
+
+/// A sky whose file has changed is another one. When the file is as before, the picture goes on.
+#[test]
+fn bands_under_another_sky_of_the_same_name_are_refused() {
+    let folder = Folder::new();
+    let more = format!("{QUICK} --set look.sky_file=sky.hdr");
+    let sky = even([16, 8]);
+    folder.write("sky.hdr", &sky);
+    let expected = whole(&folder, &more);
+    let mut child = begun(&folder, &more, 2 * BAND);
+    child.kill().expect("it runs");
+    child.wait().expect("an end");
+    let kept = folder.bytes(PART);
+    let mut other = sky.clone();
+    // The red of the last texel.
+    other[sky.len() - 4] ^= 64;
+    folder.write("sky.hdr", other);
+    let resumed = format!("{PICTURE} -o a.png --resume {more}");
+    folder.fails(&resumed, 1, &format!("`{PART}`|other settings|remove it"));
+    assert!(folder.bytes(PART) == kept);
+    folder.write("sky.hdr", sky);
+    folder.done(&resumed);
+    assert!(folder.bytes("a.png") == expected);
 }
 
 /// The disk is full at the last band: the bands before it stay, and the picture goes on later.

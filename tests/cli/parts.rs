@@ -52,6 +52,31 @@ fn joined_parts_have_the_bytes_of_the_whole_picture() {
     assert!(piped.stdout == folder.bytes("whole.png"));
 }
 
+/// Different devices may share a picture.
+#[test]
+fn the_devices_of_all_parts_are_told() {
+    let folder = Folder::new();
+    let part = |device: &str, column: u32| {
+        let line = format!("render mandelbox --size 128x64 --samples 1 --device {device}");
+        let tile = format!("--tile {column},0/2x1 -o p{column}.exr");
+        let told = said(&folder.done(&format!("{line} {tile}")));
+        let mut lines = told.lines();
+        let who = lines.find_map(|l| l.strip_prefix("rendering on "));
+        // The reason follows.
+        let (name, _) = who.and_then(|who| who.rsplit_once(" (")).expect("a device");
+        name.to_string()
+    };
+    part("cpu", 0);
+    let device = part("auto", 1);
+    assert!(!device.starts_with("the CPU"), "this needs a GPU adapter");
+    let told = said(&folder.done("merge p0.exr p1.exr -o a.png"));
+    let of_device = format!("1 part by {device}");
+    holds(
+        &told,
+        &["1 part by the CPU, f64\n", &of_device, "of 2 parts"],
+    );
+}
+
 /// The light of all parts spreads over each.
 #[test]
 fn joined_parts_bloom_as_the_picture_does() {

@@ -238,6 +238,37 @@ fn an_exr_has_exactly_the_promised_channels() {
     assert!(shorter > 0);
 }
 
+/// Grey is the share of the samples, or the standard error, which is white from 0.1 on.
+#[test]
+fn samples_and_variance_are_shown_as_an_exr_has_them() {
+    let folder = Folder::new();
+    let shown = |layer: &str, more: &str, share: fn(f64) -> f64| {
+        let line = format!("render mandelbox --device cpu {more}");
+        folder.done(&format!("{line} --layer {layer} -o a.png"));
+        folder.done(&format!("{line} -o a.exr"));
+        let (info, grey) = pixels(folder.bytes("a.png"));
+        assert_eq!(info.color_type, png::ColorType::Grayscale, "{layer}");
+        assert!(info.srgb.is_none(), "{layer}");
+        let own = values(&exr_layer(&folder.0.join("a.exr")), &format!("{layer}.Y"));
+        let level = |x: &f32| (255.0 * share(f64::from(*x)).min(1.0)).round() as u8;
+        let wanted: Vec<u8> = own.iter().map(level).collect();
+        assert!(grey == wanted, "{layer}");
+        own
+    };
+    // Some tiles end with half of the samples.
+    let some = "--size 150x139 --samples 16 --until 0.04";
+    let counts = shown("samples", some, |n| n / 16.0);
+    assert!([8.0, 16.0].iter().all(|n| counts.contains(n)));
+    let (_, all) = picture(&folder, "--layer samples --samples 2");
+    assert_eq!(all, [255; 24 * 16]);
+    // A sky of one colour, and no sun.
+    let even = "--set look.sky_low=[0.5,0.5,0.5] --set look.sky_high=[0.5,0.5,0.5] --set look.light_color=[0,0,0]";
+    let more = format!("--size 24x16 --samples 8 {even}");
+    let variances = shown("variance", &more, |v| v.sqrt() / 0.1);
+    assert!(variances[0] < 1e-12, "sky: {}", variances[0]);
+    assert!(variances.iter().any(|v| *v > 1e-5));
+}
+
 #[test]
 fn an_exr_tells_where_it_comes_from_and_is_the_same_every_time() {
     let folder = Folder::new();

@@ -8,7 +8,7 @@ use crate::folder::Folder;
 use crate::images::pixels;
 
 /// A Radiance HDR of one colour.
-fn even([w, h]: [u32; 2]) -> Vec<u8> {
+pub fn even([w, h]: [u32; 2]) -> Vec<u8> {
     let head = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {h} +X {w}\n");
     let texels = [128, 64, 32, 129].repeat((w * h) as usize);
     [head.into_bytes(), texels].concat()
@@ -36,6 +36,9 @@ fn a_sky_that_cannot_be_read_is_named() {
     folder.write("wide.hdr", even([16, 4]));
     folder.write("empty.hdr", "");
     folder.write("text.hdr", "no light at all");
+    let whole = with_red(1.0);
+    folder.write("cut.exr", &whole[..whole.len() - 9]);
+    folder.write("head.exr", &whole[..60]);
     folder.write("dark.exr", with_red(-0.5));
     folder.write("endless.exr", with_red(f32::INFINITY));
     folder.write("nothing.exr", with_red(f32::NAN));
@@ -52,6 +55,14 @@ fn a_sky_that_cannot_be_read_is_named() {
         ),
         ("empty.hdr", "is empty"),
         ("text.hdr", "is no Radiance HDR and no OpenEXR"),
+        (
+            "cut.exr",
+            "is an EXR that cannot be read|fetch or save it again",
+        ),
+        (
+            "head.exr",
+            "is an EXR that cannot be read|fetch or save it again",
+        ),
         ("dark.exr", "-0.5|column 3, row 1"),
         ("endless.exr", "inf|column 3, row 1"),
         ("nothing.exr", "NaN|column 3, row 1"),

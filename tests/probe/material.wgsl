@@ -10,7 +10,7 @@ fn answer(q: Numbers) -> Numbers {
     let up = normalize(vec3<f32>(l.xy, abs(l.z) + 0.01));
     return Numbers(
         vec4<f32>(numbers, l.xy),
-        material_reflects(material, q.a.xyz, up),
+        material_reflects(material, q.a.xyz, up, q.a.w),
         vec4<f32>(frame * q.b.xyz, l.z),
     );
 }

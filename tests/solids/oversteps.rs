@@ -147,6 +147,8 @@ const ROTATIONS: [DVec3; 3] = [
 fn steps_are_too_long_by_as_much_as_is_said() {
     const PLAIN: [f64; 10] = [1.1, 1.3, 1.2, 1.25, 1.2, 1.3, 1.4, 1.5, 1.01, 1.12];
     const ROTATED: [f64; 10] = [1.0, 1.15, 1.2, 1.1, 1.2, 1.1, 1.15, 1.2, 1.15, 1.15];
+    // With a constant as large as the bounds, or larger.
+    const LARGE: [f64; 10] = [1.0, 1.75, 1.25, 1.8, 2.8, 1.65, 1.55, 2.45, 1.0, 0.9];
     const JULIA: [f64; 10] = [1.1, 1.1, 1.1, 1.1, 1.1, 1.0, 1.0, 1.0, 1.1, 1.0];
     for (i, mut m) in settings().into_iter().enumerate() {
         let check = |m: &Mandelbox, said: f64| {
@@ -163,6 +165,17 @@ fn steps_are_too_long_by_as_much_as_is_said() {
         m.julia_constant = m.fold_limit * DVec3::new(0.7, -0.4, 1.1);
         m.julia = true;
         check(&m, JULIA[i]);
+        let random = &mut Random::new(78);
+        let mut worst = 0.0_f64;
+        for _ in 0..30 {
+            let length = m.fold_limit * m.scale.abs() * 10.0_f64.powf(random.between(-0.5, 1.0));
+            m.julia_constant = length * random.direction();
+            let evaluator = m.evaluator();
+            let climbs = start_in_julia_mode(&m, 400, random);
+            let found = search_from(climbs, random, |p, _| evaluator.step(p, MANY, 0.0).radius);
+            worst = worst.max(found.ratio);
+        }
+        assert!(worst < LARGE[i], "{m:?}: {worst}");
     }
 }
 

@@ -11,6 +11,7 @@ use glam::DVec3;
 
 use super::common::folder::Folder;
 use super::common::plans::{preset, sized};
+use super::sky::file;
 use super::work::{bits, bits_however_cut};
 use crate::adapter::{self, EVERYTHING, HIT, both, on_cpu, render};
 
@@ -29,28 +30,36 @@ fn mean(frame: &Frame) -> f64 {
     all.iter().sum::<f64>() / all.len() as f64
 }
 
-/// A white relief in white light from all sides: nothing but its border can be seen.
-#[test]
-fn a_white_relief_in_white_light_is_white() {
-    let folder = Folder::new();
+/// A white relief in white light from all sides.
+fn white_relief(folder: &Folder) -> Plan {
     let white = folder.0.join("white.png");
     image::RgbImage::from_pixel(4, 4, [255; 3].into())
         .save(&white)
         .expect("a file");
+    let texture = format!("scene.texture={}", white.display());
+    // Normals that are not those of the surface lose light.
+    let of_surface = "scene.normals=patches";
+    let mut plan = preset("terrain", &["scene.field=fbm:64x64", of_surface, &texture]);
+    plan.size = [32, 18];
+    let look = &mut plan.look;
+    (look.sky_low, look.sky_high, look.light_color) = (DVec3::ONE, DVec3::ONE, DVec3::ZERO);
+    (look.fill, look.ground, look.fog) = (1.0, 1.0, 0.0);
+    plan
+}
+
+/// Nothing but the border of the relief can be seen.
+#[test]
+fn a_white_relief_in_white_light_is_white() {
+    let folder = Folder::new();
     for (roughness, metal, gloss) in [
         (0.45, 0.0, 0.0),
         (0.05, 1.0, 0.08),
         (0.3, 0.5, 0.5),
         (1.0, 0.0, 0.08),
     ] {
-        let texture = format!("scene.texture={}", white.display());
-        // Normals that are not those of the surface lose light.
-        let of_surface = "scene.normals=patches";
-        let mut plan = preset("terrain", &["scene.field=fbm:64x64", of_surface, &texture]);
-        plan.size = [32, 18];
+        let mut plan = white_relief(&folder);
+        plan.look.bounces = 16;
         let look = &mut plan.look;
-        (look.sky_low, look.sky_high, look.light_color) = (DVec3::ONE, DVec3::ONE, DVec3::ZERO);
-        (look.fill, look.ground, look.fog, look.bounces) = (1.0, 1.0, 0.0, 16);
         (look.roughness, look.metal, look.gloss) = (roughness, metal, gloss);
         for frame in both(&followed(plan, 16)) {
             let light = mean(&frame);
@@ -59,6 +68,27 @@ fn a_white_relief_in_white_light_is_white() {
                 (light - 1.0).abs() < 5e-3,
                 "{roughness} {metal} {gloss}: {light}"
             );
+        }
+    }
+}
+
+/// Without bounces, only what is near stops the light of the sky, with and without a file.
+#[test]
+fn light_of_the_sky_is_stopped_within_the_reach() {
+    let folder = Folder::new();
+    let even = file(&folder, "even.hdr", [64, 32], |_, _| [1.0; 3]);
+    for sky in ["none".to_string(), even.display().to_string()] {
+        let [near, far] = [1e-4, 1.0].map(|reach| {
+            let mut plan = white_relief(&folder);
+            plan.look.sky.sky_file = sky.clone();
+            (plan.look.bounces, plan.look.occlusion_reach) = (0, reach);
+            both(&followed(plan, 64)).map(|frame| mean(&frame))
+        });
+        for (near, far) in near.into_iter().zip(far) {
+            println!("{sky}: {near:.5} {far:.5}");
+            // Hollows of a part of a pixel are left.
+            assert!((near - 1.0).abs() < 0.01, "{sky}: {near}");
+            assert!(far < 0.9, "{sky}: {far}");
         }
     }
 }

@@ -54,6 +54,22 @@ fn a_small_picture_is_the_large_one_made_small() {
     }
 }
 
+/// A picture that is taller than the reference has the details of its own pixels.
+#[test]
+fn a_reference_counts_only_if_it_is_taller() {
+    for executor in [render, on_cpu] {
+        let with = |reference: Option<u32>| {
+            let plan = Plan {
+                reference,
+                ..sized("mandelbox", [64, 48])
+            };
+            bits(&executor(&plan, EVERYTHING))
+        };
+        let own = with(None);
+        assert!(with(Some(47)) == own && with(Some(49)) != own);
+    }
+}
+
 /// The plan with other samples, with and without cones, and the same shell.
 fn sampled(plan: &Plan, samples: u32, coarsest: u32) -> Plan {
     let mut plan = plan.clone();

@@ -15,7 +15,7 @@ use super::work::bits_however_cut;
 use crate::adapter::{HIT, both};
 
 /// A Radiance HDR of light by column and row.
-fn file(
+pub fn file(
     folder: &Folder,
     name: &str,
     [w, h]: [u32; 2],

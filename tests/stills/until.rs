@@ -13,7 +13,7 @@ use crate::adapter::{self, EVERYTHING, finish, on_cpu, render, render_cut};
 
 /// Sky above, relief below, and tiles that are cut by the edges.
 fn plan(until: f64) -> Plan {
-    let mut plan = preset("mandelbox", &["image.size=[150, 139]", "look.tone=filmic"]);
+    let mut plan = preset("mandelbox", &["image.size=[150, 139]"]);
     (plan.samples, plan.until) = (32, until);
     plan
 }

@@ -38,7 +38,7 @@ use std::cell::Cell;
 use adapter::{HIT, SKY, UNCONVERGED, both};
 use any_plan::any_plan;
 use common::hard::{self, SIZE};
-use common::plans::{boxed, camera, distance_solid, mandelbox, sized};
+use common::plans::{boxed, camera, distance_solid, mandelbox, mandelbox_of, sized};
 use common::solved::rays;
 use common::strain;
 use conemarch::base::projection::Projection;
@@ -46,6 +46,7 @@ use conemarch::formula::DistanceEstimate;
 use conemarch::formula::mandelbox::Mandelbox;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::Plan;
+use conemarch::plan::march::Mode;
 use conemarch::preset::{read, write};
 use conemarch::scene::stepping::Relaxation;
 use glam::DVec3;
@@ -131,6 +132,26 @@ fn normals_where_the_field_is_flat() {
     }
 }
 
+/// The estimate at the hits of a Mandelbox, in hit thresholds: its quantiles at 10, 50, 99 and 100 %.
+fn at_hits(plan: &Plan, frame: &Frame) -> [f64; 4] {
+    let m = mandelbox_of(&mut plan.clone()).clone();
+    let iterations = distance_solid(plan).iterations;
+    let hits = rays(plan)
+        .enumerate()
+        .filter(|(i, _)| frame.state[*i] == HIT);
+    let shares = hits.map(|(i, ray)| {
+        let t = f64::from(frame.depth[i]);
+        let p = plan.camera.eye + t * ray.axis;
+        let (inside, _) = m.estimate(p, iterations);
+        inside.max(m.bounds().distance(p)) / (plan.march.detail * ray.grain * t)
+    });
+    let mut values: Vec<f64> = shares.collect();
+    values.sort_by(f64::total_cmp);
+    let hits = values.len();
+    assert!(hits > 500, "{hits} hits");
+    [0.1, 0.5, 0.99, 1.0].map(|share| values[((hits - 1) as f64 * share) as usize])
+}
+
 /// A hit is where the estimate itself meets the threshold: not the estimate that steps divide by the
 /// Lipschitz constant, nor the one that they keep clear of the shell. The place is on a line between two
 /// values, so a curved estimate may be a little more there.
@@ -143,31 +164,33 @@ fn hits_are_where_the_estimate_meets_the_threshold() {
         plan.march.relaxation = Relaxation::Off;
         let mut m = mandelbox(scale);
         m.lipschitz = Some(3.0);
-        plan.scene = boxed(m.clone(), None);
-        let iterations = distance_solid(&plan).iterations;
+        plan.scene = boxed(m, None);
         for frame in both(&plan) {
-            let mut values = Vec::new();
-            for (i, ray) in rays(&plan)
-                .enumerate()
-                .filter(|(i, _)| frame.state[*i] == HIT)
-            {
-                let t = f64::from(frame.depth[i]);
-                let p = plan.camera.eye + t * ray.axis;
-                let (inside, _) = m.estimate(p, iterations);
-                let value = inside.max(m.bounds().distance(p));
-                values.push(value / (plan.march.detail * ray.grain * t));
-            }
-            values.sort_by(f64::total_cmp);
-            let hits = values.len();
-            assert!(hits > 500, "{name}: {hits}");
             // Depths are kept in f32, six digits of a threshold of thousandths.
-            let at =
-                [0.1, 0.5, 0.99, 1.0].map(|share| values[((hits - 1) as f64 * share) as usize]);
+            let at = at_hits(&plan, &frame);
             println!("{name}: {at:?} of it");
             let [low, middle, high, most] = at;
             // Rays that hit where they enter the bounds begin at 0.99 of the threshold.
             assert!(low > 0.97 && middle > 0.98, "{name}: {at:?}");
             assert!(high < 1.01 && most < 1.5, "{name}: {at:?}");
+        }
+    }
+}
+
+/// With the usual steps, behind cones or without, with proven ones and in Julia mode, hits are near it.
+#[test]
+fn default_hits_are_near_the_threshold() {
+    for name in ["bench-inside", "bench-graze", "mandelbox-julia"] {
+        for (mode, coarsest) in [(Mode::Safe, 16), (Mode::Safe, 1), (Mode::Proven, 16)] {
+            let mut plan = sized(name, SIZE);
+            (plan.march.mode, plan.march.coarsest) = (mode, Some(coarsest));
+            for frame in both(&plan) {
+                let at = at_hits(&plan, &frame);
+                let what = format!("{name}, {}, from 1/{coarsest}: {at:?}", mode.name());
+                println!("{what}");
+                let [_, middle, _, most] = at;
+                assert!((0.9..1.1).contains(&middle) && most <= 2.5, "{what}");
+            }
         }
     }
 }

@@ -94,7 +94,7 @@ fn materials_agree() {
         let material = substance.material_at(albedo, v);
         let l = substance.material_scatter(&material, v, numbers, f64::from(q[0][3]));
         let up = DVec3::new(l.x, l.y, l.z.abs() + 0.01).normalize();
-        let (light, density) = substance.material_reflects(&material, v, up);
+        let (light, density) = substance.material_reflects(&material, v, up, f64::from(q[0][3]));
         pairs.add("random", a[0][0], numbers.x);
         pairs.add("random", a[0][1], numbers.y);
         pairs.add("scatter", a[0][2], l.x);

@@ -10,8 +10,7 @@ struct LookUniform {
     /// Extinction per unit of length.
     fog: f32,
     sky_low: vec3<f32>,
-    /// Specular share.
-    gloss: f32,
+    pad: f32,
     world_up: vec3<f32>,
     /// Tangent of the sun's angular radius.
     softness: f32,

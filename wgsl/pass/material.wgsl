@@ -16,6 +16,8 @@ struct Material {
     /// mirror.
     mirror: vec3<f32>,
     grazing: vec3<f32>,
+    /// The share of light from all sides that the coat sends towards the direction.
+    coat: vec3<f32>,
     /// The share of the next rays that mirrors choose.
     chosen: f32,
 }
@@ -38,7 +40,8 @@ fn material_coat(specular: vec3<f32>, all: f32) -> mat2x3<f32> {
     return mat2x3<f32>(specular * again, grazing * again);
 }
 
-/// A direction to the eye in the frame of a surface. A normal of a rough surface may face away.
+/// A direction to the eye in the frame of a surface. Its z is at least 1e-3, as the normal of a rough
+/// surface may face away from the eye.
 fn material_view(v: vec3<f32>) -> vec3<f32> {
     return normalize(vec3<f32>(v.xy, max(v.z, 1e-3)));
 }
@@ -54,24 +57,21 @@ fn material_at(albedo: vec3<f32>, v: vec3<f32>) -> Material {
     let coat = mirror * share.x + grazing * share.y;
     let weights = vec2<f32>(dot(coat, vec3<f32>(1.0)), dot(base, vec3<f32>(1.0)));
     let chosen = weights.x / max(weights.x + weights.y, 1e-20);
-    return Material(base, mirror, grazing, chosen);
-}
-
-/// The share of light from all sides that the coat sends towards `v`.
-fn material_mirrors(material: Material, v: vec3<f32>) -> vec3<f32> {
-    let share = material_share(v.z);
-    return material.mirror * share.x + material.grazing * share.y;
+    return Material(base, mirror, grazing, coat, chosen);
 }
 
 /// The share of light from a direction that leaves towards `v`, times the cosine: the reflectance
-/// times `l.z`. The fourth number is the density of the directions of `material_scatter`.
-fn material_reflects(material: Material, v: vec3<f32>, l: vec3<f32>) -> vec4<f32> {
+/// times `l.z`. The fourth number is the density of the directions of `material_scatter`. Light of a
+/// disc, `radius` the tangent of its angular radius, comes from its centre, and mirrors are rougher by
+/// that. Then the density is of no use.
+fn material_reflects(material: Material, v: vec3<f32>, l: vec3<f32>, radius: f32) -> vec4<f32> {
     let diffuse = l.z / PI;
     if material.chosen == 0.0 {
         return vec4<f32>(material.base * diffuse, diffuse);
     }
     let h = normalize(v + l);
-    let aa = look_parameters.material.alpha * look_parameters.material.alpha;
+    let alpha = look_parameters.material.alpha;
+    let aa = min(alpha * alpha + 0.25 * radius * radius, 1.0);
     // 1 - h.z^2 would cancel.
     let spread = aa * h.z * h.z + dot(h.xy, h.xy);
     let density = aa / (PI * spread * spread);

@@ -95,7 +95,7 @@ fn shade(ray: Beam, q: vec3<f32>, seen: Surroundings, grain: f32, pixel: vec2<u3
             }
             let sight = path_sight(Beam(start, toward, 0.0, 0.0, grain, 0.0), lamp.far, opened, &left);
             if sight.state == STATE_SKY {
-                light += through * material_reflects(material, v, l).rgb * (PI * strength);
+                light += through * material_reflects(material, v, l, 0.0).rgb * (PI * strength);
             }
             decided = select(decided, 0.0, sight.state == STATE_UNCONVERGED);
         }
@@ -109,7 +109,7 @@ fn shade(ray: Beam, q: vec3<f32>, seen: Surroundings, grain: f32, pixel: vec2<u3
                 let sight = path_sight(ray, reach, opened, &left);
                 if sight.state == STATE_SKY {
                     // The balance heuristic (Veach 1997): both rays may find the same light.
-                    let reflected = material_reflects(material, v, l);
+                    let reflected = material_reflects(material, v, l, 0.0);
                     let joint = reflected.rgb / (sampled.w + reflected.w);
                     light += through * joint * sky_light(sampled.xyz);
                 }
@@ -122,7 +122,7 @@ fn shade(ray: Beam, q: vec3<f32>, seen: Surroundings, grain: f32, pixel: vec2<u3
         if l.z <= 0.0 {
             break;
         }
-        let reflected = material_reflects(material, v, l);
+        let reflected = material_reflects(material, v, l, 0.0);
         through *= reflected.rgb / max(reflected.w, 1e-20);
         if bounce >= PATH_SURE {
             let stays = clamp(max(through.r, max(through.g, through.b)), 0.05, 1.0);

@@ -23,7 +23,7 @@ fn shade(ray: Beam, q: vec3<f32>, at: Surroundings, grain: f32, pixel: vec2<u32>
     // A surface that faces away is dark: it needs no shadow ray.
     if sun.z > 0.0 {
         let light = shadow(q, n, grain, Lamp(look.light, 2.0 * bounds_far(), look.softness));
-        c += material_reflects(material, v, sun).rgb * (PI * look.key * light.open * look.light_color);
+        c += material_reflects(material, v, sun, look.softness).rgb * (PI * look.key * light.open * look.light_color);
         decided = light.decided;
     }
     let open = occlusion(at.rooms, occlusion_nearest(grain));
@@ -34,7 +34,7 @@ fn shade(ray: Beam, q: vec3<f32>, at: Surroundings, grain: f32, pixel: vec2<u32>
     // What the coat mirrors is more often near and dark: in hollows, and where it is seen at a slant.
     let mirrored = sky_ambient(reflect(ray.axis, n));
     let coated = open * open * open * open * min(1.0, 2.0 * v.z);
-    c += material_mirrors(material, v) * mirrored * coated;
+    c += material.coat * mirrored * coated;
     for (var nth = 0u; nth < lamp_count(); nth++) {
         let lamp = lamp_from(nth, q);
         let to_lamp = lamp.axis * frame;
@@ -43,7 +43,7 @@ fn shade(ray: Beam, q: vec3<f32>, at: Surroundings, grain: f32, pixel: vec2<u32>
             continue;
         }
         let near = shadow(q, n, grain, lamp);
-        c += material_reflects(material, v, to_lamp).rgb * (PI * near.open * strength);
+        c += material_reflects(material, v, to_lamp, lamp.softness).rgb * (PI * near.open * strength);
         decided &= near.decided;
     }
     return vec4<f32>(c, select(0.0, 1.0, decided));

@@ -1,0 +1,137 @@
+//! Where the time of a whole process goes: `cargo bench --bench process -- --write`.
+//!
+//! Each run is a process of its own, with a warm cache of the driver. It does in turn what `render`
+//! does, and times the parts. The program itself is timed beside it. `--write` puts the table into
+//! docs/architecture.md.
+
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use anyhow::{Context, Result, ensure};
+use conemarch::command::executor::Executor;
+use conemarch::gpu::adapters::Choice;
+use conemarch::pass::progress::Progress;
+use conemarch::picture::layer::{Layer, Shades};
+use conemarch::picture::png::{BitDepth, write_png};
+use conemarch::plan::Extras;
+use conemarch::preset;
+use conemarch::scene::Assets;
+use publish::publish;
+
+#[path = "common/markdown.rs"]
+mod markdown;
+#[path = "common/publish.rs"]
+mod publish;
+
+const MARKS: [&str; 2] = ["<!-- process -->", "<!-- /process -->"];
+const PRESETS: [&str; 4] = ["bench-outside", "mandelbox", "mandelbox-gate", "terrain"];
+const SIZE: [u32; 2] = [640, 360];
+/// Processes of each kind, of which the median is taken, after one that warms the driver's cache.
+const RUNS: usize = 9;
+/// Asks a process for one run.
+const ONE: &str = "--one";
+
+fn main() -> Result<()> {
+    let args: Vec<String> = std::env::args().collect();
+    if let [_, one, name] = &args[..]
+        && one == ONE
+    {
+        let parts = parts(name)?.map(|part| part.to_string());
+        println!("{}", parts.join(" "));
+        return Ok(());
+    }
+    let mut rows = Vec::new();
+    for name in PRESETS {
+        eprintln!("{name}");
+        let mut columns = vec![Vec::new(); 6];
+        for run in 0..=RUNS {
+            let own = Command::new(&args[0])
+                .args([ONE, name])
+                .stderr(Stdio::inherit())
+                .output()?;
+            ensure!(own.status.success(), "a run of {name} failed");
+            let said = String::from_utf8(own.stdout)?;
+            let mut times: Vec<f64> = said
+                .split_whitespace()
+                .map(str::parse)
+                .collect::<Result<_, _>>()?;
+            times.push(whole(name)?);
+            // The first run warms the cache.
+            if run > 0 {
+                columns.iter_mut().zip(times).for_each(|(c, t)| c.push(t));
+            }
+        }
+        let medians: Vec<f64> = columns.into_iter().map(median).collect();
+        let (whole, parts) = medians.split_last().context("there are no parts")?;
+        let cells: Vec<String> = parts.iter().map(|ms| format!("{ms:.0}")).collect();
+        let rest = whole - parts.iter().sum::<f64>();
+        rows.push(format!(
+            "{name} | {} | {rest:.0} | {whole:.0}",
+            cells.join(" | ")
+        ));
+    }
+    let table = markdown::table(
+        "640 x 360, one sample, ms | device opened | programs loaded | kernels | the render beside them | file | the rest of the process | in all",
+        "lr",
+        rows,
+    );
+    publish("architecture.md", MARKS, &table)
+}
+
+/// The middle one of times.
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+/// Milliseconds of the program, from nothing to a file.
+fn whole(name: &str) -> Result<f64> {
+    let folder = tempfile::tempdir()?;
+    let begun = Instant::now();
+    let [width, height] = SIZE;
+    let done = Command::new(env!("CARGO_BIN_EXE_conemarch"))
+        .args(["render", name, "--samples", "1"])
+        .args(["--size", &format!("{width}x{height}"), "-o"])
+        .arg(folder.path().join("a.png"))
+        .stderr(Stdio::null())
+        .status()?;
+    ensure!(done.success(), "a render of {name} failed");
+    Ok(begun.elapsed().as_secs_f64() * 1e3)
+}
+
+/// Milliseconds of the parts of one render in this process.
+fn parts(name: &str) -> Result<[f64; 5]> {
+    let mut plan = preset::load(name, &[])?.plan.one_sample();
+    plan.size = SIZE;
+    let begun = Instant::now();
+    let (mut executor, _) = Executor::open(&Choice::Auto)?;
+    let opened = begun.elapsed();
+    let extras = Extras {
+        time: true,
+        ..Extras::default()
+    };
+    let mut prepared = None;
+    let watch = &mut |now: &Progress| {
+        if now.pass != "compile" {
+            prepared.get_or_insert_with(|| begun.elapsed());
+        }
+        true
+    };
+    let frame = executor.render(&plan, &Assets::default(), extras, watch)?;
+    let rendered = begun.elapsed();
+    let kernels: f64 = frame.passes.iter().filter_map(|p| p.gpu_ms).sum();
+    let folder = tempfile::tempdir()?;
+    let mut file = std::fs::File::create(folder.path().join("a.png"))?;
+    let shades = Shades::new(Layer::Color, &frame, &plan);
+    write_png(&mut file, &shades, BitDepth::Eight, name, "")?;
+    let written = begun.elapsed();
+    let prepared = prepared.context("no pass was told")?;
+    let ms = |from: std::time::Duration, to: std::time::Duration| (to - from).as_secs_f64() * 1e3;
+    Ok([
+        ms(Default::default(), opened),
+        ms(opened, prepared),
+        kernels,
+        ms(prepared, rendered) - kernels,
+        ms(rendered, written),
+    ])
+}
