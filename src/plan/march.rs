@@ -122,7 +122,7 @@ pub const STEPS: u32 = 256;
 pub const COARSEST: u32 = 16;
 /// The shell with cones: rays that start behind them are wrong on as few pixels as rays alone.
 const SHELL: f64 = 0.2;
-/// The shell of rays alone: half as much keeps them within 3 % of the time of rays without a shell.
+/// The shell of rays alone: a quarter as much keeps them within 3 % of the time of rays without a shell.
 const SHELL_ALONE: f64 = 0.05;
 
 settings! {
@@ -132,7 +132,7 @@ settings! {
         coarsest: Option<u32> = None, divisor(),
             "side in pixels of the blocks of the first cone pass, 1 for no cones; auto is 16, or 1 in modes safe and proven where cones do not pay: over a formula where a ray alone needs less than 10 evaluations, over a heightfield where cones leave a ray 0.84 of its evaluations or more, 0.9 with several samples, or below 100000 pixels, and always on a discrete GPU";
         detail: f64 = 1.0, number(1e-3, 1e3),
-            "hit threshold in footprints: a ray hits where the estimate is at most this";
+            "hit threshold in footprints: a ray ends where the estimate is at most this";
         shell: Option<f64> = None, auto_number(0.0, 0.99),
             "share of the hit threshold by which steps keep away from the surface; more costs time and lowers the error; auto is 0.2, and 0.05 without cones";
         relaxation: Relaxation = Relaxation::Auto, relaxation(), "factor on the steps of rays; auto follows the change of the estimate from step to step, and off is 1";

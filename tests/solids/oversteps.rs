@@ -175,7 +175,7 @@ fn steps_are_too_long_by_as_much_as_is_said() {
             let found = search_from(climbs, random, |p, _| evaluator.step(p, MANY, 0.0).radius);
             worst = worst.max(found.ratio);
         }
-        assert!(worst < LARGE[i], "{m:?}: {worst}");
+        assert!(worst < LARGE[i] * ROUNDED, "{m:?}: {worst}");
     }
 }
 

@@ -3,6 +3,7 @@
 use conemarch::base::outcome::State;
 use conemarch::gpu::render::Cutting;
 use conemarch::picture::frame::Frame;
+use conemarch::plan::look::Look;
 use conemarch::plan::{Extras, Plan};
 use glam::DVec3;
 
@@ -78,6 +79,7 @@ fn glow_knows_nothing_of_cones_and_blocks() {
 #[test]
 fn glow_adds_up() {
     let mut plan = preset("mandelbox-gate", &["image.size=[96, 54]"]);
+    plan.look = Look::default();
     let without = render(&plan, Extras::default());
     (plan.look.glow, plan.look.glow_color) = (0.5, DVec3::ONE);
     let with = render(&plan, Extras::default());

@@ -1,7 +1,7 @@
 //! Pictures by the light of lamps alone.
 
 use conemarch::picture::frame::Frame;
-use conemarch::plan::look::LightMode;
+use conemarch::plan::look::{LightMode, Look};
 use conemarch::plan::{Extras, Plan};
 use glam::DVec3;
 
@@ -104,7 +104,9 @@ fn sum(a: &Frame, b: &Frame) -> Vec<[f32; 3]> {
 #[test]
 fn lamps_add_up_and_their_order_is_nothing() {
     for mode in [LightMode::Quick, LightMode::Path] {
-        let none = dark(sized("mandelbox-gate", [96, 54]), mode);
+        let mut none = sized("mandelbox-gate", [96, 54]);
+        none.look = Look::default();
+        let none = dark(none, mode);
         let (eye, target) = (none.camera.eye, none.camera.target);
         let side = (target - eye).cross(none.camera.up).normalize();
         let beside = |share: f64| Some(eye + share * (target - eye).length() * side);

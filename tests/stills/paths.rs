@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use conemarch::picture::frame::Frame;
 use conemarch::plan::layers::Trap;
-use conemarch::plan::look::LightMode;
+use conemarch::plan::look::{LightMode, Look};
 use conemarch::plan::{Extras, Plan};
 use conemarch::scene::Assets;
 use glam::DVec3;
@@ -116,6 +116,7 @@ fn the_sun_shines_once() {
 fn noise_falls_with_the_samples() {
     for name in ["mandelbox", "mandelbox-gate", "terrain"] {
         let mut plan = sized(name, [32, 18]);
+        plan.look = Look::default();
         // Many samples of the fine details are needed too: shade no finer ones than the pixel's.
         plan.reference = None;
         let fine = render(&followed(plan.clone(), 1024), Extras::default());

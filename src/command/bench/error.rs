@@ -36,7 +36,8 @@ use crate::scene::Assets;
 pub struct ErrorBench {
     #[command(flatten)]
     common: Common,
-    /// Also measure other values of march.coarsest, shell, relaxation, steps, fudge and detail, one at a time
+    /// Also measure other values of march.coarsest, shell, relaxation, steps, fudge, detail and
+    /// scene.lipschitz, one at a time
     #[arg(long)]
     sweep: bool,
     /// Draw time against error; - is standard output, and the tables then go to stderr
