@@ -66,7 +66,8 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-fn row(executor: &mut Executor, name: &str, size: [u32; 2], in_software: bool) -> Result<Row> {
+/// In software each plan has an executor of its own, which keeps its buffers.
+fn row(executors: &mut [Executor], name: &str, size: [u32; 2], in_software: bool) -> Result<Row> {
     let (count, [runs, warm]) = match in_software {
         true => (4, SOFTWARE_RUNS),
         false => (3, RUNS),
@@ -94,6 +95,11 @@ fn row(executor: &mut Executor, name: &str, size: [u32; 2], in_software: bool) -
         }
         for (nth, (plan, marched)) in turns {
             let begun = Instant::now();
+            let executor = &mut executors[if in_software { nth } else { 0 }];
+            let extras = Extras {
+                depth_only: in_software && nth != CHOSEN,
+                ..extras
+            };
             let frame = executor.render(plan, &assets, extras, &mut |_: &_| true)?;
             if run < warm {
                 continue;
@@ -170,11 +176,15 @@ fn main() -> Result<()> {
         (_, true) => Choice::Hardware,
         _ => Choice::Auto,
     };
-    let (mut executor, who) = Executor::open(&device)?;
+    let (executor, who) = Executor::open(&device)?;
+    let mut executors = vec![executor];
+    for _ in 1..if in_software { PLANS.len() } else { 1 } {
+        executors.push(Executor::open(&device)?.0);
+    }
     let mut rows = Vec::new();
     for name in &names {
         eprintln!("{name}");
-        rows.push(row(&mut executor, name, size, in_software)?);
+        rows.push(row(&mut executors, name, size, in_software)?);
     }
     println!("{} x {} on {who}:\n", size[0], size[1]);
     let marks = match in_software {

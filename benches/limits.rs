@@ -17,22 +17,16 @@ use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};
 use conemarch::scene::{Advance, Assets, Solid, Step, Task};
 use publish::publish;
+use views::VIEWS;
 
 #[path = "common/markdown.rs"]
 mod markdown;
 #[path = "common/publish.rs"]
 mod publish;
+#[path = "common/views.rs"]
+mod views;
 
 const MARKS: [&str; 2] = ["<!-- limits -->", "<!-- /limits -->"];
-/// Presets of distance estimates, with their size.
-const FORMULAS: [&str; 6] = [
-    "bench-far",
-    "bench-graze",
-    "bench-inside",
-    "bench-outside",
-    "bench-thin",
-    "mandelbox-gate",
-];
 /// Presets of heights.
 const FIELDS: [&str; 4] = ["bricks", "spikes", "stones", "terrain"];
 /// More presets whose rays to the sun are counted.
@@ -179,7 +173,7 @@ fn row(name: &str, rays: &[Vec<Counts>], ideal: &[Vec<Counts>], of: fn(&Counts) 
 
 fn main() -> Result<()> {
     let mut rows = Vec::new();
-    for name in FORMULAS {
+    for name in VIEWS {
         eprintln!("{name}");
         let size = [1920, 1080];
         let rival = ["march.mode=ray-relaxed", "march.clip=on"];
@@ -206,7 +200,7 @@ fn main() -> Result<()> {
         rows,
     );
     let mut rows = Vec::new();
-    for name in FORMULAS.into_iter().chain(SUNNY).chain(FIELDS) {
+    for name in VIEWS.into_iter().chain(SUNNY).chain(FIELDS) {
         eprintln!("{name}, to the sun");
         let groups = counted(name, [1280, 720], &[], Rays::ToSun)?;
         let of = |c: &Counts| c.iterations.max(c.evaluations);

@@ -26,6 +26,7 @@ use one_sample::one_sample;
 use publish::publish;
 use serde_json::Value;
 use tempfile::TempDir;
+use views::VIEWS;
 
 #[path = "common/as_sharp.rs"]
 mod as_sharp;
@@ -35,6 +36,8 @@ mod markdown;
 mod one_sample;
 #[path = "common/publish.rs"]
 mod publish;
+#[path = "common/views.rs"]
+mod views;
 
 /// The marks around the tables in the page.
 const MARKS: [&str; 2] = [
@@ -53,14 +56,6 @@ const STRIDE: f64 = 0.1;
 /// The old build's strongest way without cones, in views of Mandelboxes.
 const RIVAL: [&str; 2] = ["march.mode=ray-relaxed", "march.clip=on"];
 const RIVAL_SIZE: [u32; 2] = [1920, 1080];
-const VIEWS: [&str; 6] = [
-    "bench-far",
-    "bench-graze",
-    "bench-inside",
-    "bench-outside",
-    "bench-thin",
-    "mandelbox-gate",
-];
 /// Presets whose second frame is looked at.
 const LIVE: [&str; 3] = ["mandelbox", "mandelbox-gate", "terrain"];
 /// Its sizes: kernels take little at the first, and rays tell whether cones pay at the others.

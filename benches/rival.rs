@@ -19,12 +19,15 @@ use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
+use views::VIEWS;
 
 #[path = "common/as_sharp.rs"]
 mod as_sharp;
 #[path = "common/markdown.rs"]
 #[allow(dead_code, reason = "other programs use the rest")]
 mod markdown;
+#[path = "common/views.rs"]
+mod views;
 
 /// Warm turns that a median is taken of, at least, and for how long: short times vary more.
 const TURNS: usize = 9;
@@ -45,14 +48,6 @@ const PLANS: [(&str, &[&str]); 5] = [
             "scene.estimate=scalar",
         ],
     ),
-];
-const PRESETS: [&str; 6] = [
-    "bench-far",
-    "bench-graze",
-    "bench-inside",
-    "bench-outside",
-    "bench-thin",
-    "mandelbox-gate",
 ];
 
 /// A plan's figures.
@@ -169,7 +164,7 @@ fn main() -> Result<()> {
         }
     }
     if names.is_empty() {
-        names = PRESETS.map(String::from).into();
+        names = VIEWS.map(String::from).into();
     }
     let (executor, who) = Executor::open(&Choice::Auto)?;
     eprintln!("measuring on {who}");
