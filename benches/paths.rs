@@ -24,7 +24,7 @@ const MARKS: [&str; 2] = [
     "<!-- cargo bench --bench paths -- --write: end -->",
 ];
 /// White surfaces in white light from all sides.
-const WHITE: [&str; 8] = [
+const WHITE: [&str; 10] = [
     "look.palette=[[1, 1, 1], [1, 1, 1]]",
     "look.sky_low=[1, 1, 1]",
     "look.sky_high=[1, 1, 1]",
@@ -32,18 +32,52 @@ const WHITE: [&str; 8] = [
     "look.fill=1",
     "look.ground=1",
     "look.fog=0",
+    "look.lamp=0",
+    "look.lamp2=0",
     "image.reference=auto",
 ];
 /// More bounces than can be set.
 const MORE_BOUNCES: u32 = 64;
 /// The scenes of the furnace, with their settings and limits of bounces.
 const FURNACE: [(&str, &[&str], &[u32]); 9] = [
-    ("terrain", &["look.roughness=0.05"], &[8]),
-    ("terrain", &["look.roughness=0.2"], &[8]),
-    ("terrain", &["look.roughness=1"], &[8]),
-    ("terrain", &["look.roughness=0.05", "look.metal=1"], &[8]),
-    ("terrain", &["look.roughness=0.2", "look.metal=1"], &[8]),
-    ("terrain", &["look.roughness=1", "look.metal=1"], &[8]),
+    (
+        "terrain",
+        &["scene.normals=patches", "look.roughness=0.05"],
+        &[16],
+    ),
+    (
+        "terrain",
+        &["scene.normals=patches", "look.roughness=0.2"],
+        &[16],
+    ),
+    (
+        "terrain",
+        &["scene.normals=patches", "look.roughness=1"],
+        &[16],
+    ),
+    (
+        "terrain",
+        &[
+            "scene.normals=patches",
+            "look.roughness=0.05",
+            "look.metal=1",
+        ],
+        &[16],
+    ),
+    (
+        "terrain",
+        &[
+            "scene.normals=patches",
+            "look.roughness=0.2",
+            "look.metal=1",
+        ],
+        &[16],
+    ),
+    (
+        "terrain",
+        &["scene.normals=patches", "look.roughness=1", "look.metal=1"],
+        &[16],
+    ),
     ("mandelbox", &["look.trap=point"], &[0, 2, 8, 16]),
     (
         "mandelbox",
@@ -88,6 +122,7 @@ fn light(frame: &Frame) -> [f64; 3] {
 /// The shaders with four times the bounces that are set.
 fn more_bounces(path: &str) -> Option<String> {
     let text = include_str!("../wgsl/pass/path.wgsl");
+    assert!(text.contains("look.bounces"));
     (path == "wgsl/pass/path.wgsl").then(|| text.replace("look.bounces", "(4u * look.bounces)"))
 }
 
@@ -104,13 +139,21 @@ impl Bench {
 
     fn furnace(&mut self) -> Result<String> {
         let mut rows = Vec::new();
+        // Walls are grey but where a texture colours them.
+        let folder = tempfile::tempdir()?;
+        let white = folder.path().join("white.png");
+        image::RgbImage::from_pixel(4, 4, [255; 3].into()).save(&white)?;
+        let texture = format!("scene.texture={}", white.display());
         for (name, own, bounces) in FURNACE {
             for bounces in bounces {
                 let is_more = *bounces == MORE_BOUNCES;
                 self.renderer.sources = is_more.then(|| Arc::new(more_bounces) as _);
                 let set = if is_more { MORE_BOUNCES / 4 } else { *bounces };
                 let limit = format!("look.bounces={set}");
-                let settings = [&WHITE[..], own, &[&limit]].concat();
+                let mut settings = [&WHITE[..], own, &[&limit]].concat();
+                if name == "terrain" {
+                    settings.push(&texture);
+                }
                 let frame = self.render(&plan(name, &settings)?, LightMode::Path, 64)?;
                 let own: Vec<_> = own.iter().map(|s| format!("`{s}`")).collect();
                 let [light, ..] = light(&frame);

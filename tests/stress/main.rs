@@ -189,7 +189,7 @@ fn default_hits_are_near_the_threshold() {
                 let what = format!("{name}, {}, from 1/{coarsest}: {at:?}", mode.name());
                 println!("{what}");
                 let [_, middle, _, most] = at;
-                assert!((0.9..1.1).contains(&middle) && most <= 2.5, "{what}");
+                assert!((0.9..1.1).contains(&middle) && most <= 2.02, "{what}");
             }
         }
     }
