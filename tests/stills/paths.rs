@@ -9,11 +9,16 @@ use conemarch::plan::{Extras, Plan};
 use conemarch::scene::Assets;
 use glam::DVec3;
 
+use alone::alone;
+
 use super::common::folder::Folder;
 use super::common::plans::{preset, sized};
 use super::sky::file;
 use super::work::{bits, bits_however_cut};
 use crate::adapter::{self, EVERYTHING, HIT, both, on_cpu, render};
+
+#[path = "../../benches/common/alone.rs"]
+mod alone;
 
 /// The plan with paths.
 fn followed(mut plan: Plan, samples: u32) -> Plan {
@@ -215,12 +220,6 @@ fn quick_light_is_about_as_bright() {
 /// The rays of a surface share their first step. The picture is that of rays that do not.
 #[test]
 fn shared_first_steps_change_no_bit() {
-    let alone = |path: &str| {
-        let text = include_str!("../../wgsl/pass/path.wgsl");
-        let shared = "begin_opened(ray, reach, opened)";
-        assert!(text.contains(shared));
-        (path == "wgsl/pass/path.wgsl").then(|| text.replace(shared, "begin(ray, 0.0, reach)"))
-    };
     let mut differs = 0;
     for (name, steps) in [
         ("mandelbox", 512),
