@@ -6,8 +6,8 @@
 //! balls. Rays from their fronts are counted on the CPU, in groups of 8 x 4 pixels spread over the
 //! picture.
 //!
-//! Rays to the sun from the hits are counted too: what their groups wait for is what lanes could save
-//! that take the next ray.
+//! Rays from the eye and rays to the sun are counted with lanes that take the next ray of their tile,
+//! too, as if taking it cost nothing.
 
 use anyhow::Result;
 use conemarch::base::outcome::Counts;
@@ -29,17 +29,20 @@ mod views;
 const MARKS: [&str; 2] = ["<!-- limits -->", "<!-- /limits -->"];
 /// Presets of heights.
 const FIELDS: [&str; 4] = ["bricks", "spikes", "stones", "terrain"];
-/// More presets whose rays to the sun are counted.
-const SUNNY: [&str; 4] = [
+/// More presets for lanes that take the next ray.
+const MORE: [&str; 4] = [
     "mandelbox",
     "mandelbox-canyon",
     "mandelbox-hall",
     "mandelbox-towers",
 ];
-/// One group in so many along each axis is counted.
-const EVERY: u32 = 5;
-/// Pixels of a group.
-const GROUP: [u32; 2] = [8, 4];
+/// One tile in so many along each axis is counted.
+const EVERY: u32 = 3;
+/// Pixels of a tile along each axis.
+const TILE: u32 = 16;
+/// Groups of lanes: a wide one has 8 x 4 pixels, a narrow one 4 x 2.
+const WIDE: usize = 32;
+const NARROW: usize = 8;
 /// Steps of a ray, and of a cone.
 const STEPS: u32 = 512;
 /// A cone ends after a step that gains less than this share of its front.
@@ -54,22 +57,22 @@ enum Rays {
     ToSun,
 }
 
-/// Follows the rays of groups of pixels.
+/// Follows the rays of tiles.
 struct Follow<'a> {
     plan: &'a Plan,
     rays: Rays,
 }
 
 impl Task for Follow<'_> {
-    /// Counts of the rays of each group.
+    /// Counts of the rays of each tile, group by group.
     type Output = Vec<Vec<Counts>>;
 
     fn run<S: Solid>(self, solid: &S) -> Self::Output {
         let view = self.plan.view();
         let far = solid.bounds_far();
         let sun = self.plan.look.light.normalize();
-        let [columns, rows] = [0, 1].map(|axis| self.plan.size[axis] / (GROUP[axis] * EVERY));
-        let groups = (0..rows).flat_map(|y| (0..columns).map(move |x| [x, y]));
+        let [columns, rows] = self.plan.size.map(|side| side / (TILE * EVERY));
+        let tiles = (0..rows).flat_map(|y| (0..columns).map(move |x| [x, y]));
         let follow = |pixel: [u32; 2]| {
             let mut front = 0.0;
             if self.rays == Rays::FromIdealCones {
@@ -112,13 +115,18 @@ impl Task for Follow<'_> {
             }
             work
         };
-        groups
-            .map(|group| {
-                let [x, y] = [0, 1].map(|axis| group[axis] * GROUP[axis] * EVERY);
-                // Groups of 4 x 2 within it, one after the other.
-                let pixels =
-                    (0..32).map(|i| [x + i / 8 % 2 * 4 + i % 4, y + i / 16 * 2 + i % 8 / 4]);
-                pixels.map(follow).collect()
+        tiles
+            .map(|tile| {
+                let corner = tile.map(|n| n * TILE * EVERY);
+                // Narrow groups lie within wide ones, these in rows of two.
+                let place = |i: u32| {
+                    let (group, narrow, lane) = (i / 32, i / 8 % 4, i % 8);
+                    [
+                        corner[0] + group % 2 * 8 + narrow % 2 * 4 + lane % 4,
+                        corner[1] + group / 2 * 4 + narrow / 2 * 2 + lane / 4,
+                    ]
+                };
+                (0..TILE * TILE).map(|i| follow(place(i))).collect()
             })
             .collect()
     }
@@ -143,12 +151,28 @@ fn follow_ray<S: Solid>(
 }
 
 /// Cost per pixel if the pixels of each group of `width` wait for the longest.
-fn cost(groups: &[Vec<Counts>], width: usize, of: fn(&Counts) -> u32) -> f64 {
-    let most = groups.iter().flat_map(|group| group.chunks(width));
-    let most: Vec<f64> = most
+fn cost(tiles: &[Vec<Counts>], width: usize, of: fn(&Counts) -> u32) -> f64 {
+    let groups = tiles.iter().flat_map(|tile| tile.chunks(width));
+    let most: Vec<f64> = groups
         .filter_map(|lanes| lanes.iter().map(of).max().map(f64::from))
         .collect();
     most.iter().sum::<f64>() / most.len() as f64
+}
+
+/// Cost per pixel if a tile has one group of `width` lanes, of which each takes the next ray of the
+/// tile as soon as it is free.
+fn cost_of_takers(tiles: &[Vec<Counts>], width: usize, of: fn(&Counts) -> u32) -> f64 {
+    let work = |tile: &Vec<Counts>| {
+        let mut busy = vec![0; width];
+        for ray in tile.iter().map(of) {
+            if let Some(first) = busy.iter_mut().min() {
+                *first += ray;
+            }
+        }
+        busy.into_iter().max().unwrap_or(0)
+    };
+    let all: f64 = tiles.iter().map(|tile| f64::from(work(tile))).sum();
+    all * width as f64 / (tiles.len() as u32 * TILE * TILE) as f64
 }
 
 fn counted(name: &str, size: [u32; 2], changes: &[&str], rays: Rays) -> Result<Vec<Vec<Counts>>> {
@@ -163,12 +187,39 @@ fn counted(name: &str, size: [u32; 2], changes: &[&str], rays: Rays) -> Result<V
     Ok(solid.run(Follow { plan: &plan, rays }))
 }
 
-fn row(name: &str, rays: &[Vec<Counts>], ideal: &[Vec<Counts>], of: fn(&Counts) -> u32) -> String {
+fn ideal_row(name: &str, rays: &[Vec<Counts>], ideal: &[Vec<Counts>], of: fn(&Counts) -> u32) -> String {
     let part = |width| {
         let [rays, ideal] = [rays, ideal].map(|groups| cost(groups, width, of));
         format!("{rays:.1} | {ideal:.1} | {:.2}", rays / ideal)
     };
-    format!("{name} | {} | {}", part(32), part(1))
+    format!("{name} | {} | {}", part(WIDE), part(1))
+}
+
+/// What lanes wait for, and what is left of it if they take the next ray.
+fn lanes(rays: Rays, title: &str) -> Result<String> {
+    let mut rows = Vec::new();
+    for name in VIEWS.into_iter().chain(MORE).chain(FIELDS) {
+        eprintln!("{name}, {title}");
+        let tiles = counted(name, [1280, 720], &[], rays)?;
+        let of = |c: &Counts| c.iterations.max(c.evaluations);
+        let alone = cost(&tiles, 1, of);
+        let part = |width| {
+            let [wait, take] = [cost(&tiles, width, of), cost_of_takers(&tiles, width, of)];
+            format!("{:.2} | {:.2}", wait / alone, take / alone)
+        };
+        rows.push(format!(
+            "{name} | {alone:.1} | {} | {}",
+            part(WIDE),
+            part(NARROW)
+        ));
+    }
+    Ok(markdown::table(
+        &format!(
+            "{title}, 1280 x 720 | alone, per pixel | 32 lanes that wait | 32 that take | 8 lanes that wait | 8 that take"
+        ),
+        "lr",
+        rows,
+    ))
 }
 
 fn main() -> Result<()> {
@@ -179,7 +230,7 @@ fn main() -> Result<()> {
         let rival = ["march.mode=ray-relaxed", "march.clip=on"];
         let rival = counted(name, size, &rival, Rays::Alone)?;
         let ideal = counted(name, size, &[], Rays::FromIdealCones)?;
-        rows.push(row(name, &rival, &ideal, |c| c.iterations));
+        rows.push(ideal_row(name, &rival, &ideal, |c| c.iterations));
     }
     let formulas = markdown::table(
         "iterations per pixel, 1920 x 1080 | rival, in groups | ideal cones, in groups | ratio | rival, alone | ideal cones, alone | ratio",
@@ -192,33 +243,18 @@ fn main() -> Result<()> {
         let size = [1280, 720];
         let rival = counted(name, size, &[], Rays::Alone)?;
         let ideal = counted(name, size, &[], Rays::FromIdealCones)?;
-        rows.push(row(name, &rival, &ideal, |c| c.evaluations));
+        rows.push(ideal_row(name, &rival, &ideal, |c| c.evaluations));
     }
     let fields = markdown::table(
         "steps per pixel, 1280 x 720 | rays, in groups | ideal cones, in groups | ratio | rays, alone | ideal cones, alone | ratio",
         "lr",
         rows,
     );
-    let mut rows = Vec::new();
-    for name in VIEWS.into_iter().chain(SUNNY).chain(FIELDS) {
-        eprintln!("{name}, to the sun");
-        let groups = counted(name, [1280, 720], &[], Rays::ToSun)?;
-        let of = |c: &Counts| c.iterations.max(c.evaluations);
-        let [wide, narrow, alone] = [32, 8, 1].map(|width| cost(&groups, width, of));
-        rows.push(format!(
-            "{name} | {wide:.1} | {narrow:.1} | {alone:.1} | {:.2} | {:.2}",
-            wide / alone,
-            narrow / alone
-        ));
-    }
-    let sun = markdown::table(
-        "rays to the sun per pixel, 1280 x 720 | in groups of 32 | in groups of 8 | alone | 32 / alone | 8 / alone",
-        "lr",
-        rows,
-    );
+    let eye = lanes(Rays::Alone, "rays from the eye")?;
+    let sun = lanes(Rays::ToSun, "rays to the sun")?;
     publish(
         "benchmarks.md",
         MARKS,
-        &format!("{formulas}\n{fields}\n{sun}"),
+        &format!("{formulas}\n{fields}\n{eye}\n{sun}"),
     )
 }
