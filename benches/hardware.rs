@@ -15,10 +15,13 @@ use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
+use median::median;
 
 #[path = "common/markdown.rs"]
 #[allow(dead_code, reason = "other programs use the rest")]
 mod markdown;
+#[path = "common/median.rs"]
+mod median;
 #[path = "common/publish.rs"]
 mod publish;
 
@@ -59,11 +62,6 @@ fn on_device(frame: &Frame, marches: bool) -> Result<f64> {
         .map(|p| p.gpu_ms);
     let sum: Option<f64> = times.sum();
     sum.context("the device has no timestamps")
-}
-
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
 }
 
 /// In software each plan has an executor of its own, which keeps its buffers.

@@ -187,7 +187,12 @@ fn counted(name: &str, size: [u32; 2], changes: &[&str], rays: Rays) -> Result<V
     Ok(solid.run(Follow { plan: &plan, rays }))
 }
 
-fn ideal_row(name: &str, rays: &[Vec<Counts>], ideal: &[Vec<Counts>], of: fn(&Counts) -> u32) -> String {
+fn ideal_row(
+    name: &str,
+    rays: &[Vec<Counts>],
+    ideal: &[Vec<Counts>],
+    of: fn(&Counts) -> u32,
+) -> String {
     let part = |width| {
         let [rays, ideal] = [rays, ideal].map(|groups| cost(groups, width, of));
         format!("{rays:.1} | {ideal:.1} | {:.2}", rays / ideal)

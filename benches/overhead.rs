@@ -22,6 +22,7 @@ use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
+use median::median;
 use one_sample::one_sample;
 use publish::publish;
 use serde_json::Value;
@@ -32,6 +33,8 @@ use views::VIEWS;
 mod as_sharp;
 #[path = "common/markdown.rs"]
 mod markdown;
+#[path = "common/median.rs"]
+mod median;
 #[path = "common/one_sample.rs"]
 mod one_sample;
 #[path = "common/publish.rs"]
@@ -109,12 +112,6 @@ fn overheads(args: &[String], preset: &Path) -> Result<[f64; 2]> {
         }
     }
     Ok(all.map(median))
-}
-
-/// The middle one of times.
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
 }
 
 /// The times of one render in milliseconds.

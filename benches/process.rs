@@ -14,10 +14,13 @@ use conemarch::picture::{BitDepth, Layer, Shades, write_png};
 use conemarch::plan::Extras;
 use conemarch::preset;
 use conemarch::scene::Assets;
+use median::median;
 use publish::publish;
 
 #[path = "common/markdown.rs"]
 mod markdown;
+#[path = "common/median.rs"]
+mod median;
 #[path = "common/publish.rs"]
 mod publish;
 
@@ -74,12 +77,6 @@ fn main() -> Result<()> {
         rows,
     );
     publish("architecture.md", MARKS, &table)
-}
-
-/// The middle one of times.
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
 }
 
 /// Milliseconds of the program, from nothing to a file.

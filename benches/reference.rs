@@ -1,6 +1,6 @@
 //! Whether a small picture is the large one made small: `cargo bench --bench reference`. With
-//! `-- --write` it writes its table into docs/accuracy.md. It takes
-//! a minute on a large GPU, and very long in software.
+//! `-- --write` it writes its table into docs/accuracy.md, and with `-- PRESET...` it prints these
+//! presets alone. All of them take a minute on a large GPU, and hours in software.
 
 use anyhow::{Context, Result};
 use conemarch::gpu::adapters::{Adapters, Choice};
@@ -32,7 +32,14 @@ fn main() -> Result<()> {
     let (adapter, _) = chosen.context("there is no adapter")?;
     let mut renderer = Renderer::new(Device::open(adapter)?);
     let mut rows = Vec::new();
+    let named: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|word| !word.starts_with("--"))
+        .collect();
     for (name, _) in BUILTIN {
+        if !named.is_empty() && !named.iter().any(|one| one == name) {
+            continue;
+        }
         let plan = preset::load(name, &[])?.plan;
         // The others are for measurements.
         if plan.reference.is_none() {
@@ -55,5 +62,9 @@ fn main() -> Result<()> {
         "lr",
         rows,
     );
+    if !named.is_empty() {
+        println!("{table}");
+        return Ok(());
+    }
     publish("accuracy.md", MARKS, &table)
 }

@@ -16,7 +16,8 @@ use conemarch::plan::{Extras, Plan};
 use conemarch::scene::Assets;
 use serde::{Deserialize, Serialize};
 
-use crate::frames::{WIDTH, frame_ms, median, skipped, terrain};
+use crate::frames::{WIDTH, frame_ms, skipped, terrain};
+use crate::median::median;
 
 /// Samples along either axis.
 const SAMPLES: [u32; 4] = [512, 1024, 2048, 4096];

@@ -1,6 +1,7 @@
 //! Times of whole frames by cone map, at 32 and 200 steps: the tables of section 4.1 of Valasek
 //! and Ban (2022), at the sizes of the paper.
 
+use crate::median::median;
 use anyhow::{Context, Result, ensure};
 use conemarch::base::outcome::State;
 use conemarch::command::executor::Executor;
@@ -148,10 +149,4 @@ pub fn measure(field: &str, relaxed: &str) -> Result<Vec<FrameRow>> {
         }
     }
     Ok(rows)
-}
-
-/// The median.
-pub fn median(mut all: Vec<f64>) -> f64 {
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
 }

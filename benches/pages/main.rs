@@ -22,6 +22,8 @@ mod tables;
 
 #[path = "../common/markdown.rs"]
 mod markdown;
+#[path = "../common/median.rs"]
+mod median;
 #[path = "../common/rows.rs"]
 mod rows;
 

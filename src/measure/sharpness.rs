@@ -17,8 +17,10 @@ use crate::picture::frame::Frame;
 use crate::plan::Plan;
 use crate::scene::Assets;
 
-/// One in so many pixels is sampled.
+/// One in so many pixels of a row is sampled.
 const SAMPLE: usize = 16;
+/// Each row begins so many pixels after the one above, so that all places within a cell are sampled.
+const SHIFT: usize = 5;
 /// Rays to the set end at this share of the plan's hit threshold.
 const SHARPER: f64 = 1.0 / 16.0;
 /// A front is a start violation if it is beyond the set by more than this share of a footprint,
@@ -67,7 +69,12 @@ pub fn sample(plan: &Plan, assets: &Assets, stride: f64) -> Result<SetSample, Re
     finer.march.detail *= SHARPER;
     finer.march.stride = Some(stride);
     let [width, height] = plan.size.map(|n| n as usize);
-    let numbers: Vec<usize> = (0..width * height).step_by(SAMPLE).collect();
+    let row = |y: usize| {
+        (y * SHIFT % SAMPLE..width)
+            .step_by(SAMPLE)
+            .map(move |x| y * width + x)
+    };
+    let numbers: Vec<usize> = (0..height).flat_map(row).collect();
     let pixels = numbers.iter();
     let pixels: Vec<_> = pixels
         .map(|i| [i % width, i / width].map(|n| n as u32))

@@ -45,6 +45,13 @@ fn proven_balls_are_empty() {
             // The search comes close, or it would prove nothing.
             assert!(worst.ratio > 0.69, "{m:?}, trial {trial}: {worst:?}");
         }
+        // Near a hit the last radius may be far larger.
+        for trial in [3.0, 10.0, 100.0] {
+            let worst = search(&m, 1000, |p, off| {
+                evaluator.ball(p, MANY, trial * off).radius
+            });
+            assert!(worst.ratio < ROUNDED, "{m:?}, trial {trial}: {worst:?}");
+        }
     }
 }
 
@@ -54,14 +61,19 @@ fn proven_balls_are_empty_in_julia_mode_and_with_a_rotation() {
         m.julia_constant = m.fold_limit * DVec3::new(0.7, -0.4, 1.1);
         m.julia = true;
         let evaluator = m.evaluator();
-        let ball = |p, off: f64| evaluator.ball(p, MANY, 1.2 * off).radius;
-        let worst = search(&m, 2000, ball);
-        assert!(worst.ratio < ROUNDED, "{m:?}: {worst:?}");
+        for (trial, count) in [(1.2, 2000), (10.0, 500)] {
+            let ball = |p, off: f64| evaluator.ball(p, MANY, trial * off).radius;
+            let worst = search(&m, count, ball);
+            assert!(worst.ratio < ROUNDED, "{m:?}, trial {trial}: {worst:?}");
+        }
         m.julia = false;
         m.rotation = DVec3::new(12.0, -8.0, 25.0);
         let evaluator = m.evaluator();
-        let worst = search(&m, 1000, |p, off| evaluator.ball(p, MANY, off).radius);
-        assert!(worst.ratio < ROUNDED, "{m:?}: {worst:?}");
+        for (trial, count) in [(1.0, 1000), (10.0, 500)] {
+            let ball = |p, off: f64| evaluator.ball(p, MANY, trial * off).radius;
+            let worst = search(&m, count, ball);
+            assert!(worst.ratio < ROUNDED, "{m:?}, trial {trial}: {worst:?}");
+        }
     }
 }
 

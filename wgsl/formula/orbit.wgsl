@@ -144,7 +144,7 @@ fn estimate_ball(p: real3, most: u32, trial: real) -> real2 {
         }
         // As long as the trial ball meets no fold, its image is an ellipsoid.
         if follows && grown.free >= trial {
-            radius = grown.norm * trial;
+            radius = grown.norm * trial * real(ORBIT_ROUND_UP);
         } else {
             radius = orbit_spread(f, radius, trial);
         }

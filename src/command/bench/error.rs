@@ -96,11 +96,14 @@ pub fn run(args: &ErrorBench) -> Result<()> {
     all.files.write(&rows)
 }
 
-/// Truths by `march.detail`: settings that change the hit rule have a truth of their own.
-type Truths = HashMap<u64, Truth>;
+/// Truths by what settings change of the hit rule: `march.detail`, and whether the estimate is the
+/// sharpest.
+type Truths = HashMap<(u64, bool), Truth>;
 
-fn truth_key(plan: &Plan) -> u64 {
-    plan.march.detail.to_bits()
+fn truth_key(plan: &Plan) -> (u64, bool) {
+    let sharpest = plan.scene.sharpest();
+    let is_sharpest = sharpest.is_none_or(|scene| scene == plan.scene);
+    (plan.march.detail.to_bits(), is_sharpest)
 }
 
 /// The truths of all settings of one preset.

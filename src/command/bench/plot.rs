@@ -15,8 +15,9 @@ pub const PANEL: [f64; 2] = [460.0, 330.0];
 const MARGIN: [f64; 4] = [58.0, 34.0, 18.0, 44.0];
 const LEGEND: f64 = 58.0;
 /// Modes and their colours (Okabe and Ito's, which colour-blind people can tell apart).
-const COLORS: [(&str, &str); 9] = [
+const COLORS: [(&str, &str); 10] = [
     ("rival", "#000000"),
+    ("old rival", "#f0e442"),
     ("safe", "#0072b2"),
     ("proven", "#009e73"),
     ("ray", "#666666"),
@@ -222,8 +223,9 @@ pub fn line(svg: &mut Vec<String>, points: impl Iterator<Item = [f64; 2]>, color
 
 fn panel(svg: &mut Vec<String>, rows: &[Row], measure: &Measure, at: [f64; 2]) {
     let preset = rows.first().map_or("", |r| &r.preset);
-    let comparable = rows.iter().filter(|r| r.is_comparable());
-    let rows: Vec<(&Row, f64)> = comparable
+    let rows: Vec<(&Row, f64)> = rows
+        .iter()
+        .filter(|row| row.is_comparable() || !measure.has_front)
         .filter_map(|row| Some((row, (measure.of)(row)?)))
         .collect();
     let times = rows.iter().map(|(row, _)| row.wall_ms);
@@ -296,7 +298,7 @@ fn names(svg: &mut Vec<String>, best: &[&Row], dots: &[[f64; 2]], x: &Axis, y: &
 
 fn color(mode: &str) -> &'static str {
     let found = COLORS.iter().find(|(name, _)| *name == mode);
-    found.map_or("#f0e442", |(_, color)| color)
+    found.map_or("#8c564b", |(_, color)| color)
 }
 
 fn legend(svg: &mut Vec<String>, y: f64) {

@@ -18,7 +18,7 @@ pub struct Row {
     pub mode: String,
     /// Keys of `[march]` that differ from the preset's.
     pub parameters: Map<String, Value>,
-    /// Whether nothing but the mode differs, or it is the rival.
+    /// Whether nothing but the mode differs, or it is a rival.
     pub baseline: bool,
     /// Pixels along each axis.
     pub size: [u32; 2],
@@ -47,24 +47,27 @@ pub struct Row {
 }
 
 impl Row {
-    /// Whether the row is compared with the usual truth: another `detail` has another one.
+    /// Whether the row is compared with the usual truth: another `detail` or estimate has another one.
     pub fn is_comparable(&self) -> bool {
-        !self.parameters.contains_key("detail")
+        !["detail", "estimate"]
+            .map(|key| self.parameters.contains_key(key))
+            .contains(&true)
     }
 
-    /// The mode, or `rival` for `ray-relaxed` with `clip` on.
+    /// The mode, or `rival` for `ray-relaxed` with `clip` on, or `old rival` with another estimate.
     pub fn name(&self) -> &str {
         let is_clipped = self.parameters.get("clip").is_some_and(|v| v == "on");
         match self.mode.as_str() {
+            "ray-relaxed" if is_clipped && !self.is_comparable() => "old rival",
             "ray-relaxed" if is_clipped => "rival",
             mode => mode,
         }
     }
 
-    /// The mode and the keys that differ, like `safe, shell 0.1`; or `rival`.
+    /// The mode and the keys that differ, like `safe, shell 0.1`; or `rival`, or `old rival`.
     pub fn label(&self) -> String {
-        if self.name() == "rival" {
-            return "rival".into();
+        if self.name().ends_with("rival") {
+            return self.name().into();
         }
         let word = |(key, value): (&String, &Value)| match value {
             Value::String(text) => format!(", {key} {text}"),

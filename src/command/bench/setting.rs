@@ -7,33 +7,42 @@ use toml::Value;
 use crate::plan::Plan;
 use crate::plan::march::Mode;
 
-/// A mode, and perhaps a key of `[march]` or `[scene]` that is changed.
+/// A mode, and keys of `[march]` or `[scene]` that are changed.
 #[derive(Clone, Debug)]
 pub struct Setting {
     /// The mode.
     pub mode: Mode,
-    /// The changed key with its value, if there is one.
-    pub change: Option<(&'static str, Value)>,
+    /// The changed keys with their values.
+    pub changes: Vec<(&'static str, Value)>,
 }
 
 impl Setting {
     /// A mode without changes.
     pub fn of(mode: Mode) -> Self {
-        Self { mode, change: None }
+        let changes = Vec::new();
+        Self { mode, changes }
     }
 
     /// The mode without cones that starts its rays at the bounds.
     pub fn rival() -> Self {
         Self {
             mode: Mode::RayRelaxed,
-            change: Some(("clip", "on".into())),
+            changes: vec![("clip", "on".into())],
         }
     }
 
-    /// The mode's name, or `rival`.
+    /// The rival with the estimate `scalar`.
+    pub fn old_rival() -> Self {
+        let mut rival = Self::rival();
+        rival.changes.push(("estimate", "scalar".into()));
+        rival
+    }
+
+    /// The mode's name, or `rival`, or `old rival`.
     pub fn name(&self) -> &'static str {
-        match &self.change {
-            Some(("clip", _)) if self.mode == Mode::RayRelaxed => "rival",
+        match &self.changes[..] {
+            [("clip", _)] if self.mode == Mode::RayRelaxed => "rival",
+            [("clip", _), ("estimate", _)] => "old rival",
             _ => self.mode.name(),
         }
     }
@@ -42,7 +51,7 @@ impl Setting {
     pub fn apply(&self, plan: &Plan) -> Option<Plan> {
         let mut plan = plan.clone();
         plan.march.mode = self.mode;
-        if let Some((name, value)) = &self.change {
+        for (name, value) in &self.changes {
             let mut keys = plan.march.keys();
             keys.extend(plan.scene.keys());
             let key = keys.iter_mut().find(|k| k.name == *name)?;
@@ -52,22 +61,25 @@ impl Setting {
         plan.check().is_ok().then_some(plan)
     }
 
-    /// The change as JSON.
+    /// The changes as JSON.
     pub fn parameters(&self) -> Map<String, serde_json::Value> {
         let pair = |(name, value): &(&str, Value)| ((*name).to_string(), json!(value));
-        self.change.iter().map(pair).collect()
+        self.changes.iter().map(pair).collect()
     }
 }
 
-/// The *rival*, which the others are compared with, and every mode without changes. The rival has
-/// no cones, but the same estimate and relaxation as `safe`, and its rays start at the bounds. The
-/// truth is left out: all are measured against it.
+/// The *rival*, which the others are compared with, every mode without changes, and the old rival.
+/// The rival has no cones, but the same estimate and relaxation as `safe`, and its rays start at the
+/// bounds. The truth is left out: all are measured against it.
 pub fn baselines() -> Vec<Setting> {
     let first = [Mode::Safe, Mode::Proven, Mode::Ray, Mode::RayRelaxed];
     let rest = Mode::ALL.into_iter();
     let rest = rest.filter(|m| !first.contains(m) && *m != Mode::Truth);
     let modes = first.into_iter().chain(rest).map(Setting::of);
-    [Setting::rival()].into_iter().chain(modes).collect()
+    let mut all = vec![Setting::rival()];
+    all.extend(modes);
+    all.push(Setting::old_rival());
+    all
 }
 
 /// One key changed at a time.
@@ -92,8 +104,8 @@ pub fn sweeps() -> Vec<Setting> {
         (Mode::Ray, "clip", values(["on"])),
     ];
     let settings = swept.into_iter().flat_map(|(mode, key, values)| {
-        let change = values.into_iter().map(move |value| Some((key, value)));
-        change.map(move |change| Setting { mode, change })
+        let changes = values.into_iter().map(move |value| vec![(key, value)]);
+        changes.map(move |changes| Setting { mode, changes })
     });
     settings.collect()
 }
@@ -112,14 +124,14 @@ mod tests {
         let plan = preset::load("bench-far", &[]).expect("built in").plan;
         let mut seen = vec![plan.clone()];
         let all = baselines().into_iter().chain(sweeps());
-        for setting in all.filter(|s| s.mode != Mode::Safe || s.change.is_some()) {
+        for setting in all.filter(|s| s.mode != Mode::Safe || !s.changes.is_empty()) {
             let changed = setting.apply(&plan).expect("fits");
             assert!(!seen.contains(&changed), "{setting:?}");
             seen.push(changed);
         }
         let wrong = Setting {
             mode: Mode::Safe,
-            change: Some(("shell", 2.0.into())),
+            changes: vec![("shell", 2.0.into())],
         };
         assert!(wrong.apply(&plan).is_none());
     }
