@@ -35,6 +35,8 @@ const PRESETS: [&str; 6] = [
 ];
 /// Rays to points of the disc.
 const RAYS: usize = 16;
+/// Samples that a pixel's cone stands for.
+const SAMPLES: f64 = 16.0;
 /// The radius of the samples' filter in footprints, which are half a pixel.
 const FILTER: f64 = 3.0;
 /// Steps of a ray, and of a cone.
@@ -52,8 +54,26 @@ struct Census {
     ray_evaluations: f64,
     /// Those that are left where rays begin at the end of the pixel's cone.
     late_evaluations: f64,
-    /// Hits and pixels whose cone reaches the sun, and evaluations of these cones.
-    cones: [(f64, f64); 2],
+    /// Those of hits and of pixels.
+    cones: [Cones; 2],
+}
+
+/// What cones about the sun add up to.
+#[derive(Clone, Copy, Default)]
+struct Cones {
+    /// Cones that reach the sun.
+    free: f64,
+    evaluations: f64,
+    /// Evaluations of the rays where the cone does not reach the sun.
+    left: f64,
+}
+
+impl Cones {
+    /// Evaluations of cones and of the rays that are left, over those of rays alone, where a cone
+    /// stands for so many samples.
+    fn cost(&self, samples: f64, rays: f64) -> f64 {
+        (self.evaluations / samples + self.left) / rays
+    }
 }
 
 /// Counts the hits of a frame.
@@ -89,13 +109,8 @@ impl Task for Count<'_> {
             };
             // The chord of the half angle.
             let k = 2.0 * (0.5 * sun.softness.atan()).sin();
-            let mut end = 0.0;
-            for (r0, cone) in [0.0, FILTER * grain].into_iter().zip(&mut census.cones) {
-                let (front, evaluations) = clear(solid, &beam(sun.axis, r0, k));
-                cone.0 += f64::from(u8::from(front > solid.bounds_far()));
-                cone.1 += evaluations;
-                end = front;
-            }
+            let ends = [0.0, FILTER * grain].map(|r0| clear(solid, &beam(sun.axis, r0, k)));
+            let free = ends.map(|(front, _)| front > solid.bounds_far());
             let side = sun.axis.any_orthonormal_vector();
             let other = sun.axis.cross(side);
             let reaches = (0..RAYS).filter(|nth| {
@@ -106,14 +121,24 @@ impl Task for Count<'_> {
                 let axis = (sun.axis + off * (cos * side + sin * other)).normalize();
                 let ray = beam(axis, 0.0, 0.0);
                 let (lit, evaluations) = follow(solid, &ray, [0.0, sun.far]);
-                census.ray_evaluations += evaluations / RAYS as f64;
-                if end <= solid.bounds_far() {
-                    let (_, evaluations) = follow(solid, &ray, [end, sun.far]);
+                let share = evaluations / RAYS as f64;
+                census.ray_evaluations += share;
+                for (cones, free) in census.cones.iter_mut().zip(free) {
+                    cones.left += if free { 0.0 } else { share };
+                }
+                if !free[1] {
+                    let (_, evaluations) = follow(solid, &ray, [ends[1].0, sun.far]);
                     census.late_evaluations += evaluations / RAYS as f64;
                 }
                 lit
             });
             let reaches = reaches.count();
+            for (cones, (free, (_, evaluations))) in
+                census.cones.iter_mut().zip(free.into_iter().zip(ends))
+            {
+                cones.free += f64::from(u8::from(free));
+                cones.evaluations += evaluations;
+            }
             census.facing += 1.0;
             census.lit += f64::from(u8::from(reaches == RAYS));
             census.penumbra += f64::from(u8::from(reaches > 0 && reaches < RAYS));
@@ -173,23 +198,19 @@ fn main() -> Result<()> {
         });
         let percent = |n: f64| 100.0 * n / census.facing;
         let ray = census.ray_evaluations / census.facing;
-        let [(own, own_cost), (all, all_cost)] = census.cones;
-        // What cones and the rays that are left take, over rays alone.
-        let cost = |free: f64, cost: f64, samples: f64| {
-            let rays = (1.0 - free / census.facing) * ray * samples;
-            (cost / census.facing + rays) / (ray * samples)
-        };
-        let late = (all_cost / 16.0 + census.late_evaluations) / census.ray_evaluations;
+        let rays = census.ray_evaluations;
+        let [own, all] = census.cones;
         rows.push(format!(
-            "{name} | {:.1} | {:.1} | {ray:.1} | {:.1} | {:.1} | {:.2} | {:.1} | {:.1} | {:.2} | {late:.2}",
+            "{name} | {:.1} | {:.1} | {ray:.1} | {:.1} | {:.1} | {:.2} | {:.1} | {:.1} | {:.2} | {:.2}",
             percent(census.lit),
             percent(census.penumbra),
-            percent(own),
-            own_cost / census.facing,
-            cost(own, own_cost, 1.0),
-            percent(all),
-            all_cost / census.facing,
-            cost(all, all_cost, 16.0),
+            percent(own.free),
+            own.evaluations / census.facing,
+            own.cost(1.0, rays),
+            percent(all.free),
+            all.evaluations / census.facing,
+            all.cost(SAMPLES, rays),
+            (all.evaluations / SAMPLES + census.late_evaluations) / rays,
         ));
     }
     let table = markdown::table(

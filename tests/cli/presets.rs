@@ -88,6 +88,20 @@ fn the_list_of_presets_is_the_folder() {
     );
 }
 
+/// Down to the size of a stamp a picture has the details that it has on the gallery's page. What measures
+/// refers to the pixel.
+#[test]
+fn built_in_pictures_keep_their_details_at_smaller_sizes() {
+    for (name, _) in BUILTIN {
+        let reference = load(name, &[]).expect("built in").plan.reference;
+        assert_eq!(reference.is_none(), name.starts_with("bench-"), "{name}");
+        assert!(
+            reference.is_none_or(|height| height >= 720),
+            "{name}: {reference:?}"
+        );
+    }
+}
+
 #[test]
 fn built_in_presets_are_right_and_have_a_title() {
     for (name, text) in BUILTIN {
