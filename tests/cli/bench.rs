@@ -70,7 +70,7 @@ fn error_rows_files_and_the_cache() {
     let first = rows(&folder, "a.json");
     let modes: Vec<&str> = first.iter().map(|r| word(r, "mode")).collect();
     let of_one =
-        "ray-relaxed safe proven ray ray-relaxed calibrated slides-even slides-deep slides-fast";
+        "ray-relaxed safe proven ray ray-relaxed calibrated slides-even slides-deep slides-fast ray-relaxed";
     assert_eq!(modes.join(" "), format!("{of_one} {of_one}"));
     for row in &first {
         assert!(names(row).join(" ").starts_with(FIELDS), "{row}");
@@ -83,7 +83,8 @@ fn error_rows_files_and_the_cache() {
     // The same executor renders the truth: what is not exact differs from it.
     let safe = &first[1];
     assert_eq!(first[0]["parameters"]["clip"], "on");
-    holds(&table, &["| rival "]);
+    assert_eq!(first[9]["parameters"]["estimate"], "scalar");
+    holds(&table, &["| rival ", "| old rival "]);
     let before = &safe["before_set"];
     assert!(
         number(before, "median") > 0.0 && number(before, "p95") < 5.0,
