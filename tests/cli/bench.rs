@@ -69,8 +69,7 @@ fn error_rows_files_and_the_cache() {
     holds(&table, &["| slides-fast", "FLIP"]);
     let first = rows(&folder, "a.json");
     let modes: Vec<&str> = first.iter().map(|r| word(r, "mode")).collect();
-    let of_one =
-        "ray-relaxed safe proven ray ray-relaxed calibrated slides-even slides-deep slides-fast ray-relaxed";
+    let of_one = "ray-relaxed safe proven ray ray-relaxed calibrated slides-even slides-deep slides-fast ray-relaxed";
     assert_eq!(modes.join(" "), format!("{of_one} {of_one}"));
     for row in &first {
         assert!(names(row).join(" ").starts_with(FIELDS), "{row}");
