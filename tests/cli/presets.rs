@@ -88,8 +88,7 @@ fn the_list_of_presets_is_the_folder() {
     );
 }
 
-/// Down to the size of a stamp a picture has the details that it has on the gallery's page. What measures
-/// refers to the pixel.
+/// A smaller picture has the details of one with 720 rows. Presets for measurements refer to the pixel.
 #[test]
 fn built_in_pictures_keep_their_details_at_smaller_sizes() {
     for (name, _) in BUILTIN {
