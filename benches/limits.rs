@@ -6,7 +6,7 @@
 //! balls. Rays from their fronts are counted on the CPU, in groups of 8 x 4 pixels spread over the
 //! picture.
 //!
-//! Rays from the eye and rays to the sun are counted with lanes that take the next ray of their tile,
+//! Rays from the eye, cones and rays to the sun are counted with lanes that take the next ray of their tile,
 //! too, as if taking it cost nothing.
 
 use anyhow::Result;
@@ -43,6 +43,8 @@ const TILE: u32 = 16;
 /// Groups of lanes: a wide one has 8 x 4 pixels, a narrow one 4 x 2.
 const WIDE: usize = 32;
 const NARROW: usize = 8;
+/// All cones of a picture. The others are rays of every third tile.
+const CONES: &str = "cones of all levels";
 /// Steps of a ray, and of a cone.
 const STEPS: u32 = 512;
 /// A cone ends after a step that gains less than this share of its front.
@@ -118,15 +120,7 @@ impl Task for Follow<'_> {
         tiles
             .map(|tile| {
                 let corner = tile.map(|n| n * TILE * EVERY);
-                // Narrow groups lie within wide ones, these in rows of two.
-                let place = |i: u32| {
-                    let (group, narrow, lane) = (i / 32, i / 8 % 4, i % 8);
-                    [
-                        corner[0] + group % 2 * 8 + narrow % 2 * 4 + lane % 4,
-                        corner[1] + group / 2 * 4 + narrow / 2 * 2 + lane / 4,
-                    ]
-                };
-                (0..TILE * TILE).map(|i| follow(place(i))).collect()
+                (0..TILE * TILE).map(|i| follow(place(corner, i))).collect()
             })
             .collect()
     }
@@ -150,17 +144,17 @@ fn follow_ray<S: Solid>(
     (step, walk)
 }
 
-/// Cost per pixel if the pixels of each group of `width` wait for the longest.
+/// Cost per ray or cone if those of each group of `width` wait for the longest.
 fn cost(tiles: &[Vec<Counts>], width: usize, of: fn(&Counts) -> u32) -> f64 {
     let groups = tiles.iter().flat_map(|tile| tile.chunks(width));
-    let most: Vec<f64> = groups
+    let most: f64 = groups
         .filter_map(|lanes| lanes.iter().map(of).max().map(f64::from))
-        .collect();
-    most.iter().sum::<f64>() / most.len() as f64
+        .sum();
+    most * width as f64 / tiles.iter().map(Vec::len).sum::<usize>() as f64
 }
 
-/// Cost per pixel if a tile has one group of `width` lanes, of which each takes the next ray of the
-/// tile as soon as it is free.
+/// Cost per ray or cone if a tile has one group of `width` lanes, of which each takes the next one of
+/// the tile as soon as it is free.
 fn cost_of_takers(tiles: &[Vec<Counts>], width: usize, of: fn(&Counts) -> u32) -> f64 {
     let work = |tile: &Vec<Counts>| {
         let mut busy = vec![0; width];
@@ -172,7 +166,41 @@ fn cost_of_takers(tiles: &[Vec<Counts>], width: usize, of: fn(&Counts) -> u32) -
         busy.into_iter().max().unwrap_or(0)
     };
     let all: f64 = tiles.iter().map(|tile| f64::from(work(tile))).sum();
-    all * width as f64 / (tiles.len() as u32 * TILE * TILE) as f64
+    all * width as f64 / tiles.iter().map(Vec::len).sum::<usize>() as f64
+}
+
+/// The visited cells of all levels, in tiles of their level.
+fn cones(name: &str, size: [u32; 2]) -> Result<Vec<Vec<Counts>>> {
+    let mut plan = preset::load(name, &[])?.plan.one_sample();
+    plan.size = size;
+    let extras = Extras {
+        count: true,
+        levels: true,
+        depth_only: true,
+        ..Extras::default()
+    };
+    let frame = cpu::render(&plan, &Assets::default(), extras, &mut |_| true)?;
+    let mut tiles = Vec::new();
+    for level in &frame.levels {
+        let [columns, rows] = level.cells.map(|side| side.div_ceil(TILE));
+        for tile in (0..rows).flat_map(|y| (0..columns).map(move |x| [x, y])) {
+            let corner = tile.map(|n| n * TILE);
+            let cells = (0..TILE * TILE).map(|i| place(corner, i));
+            let cells = cells.filter(|[x, y]| *x < level.cells[0] && *y < level.cells[1]);
+            let work = cells.map(|[x, y]| level.work[(x + level.cells[0] * y) as usize]);
+            tiles.push(work.filter(|work| work.evaluations > 0).collect());
+        }
+    }
+    Ok(tiles)
+}
+
+/// A place in a tile. Narrow groups lie within wide ones, these in rows of two.
+fn place(corner: [u32; 2], i: u32) -> [u32; 2] {
+    let (group, narrow, lane) = (i / 32, i / 8 % 4, i % 8);
+    [
+        corner[0] + group % 2 * 8 + narrow % 2 * 4 + lane % 4,
+        corner[1] + group / 2 * 4 + narrow / 2 * 2 + lane / 4,
+    ]
 }
 
 fn counted(name: &str, size: [u32; 2], changes: &[&str], rays: Rays) -> Result<Vec<Vec<Counts>>> {
@@ -200,20 +228,30 @@ fn ideal_row(
     format!("{name} | {} | {}", part(WIDE), part(1))
 }
 
-/// What lanes wait for, and what is left of it if they take the next ray.
-fn lanes(rays: Rays, title: &str) -> Result<String> {
+/// What lanes wait for, and what is left of it if they take the next ray or cone.
+fn lanes(title: &str, of: impl Fn(&str, [u32; 2]) -> Result<Vec<Vec<Counts>>>) -> Result<String> {
+    let size = [1280, 720];
     let mut rows = Vec::new();
     for name in VIEWS.into_iter().chain(MORE).chain(FIELDS) {
         eprintln!("{name}, {title}");
-        let tiles = counted(name, [1280, 720], &[], rays)?;
+        let tiles = of(name, size)?;
+        if tiles.is_empty() {
+            continue;
+        }
         let of = |c: &Counts| c.iterations.max(c.evaluations);
-        let alone = cost(&tiles, 1, of);
+        let all: f64 = tiles.iter().flatten().map(|c| f64::from(of(c))).sum();
+        let pixels = match title {
+            CONES => f64::from(size[0] * size[1]),
+            _ => tiles.iter().flatten().count() as f64,
+        };
         let part = |width| {
             let [wait, take] = [cost(&tiles, width, of), cost_of_takers(&tiles, width, of)];
+            let alone = cost(&tiles, 1, of);
             format!("{:.2} | {:.2}", wait / alone, take / alone)
         };
         rows.push(format!(
-            "{name} | {alone:.1} | {} | {}",
+            "{name} | {:.1} | {} | {}",
+            all / pixels,
             part(WIDE),
             part(NARROW)
         ));
@@ -255,11 +293,16 @@ fn main() -> Result<()> {
         "lr",
         rows,
     );
-    let eye = lanes(Rays::Alone, "rays from the eye")?;
-    let sun = lanes(Rays::ToSun, "rays to the sun")?;
+    let eye = lanes("rays from the eye", |name, size| {
+        counted(name, size, &[], Rays::Alone)
+    })?;
+    let cones = lanes(CONES, cones)?;
+    let sun = lanes("rays to the sun", |name, size| {
+        counted(name, size, &[], Rays::ToSun)
+    })?;
     publish(
         "benchmarks.md",
         MARKS,
-        &format!("{formulas}\n{fields}\n{eye}\n{sun}"),
+        &format!("{formulas}\n{fields}\n{eye}\n{cones}\n{sun}"),
     )
 }
