@@ -11,8 +11,8 @@ use anyhow::{Context, Result, ensure};
 use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::Choice;
 use conemarch::picture::{BitDepth, Layer, Shades, write_png};
-use conemarch::plan::Extras;
-use conemarch::preset;
+use conemarch::plan::{Extras, Pass};
+use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 use median::median;
 use publish::publish;
@@ -25,8 +25,17 @@ mod median;
 mod publish;
 
 const MARKS: [&str; 2] = ["<!-- process -->", "<!-- /process -->"];
-const PRESETS: [&str; 4] = ["bench-outside", "mandelbox", "mandelbox-gate", "terrain"];
+/// Presets and settings. Without a setting, so few rays have no cone map.
+const PRESETS: [(&str, &str); 5] = [
+    ("bench-outside", ""),
+    ("mandelbox", ""),
+    ("mandelbox-gate", ""),
+    ("terrain", ""),
+    ("terrain", "scene.tracer=walk"),
+];
 const SIZE: [u32; 2] = [640, 360];
+/// What is timed of a run.
+const PARTS: usize = 7;
 /// Processes of each kind, of which the median is taken, after one that warms the driver's cache.
 const RUNS: usize = 9;
 /// Asks a process for one run.
@@ -34,20 +43,20 @@ const ONE: &str = "--one";
 
 fn main() -> Result<()> {
     let args: Vec<String> = std::env::args().collect();
-    if let [_, one, name] = &args[..]
+    if let [_, one, name, set] = &args[..]
         && one == ONE
     {
-        let parts = parts(name)?.map(|part| part.to_string());
+        let parts = parts(name, set)?.map(|part| part.to_string());
         println!("{}", parts.join(" "));
         return Ok(());
     }
     let mut rows = Vec::new();
-    for name in PRESETS {
-        eprintln!("{name}");
-        let mut columns = vec![Vec::new(); 6];
+    for (name, set) in PRESETS {
+        eprintln!("{name} {set}");
+        let mut columns = vec![Vec::new(); PARTS + 1];
         for run in 0..=RUNS {
             let own = Command::new(&args[0])
-                .args([ONE, name])
+                .args([ONE, name, set])
                 .stderr(Stdio::inherit())
                 .output()?;
             ensure!(own.status.success(), "a run of {name} failed");
@@ -56,7 +65,7 @@ fn main() -> Result<()> {
                 .split_whitespace()
                 .map(str::parse)
                 .collect::<Result<_, _>>()?;
-            times.push(whole(name)?);
+            times.push(whole(name, set)?);
             // The first run warms the cache.
             if run > 0 {
                 columns.iter_mut().zip(times).for_each(|(c, t)| c.push(t));
@@ -66,13 +75,14 @@ fn main() -> Result<()> {
         let (whole, parts) = medians.split_last().context("there are no parts")?;
         let cells: Vec<String> = parts.iter().map(|ms| format!("{ms:.0}")).collect();
         let rest = whole - parts.iter().sum::<f64>();
+        let with = if set.is_empty() { "" } else { ", " };
         rows.push(format!(
-            "{name} | {} | {rest:.0} | {whole:.0}",
+            "{name}{with}{set} | {} | {rest:.0} | {whole:.0}",
             cells.join(" | ")
         ));
     }
     let table = markdown::table(
-        "640 x 360, one sample, ms | device opened | first render, more than a second one | kernels | a render beside them | file | the rest of the process | in all",
+        "640 x 360, one sample, ms | device opened | heights | cone map | programs and buffers | kernels | a render beside them | file | the rest of the process | in all",
         "lr",
         rows,
     );
@@ -80,13 +90,19 @@ fn main() -> Result<()> {
 }
 
 /// Milliseconds of the program, from nothing to a file.
-fn whole(name: &str) -> Result<f64> {
+fn whole(name: &str, set: &str) -> Result<f64> {
     let folder = tempfile::tempdir()?;
     let begun = Instant::now();
     let [width, height] = SIZE;
     let done = Command::new(env!("CARGO_BIN_EXE_conemarch"))
         .args(["render", name, "--samples", "1"])
         .args(["--set", "image.reference=auto"])
+        .args(
+            [set]
+                .iter()
+                .filter(|set| !set.is_empty())
+                .flat_map(|set| ["--set", set]),
+        )
         .args(["--size", &format!("{width}x{height}"), "-o"])
         .arg(folder.path().join("a.png"))
         .stderr(Stdio::null())
@@ -96,20 +112,30 @@ fn whole(name: &str) -> Result<f64> {
 }
 
 /// Milliseconds of the parts of one render in this process.
-fn parts(name: &str) -> Result<[f64; 5]> {
-    let mut plan = preset::load(name, &[])?.plan.one_sample();
+fn parts(name: &str, set: &str) -> Result<[f64; PARTS]> {
+    let set = [set].into_iter().filter(|set| !set.is_empty());
+    let set: Result<Vec<_>, _> = set.map(Override::read).collect();
+    let mut plan = preset::load(name, &set?)?.plan.one_sample();
     plan.size = SIZE;
     let begun = Instant::now();
     let (mut executor, _) = Executor::open(&Choice::Auto)?;
     let opened = begun.elapsed();
     let extras = Extras {
         time: true,
+        once: true,
         ..Extras::default()
     };
     let assets = Assets::default();
+    plan.scene.make_heights(&assets, &mut |_| true)?;
+    let raised = begun.elapsed();
     let mut render = || executor.render(&plan, &assets, extras, &mut |_| true);
-    render()?;
+    let maps = render()?;
     let first = begun.elapsed();
+    let maps = maps
+        .passes
+        .iter()
+        .filter(|p| matches!(p.pass, Pass::Prepare(_)));
+    let maps = maps.map(|p| p.wall_ms).fold(0.0, f64::max);
     let frame = render()?;
     let second = begun.elapsed();
     let kernels: f64 = frame.passes.iter().filter_map(|p| p.gpu_ms).sum();
@@ -122,7 +148,9 @@ fn parts(name: &str) -> Result<[f64; 5]> {
     let warm = ms(second - first);
     Ok([
         ms(opened),
-        ms(first - opened) - warm,
+        ms(raised - opened),
+        maps,
+        ms(first - raised) - warm - maps,
         kernels,
         warm - kernels,
         ms(written - second),

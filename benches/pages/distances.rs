@@ -39,6 +39,7 @@ const DEPTHS: Extras = Extras {
     sketched: false,
     unread: false,
     reuse: false,
+    once: false,
     held: false,
 };
 const COUNTED: Extras = Extras {

@@ -277,7 +277,7 @@ mod tests {
         let mut shape = HeightfieldSettings::default();
         shape.source.field = "fbm:8192x8192".into();
         shape.source.options.wrap = [true; 2];
-        shape.tracer_settings.tracer = TracerKind::Quad;
+        shape.tracer_settings.tracer = Some(TracerKind::Quad);
         let lacking = |shape: &HeightfieldSettings, available| {
             let plan = Plan::new(shape.clone());
             lacking_for(&plan, &Assets::default(), available)
@@ -286,7 +286,7 @@ mod tests {
         assert_eq!(lacking(&shape, needed), None);
         let why = lacking(&shape, needed - 1).unwrap_or_default();
         assert!(why.contains("16.00 GiB of memory, and 16.00 GiB"), "{why}");
-        shape.tracer_settings.tracer = TracerKind::MaxMip;
+        shape.tracer_settings.tracer = Some(TracerKind::MaxMip);
         assert_eq!(lacking(&shape, 0), None);
     }
 }

@@ -363,6 +363,7 @@ fn extras(args: &Render, format: Format) -> Extras {
     extras.variance |= format == Format::Exr;
     extras.count |= args.stats.is_some();
     extras.time = args.stats.is_some();
+    extras.once = true;
     extras
 }
 
@@ -384,7 +385,11 @@ fn warm_times(
         return Ok(());
     }
     let mut runner = Runner::new(executor, assets, "warm runs", AGAIN);
-    let runs = (0..AGAIN).map(|i| runner.render(plan, TIMED, &of_how_many("run", i, AGAIN)));
+    let extras = Extras {
+        once: true,
+        ..TIMED
+    };
+    let runs = (0..AGAIN).map(|i| runner.render(plan, extras, &of_how_many("run", i, AGAIN)));
     let mut runs: Vec<Frame> = runs.collect::<Result<_, _>>()?;
     runs.sort_by(|a, b| a.march_ms.total_cmp(&b.march_ms));
     let middle = &runs[AGAIN / 2];

@@ -42,7 +42,7 @@ pub struct AssetKeys {
 impl AssetKeys {
     /// Those of a heightfield.
     pub fn of(settings: &HeightfieldSettings) -> Self {
-        let needs_map = settings.tracer_settings.tracer.needs_map();
+        let needs_map = settings.tracer_settings.kind().needs_map();
         let texture = || settings.source.folder.join(&settings.texture);
         Self {
             surface: surface_key(settings),
@@ -276,20 +276,25 @@ impl Assets {
             colors,
             placement,
             surface,
-            kind: settings.tracer_settings.tracer,
+            kind: settings.tracer_settings.kind(),
             most_steps: settings
                 .tracer_settings
                 .most_steps(domain.map(i32::unsigned_abs)),
         })
     }
 
+    /// The samples of the heights along each axis. Those of a file are loaded.
+    pub fn samples(&self, settings: &HeightfieldSettings) -> Option<[u32; 2]> {
+        // The size of a pattern is known before its heights are made.
+        match PatternSpec::read(&settings.source.field) {
+            Some(pattern) => Some(pattern.ok()?.size),
+            None => Some(self.surface(settings).ok()?.heights().size()),
+        }
+    }
+
     /// Places of a generator's map along each axis.
     fn places(&self, settings: &HeightfieldSettings, generator: Generator) -> Option<[u32; 2]> {
-        // The size of a pattern is known before its heights are made.
-        let size = match PatternSpec::read(&settings.source.field) {
-            Some(pattern) => pattern.ok()?.size,
-            None => self.surface(settings).ok()?.heights().size(),
-        };
+        let size = self.samples(settings)?;
         let kind = generator.kind();
         Some(kind.places(size, settings.source.options.wrap, settings.patches))
     }
@@ -331,7 +336,7 @@ impl Assets {
         make: Make<'_>,
     ) -> Result<Arc<Option<TracerCones>>, PrepareError> {
         // The map of another tracer stays.
-        if !settings.tracer_settings.tracer.needs_map() {
+        if !settings.tracer_settings.kind().needs_map() {
             return Ok(Arc::new(None));
         }
         last_or_new(&self.cones, cones_key(settings), |_| {
@@ -372,7 +377,7 @@ fn surface_key(settings: &HeightfieldSettings) -> SurfaceKey {
 
 fn cones_key(settings: &HeightfieldSettings) -> ConesKey {
     let t = &settings.tracer_settings;
-    (surface_key(settings), t.tracer, t.map.clone(), t.offset)
+    (surface_key(settings), t.kind(), t.map.clone(), t.offset)
 }
 
 fn paint_key(settings: &HeightfieldSettings, by: Generator) -> PaintKey {

@@ -196,7 +196,11 @@ impl HeightSurface {
 
     /// The cell of the first tile that corresponds to a cell of the domain.
     pub fn tile_cell(&self, cell: [i32; 2]) -> [u32; 2] {
-        [0, 1].map(|a| cell[a].max(0) as u32 % self.cells[a])
+        [0, 1].map(|a| {
+            let (i, n) = (cell[a].max(0) as u32, self.cells[a]);
+            // Most maps have one tile, and a division takes long.
+            if i < n { i } else { i % n }
+        })
     }
 
     /// The highest point of a cell of the domain.

@@ -225,7 +225,10 @@ pub fn bilinear(corners: [f64; 4], u: f64, v: f64) -> f64 {
 /// where the axis wraps the one that comes round.
 pub fn brought_in(i: i64, count: u32, wraps: bool) -> u32 {
     let n = i64::from(count);
-    let i = if wraps {
+    let i = if (0..n).contains(&i) {
+        // Most indices, and a division takes long.
+        i
+    } else if wraps {
         i.rem_euclid(n)
     } else {
         i.clamp(0, n - 1)

@@ -134,11 +134,17 @@ impl HeightfieldSettings {
         }
     }
 
+    /// Whether the tracer is free to do without a cone map that nothing else needs.
+    pub fn may_drop_map(&self) -> bool {
+        let tracing = &self.tracer_settings;
+        tracing.tracer.is_none() && tracing.map == "auto" && tracing.generator() != self.paint
+    }
+
     /// The same heightfield with a tracer that finds every first hit and needs no cone map.
     pub fn exact(&self) -> Self {
         Self {
             tracer_settings: TracerSettings {
-                tracer: TracerKind::exact_without_map(),
+                tracer: Some(TracerKind::exact_without_map()),
                 offset: self.tracer_settings.offset,
                 ..TracerSettings::default()
             },

@@ -297,7 +297,7 @@ mod tests {
         // The tracer does not matter.
         let mut other = of(slope);
         if let Scene::Heightfield(shape) = &mut other.scene {
-            shape.tracer_settings.tracer = TracerKind::CsmFixed;
+            shape.tracer_settings.tracer = Some(TracerKind::CsmFixed);
         }
         assert!(other != first && finds(&cache, &other));
         // One height of the file does, with the same plan.

@@ -297,6 +297,12 @@ impl Plan {
         if extras.depth_only && self.samples > 1 {
             plan.to_mut().samples = 1;
         }
+        let rays = plan.size.into_iter().chain([plan.samples]).map(u64::from);
+        if extras.once
+            && let Some(scene) = plan.scene.with_few_rays(rays.product(), assets)
+        {
+            plan.to_mut().scene = scene;
+        }
         if extras.depth_only && self.look.sky.path().is_some() {
             plan.to_mut().look.sky = self.look.sky.without();
         }
@@ -392,6 +398,8 @@ pub struct Extras {
     /// Start from what the last frame left on the device: if only the look differs, from its
     /// rays, and if only tone and exposure differ, from its colours.
     pub reuse: bool,
+    /// The scene has no other picture, so nothing is made that pays only in several.
+    pub once: bool,
     /// Keep the programs of the last frame when a number becomes zero: that of a feature of the look,
     /// the aperture or the rotation. The picture may differ in the last bits, and at edges.
     pub held: bool,

@@ -45,7 +45,12 @@ impl Still {
         }
         // A folder that cannot be written is found before the work.
         Place::prepare(&unused(Path::new("."), &name, "png")).map_err(|e| e.to_string())?;
-        let work = renderer.begin(&plan, assets, Extras::default());
+        // As `render` makes the same picture.
+        let extras = Extras {
+            once: true,
+            ..Extras::default()
+        };
+        let work = renderer.begin(&plan, assets, extras);
         Ok(Self {
             work: Some(work.map_err(|e| e.to_string())?),
             plan,

@@ -266,8 +266,15 @@ impl Twin for Heightfield {
     }
 }
 
+/// A ray between two steps.
+#[derive(Clone, Copy)]
+pub struct Walk {
+    ray: LocalRay,
+    trace: Trace,
+}
+
 impl Solid for Heightfield {
-    type Walk = Trace;
+    type Walk = Walk;
 
     fn advance(&self, cone: &Beam, at: Advance, work: &mut Counts) -> Advance {
         let LocalRay { origin, axis } = self.local(cone);
@@ -288,23 +295,24 @@ impl Solid for Heightfield {
         maxima_cone(&self.made.surface, &cone, at.front, end, work)
     }
 
-    fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Counts) -> Trace {
+    fn begin(&self, ray: &Beam, front: f64, t_max: f64, _work: &mut Counts) -> Walk {
+        let ray = self.local(ray);
         // The tracer ends the ray where the block ends.
-        self.made.tracer.begin(&self.local(ray), front, t_max)
+        let trace = self.made.tracer.begin(&ray, front, t_max);
+        Walk { ray, trace }
     }
 
-    fn walk_step(&self, ray: &Beam, walk: &mut Trace, work: &mut Counts) -> Step {
-        self.made.tracer.step(&self.local(ray), walk, work)
+    fn walk_step(&self, _: &Beam, walk: &mut Walk, work: &mut Counts) -> Step {
+        self.made.tracer.step(&walk.ray, &mut walk.trace, work)
     }
 
-    fn walk_hit(&self, walk: &Trace) -> Hit {
-        let TraceHit { s: t, id, uv } = walk.hit();
+    fn walk_hit(&self, walk: &Walk) -> Hit {
+        let TraceHit { s: t, id, uv } = walk.trace.hit();
         Hit { t, id, uv }
     }
 
-    fn walk_radius(&self, ray: &Beam, walk: &Trace) -> f64 {
-        let t = walk.hit().s;
-        self.surface_gap(self.local(ray).at(t))
+    fn walk_radius(&self, _: &Beam, walk: &Walk) -> f64 {
+        self.surface_gap(walk.ray.at(walk.trace.hit().s))
     }
 
     fn shadow_lift(&self, grain: f64) -> f64 {

@@ -109,6 +109,11 @@ pub trait SceneSettings {
         0
     }
 
+    /// The same scene as it is best rendered with only so many rays; `None` if it has no other.
+    fn with_few_rays(&self, _rays: u64, _assets: &Assets) -> Option<Scene> {
+        None
+    }
+
     /// The same scene with an exact tracer, for the truth; `None` if it has no other.
     fn exact(&self) -> Option<Scene> {
         None

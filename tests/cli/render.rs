@@ -187,6 +187,33 @@ fn names_need_not_be_utf_8() {
 }
 
 #[test]
+fn a_picture_with_few_rays_has_no_cone_map() {
+    let folder = Folder::new();
+    // 512 x 512 cones pay from three rays for each of them on.
+    for (more, has_map) in [
+        ("--size 512x512 --samples 2", false),
+        ("--size 512x512 --samples 3", true),
+        ("--size 512x512 --samples 3 --layer depth", false),
+        ("--size 2048x512 --samples 1", true),
+        ("--size 128x128 --tile 1,0/2x2 -o a.exr", false),
+        ("--size 1024x1024 --samples 1 --tile 1,0/2x2 -o a.exr", true),
+        ("--size 64x64 --set scene.field=fbm:32x32", true),
+        ("--size 64x64 --set scene.tracer=walk", true),
+        ("--size 64x64 --set scene.map=walk", true),
+        ("--size 64x64 --set scene.paint=walk", true),
+    ] {
+        let explained = text(&folder.done(&format!("render terrain {more} --explain")));
+        let by = if has_map { "walk" } else { "max-mip" };
+        holds(&explained, &[&format!("traced by {by}")]);
+        assert_eq!(
+            explained.contains("  prepare "),
+            has_map,
+            "{more}: {explained}"
+        );
+    }
+}
+
+#[test]
 fn the_command_that_is_given_is_explained() {
     let folder = Folder::new();
     let explained = text(&folder.done("render mandelbox --explain --size 64x64"));

@@ -194,7 +194,8 @@ fn an_interrupt_leaves_no_empty_folder() {
 #[cfg(unix)]
 #[test]
 fn long_work_tells_its_progress_in_lines() {
-    let of_map = "render terrain --device cpu --set scene.field=fbm:4096x4096";
+    let of_map =
+        "render terrain --device cpu --set scene.field=fbm:4096x4096 --set scene.tracer=walk";
     let error = "render mandelbox --device cpu --size 800x600 --layer error";
     let steps = "bench steps bench-far terrain --mode truth --device cpu --size 3000x3000";
     let convert = "conemap convert map.png --from dummer -o m.exr";

@@ -198,7 +198,7 @@ pub fn tracer(
     map: Option<Arc<ConeMap>>,
 ) -> Result<Arc<Tracer>, TraceError> {
     let cones = map.map(TracerCones::from);
-    settings.tracer.make(surface, cones.as_ref(), settings, 0.0)
+    settings.kind().make(surface, cones.as_ref(), settings, 0.0)
 }
 
 /// The kinds of tracers whose accuracy is wanted.

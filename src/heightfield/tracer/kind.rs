@@ -100,6 +100,17 @@ named_enum! {
 }
 
 impl TracerKind {
+    /// The words of `scene.tracer`, with `auto`.
+    pub(super) const CHOICES: [(&str, Option<Self>); Self::ALL.len() + 1] = {
+        let mut choices = [("auto", None); Self::ALL.len() + 1];
+        let mut i = 0;
+        while i < Self::ALL.len() {
+            choices[i + 1] = (Self::WORDS[i].0, Some(Self::WORDS[i].1));
+            i += 1;
+        }
+        choices
+    };
+
     /// Whether it needs a cone map.
     pub fn needs_map(self) -> bool {
         !self.facts().kinds.is_empty()

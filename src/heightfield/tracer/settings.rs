@@ -148,7 +148,7 @@ static HELP: LazyLock<Help> = LazyLock::new(|| {
     let samples = names(|kind| kind.facts().kinds.first().is_some_and(|k| !k.over_cells()));
     Help {
         tracer: format!(
-            "how rays find the surface; these find every first hit: {exact}; the hits of these are off by at most a pixel: {pixel}; the others may miss thin parts"
+            "how rays find the surface: auto is walk, or max-mip in a picture by render that has too few rays for a cone map to pay; these find every first hit: {exact}; the hits of these are off by at most a pixel: {pixel}; the others may miss thin parts"
         ),
         lookup: format!(
             "how height and cone are read between samples: interpolated, or from the nearest sample; only for {samples}"
@@ -175,8 +175,8 @@ static HELP: LazyLock<Help> = LazyLock::new(|| {
 /// How rays are traced.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TracerSettings {
-    /// The tracer.
-    pub tracer: TracerKind,
+    /// The tracer; `None` for the walk, or for no cone map in a picture that is too small for one.
+    pub tracer: Option<TracerKind>,
     /// `auto`, a generator's name, or the file of a cone map.
     pub map: String,
     /// How ratios are read between samples.
@@ -198,7 +198,7 @@ pub struct TracerSettings {
 impl Default for TracerSettings {
     fn default() -> Self {
         Self {
-            tracer: TracerKind::default(),
+            tracer: None,
             map: "auto".into(),
             lookup: Lookup::Bilinear,
             steps: None,
@@ -214,7 +214,7 @@ impl From<TracerKind> for TracerSettings {
     /// A tracer with its defaults.
     fn from(tracer: TracerKind) -> Self {
         Self {
-            tracer,
+            tracer: Some(tracer),
             ..Self::default()
         }
     }
@@ -224,7 +224,7 @@ impl TracerSettings {
     /// The keys of the tracer in `[scene]`.
     pub fn keys(&mut self) -> Vec<Key<'_>> {
         keys![
-            "tracer" = word(&mut self.tracer, &TracerKind::WORDS), &HELP.tracer => Assets;
+            "tracer" = word(&mut self.tracer, &TracerKind::CHOICES), &HELP.tracer => Assets;
             "map" = text(&mut self.map),
                 "the cone map: auto makes one that fits the tracer; a generator's name makes its map; or the file of a map" => Assets;
             "lookup" = word(&mut self.lookup, &Lookup::WORDS),
@@ -242,9 +242,14 @@ impl TracerSettings {
         ]
     }
 
+    /// The tracer of a picture with a cone map.
+    pub fn kind(&self) -> TracerKind {
+        self.tracer.unwrap_or_default()
+    }
+
     /// The steps that the tracer counts itself; 0 for no such limit.
     pub fn own_steps(&self) -> u32 {
-        self.steps.unwrap_or(match self.tracer.facts().steps {
+        self.steps.unwrap_or(match self.kind().facts().steps {
             Steps::Divided(steps) | Steps::Limited(steps) => steps,
             Steps::Cells | Steps::Pyramid => 0,
         })
@@ -255,7 +260,7 @@ impl TracerSettings {
     pub fn most_steps(&self, domain: [u32; 2]) -> u32 {
         // The first cell, and a line of either axis for each other one.
         let cells = domain[0] + domain[1];
-        match self.tracer.facts().steps {
+        match self.kind().facts().steps {
             Steps::Cells | Steps::Limited(_) => cells,
             // A step down for each step up, and those down from the top.
             Steps::Pyramid => 2 * cells + MOST_LEVELS as u32,
@@ -266,7 +271,7 @@ impl TracerSettings {
     /// Kinds of cones that the tracer can use, the one to make by default first; none for a
     /// tracer without cones.
     pub fn kinds(&self) -> &'static [MapKind] {
-        self.tracer.facts().kinds
+        self.kind().facts().kinds
     }
 
     /// The generator of the cones; `None` if they come from a file, or the tracer needs none.
@@ -284,11 +289,11 @@ impl TracerSettings {
             return Ok(());
         }
         let fits = |generator: &Generator| self.kinds().contains(&generator.kind());
-        let needs_map = self.tracer.needs_map();
+        let needs_map = self.kind().needs_map();
         if self.generator().map_or(needs_map, |g| fits(&g)) {
             return Ok(());
         }
-        let name = self.tracer.name();
+        let name = self.kind().name();
         if !needs_map {
             return Err(fault(format!(
                 "the tracer {name} needs no cones; \"auto\" would do"
@@ -313,14 +318,14 @@ impl TracerSettings {
         folder: &Path,
         make: Make<'_>,
     ) -> Result<Option<TracerCones>, PrepareError> {
-        if !self.tracer.needs_map() {
+        if !self.kind().needs_map() {
             return Ok(None);
         }
         let mut cones = match self.generator() {
             Some(generator) => TracerCones::from(self.made(generator, surface, make)?),
             None => self.read(folder, surface)?,
         };
-        cones.nodes = self.tracer.facts().method.nodes(surface, &cones);
+        cones.nodes = self.kind().facts().method.nodes(surface, &cones);
         Ok(Some(cones))
     }
 
@@ -336,7 +341,7 @@ impl TracerSettings {
         }
         let file = read_map(&path).map_err(|e| fault(e.to_string()))?;
         let wanted = MapUse {
-            who: &format!("the tracer {}", self.tracer.name()),
+            who: &format!("the tracer {}", self.kind().name()),
             kinds: self.kinds(),
             heights: surface.heights(),
             patches: surface.patches(),
@@ -378,7 +383,7 @@ impl TracerSettings {
         cones: Option<&TracerCones>,
         pixel: f64,
     ) -> Result<Arc<Tracer>, Fault> {
-        let made = self.tracer.make(surface, cones, self, pixel);
+        let made = self.kind().make(surface, cones, self, pixel);
         made.map_err(|e| fault(e.to_string()))
     }
 }
