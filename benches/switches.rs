@@ -66,24 +66,33 @@ const FEATURES: &[(&str, &[&str])] = &[
     ("another trap", &["look.trap=\"sphere\""]),
     ("a second layer", &["look.layer2_trap=\"plane\""]),
     ("no sky", &["image.background=\"transparent\""]),
+];
+
+/// The same of light by paths with two bounces.
+const PATHS: &[(&str, &[&str])] = &[
+    ("nothing changed", &[]),
     (
-        "light by paths, no bounce",
-        &["look.mode=\"path\"", "look.bounces=0"],
-    ),
-    (
-        "light by paths, 2 bounces",
-        &["look.mode=\"path\"", "look.bounces=2"],
-    ),
-    (
-        "the same with fog and shafts",
+        "details of features that are off",
         &[
-            "look.mode=\"path\"",
-            "look.bounces=2",
-            "look.fog=0.3",
+            "look.glow_width=0.1",
+            "look.lamp_at=[2, -5, 4]",
             "look.shafts=1",
+            "look.emission_width=0.5",
+            "camera.blades=6",
         ],
     ),
+    (
+        "features that only quick light has",
+        &["look.shadow=false", "look.occlusion=0.3"],
+    ),
+    ("fog", &["look.fog=0.3"]),
+    ("fog and shafts", &["look.fog=0.3", "look.shafts=1"]),
+    ("a lamp", &["look.lamp=1"]),
+    ("no bounce", &["look.bounces=0"]),
+    ("8 bounces", &["look.bounces=8"]),
+    ("quick light", &["look.mode=\"quick\""]),
 ];
+const PATH: &[&str] = &["look.mode=\"path\"", "look.bounces=2"];
 
 /// Warm runs, of which the median is taken.
 const RUNS: usize = 21;
@@ -116,20 +125,34 @@ fn main() -> Result<()> {
         row(&mut executor, name, &plan, (&changed, extras), RUNS)?;
     }
     println!("\nFeatures of `mandelbox` without fog at 320 x 180 with 4 samples\n");
-    println!("| feature | march and trace | colour |\n|---|---:|---:|");
-    let mut base = None;
-    for (name, keys) in FEATURES {
-        let own = ["image.size=[320, 180]", "image.samples=4", "look.fog=0"];
-        let keys = own.iter().chain(*keys).map(|key| Override::read(key));
-        let changed = preset::load("mandelbox", &keys.collect::<Result<Vec<_>, _>>()?)?.plan;
-        let base = base.get_or_insert_with(|| changed.clone());
-        let changed = (&changed, Extras::default());
-        row(&mut executor, name, base, changed, FEATURE_RUNS)?;
-    }
+    features(&mut executor, "feature", &[], FEATURES)?;
+    println!("\nThe same in light by paths with 2 bounces\n");
+    features(&mut executor, "feature of light by paths", PATH, PATHS)?;
     println!("\nWhole processes of `mandelbox` at 1280 x 720\n");
     println!("| samples | seconds |\n|---:|---:|");
     for samples in [1, 4, 16, 64] {
         println!("| {samples} | {:.1} |", process(samples)?);
+    }
+    Ok(())
+}
+
+/// Prints a table of features that are added to some keys.
+fn features(
+    executor: &mut Executor,
+    title: &str,
+    with: &[&str],
+    features: &[(&str, &[&str])],
+) -> Result<()> {
+    println!("| {title} | march and trace | colour |\n|---|---:|---:|");
+    let mut base = None;
+    for (name, keys) in features {
+        let own = ["image.size=[320, 180]", "image.samples=4", "look.fog=0"];
+        let keys = own.iter().chain(with).chain(*keys);
+        let keys: Result<Vec<_>, _> = keys.map(|key| Override::read(key)).collect();
+        let changed = preset::load("mandelbox", &keys?)?.plan;
+        let base = base.get_or_insert_with(|| changed.clone());
+        let changed = (&changed, Extras::default());
+        row(executor, name, base, changed, FEATURE_RUNS)?;
     }
     Ok(())
 }

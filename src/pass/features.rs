@@ -99,7 +99,14 @@ pub fn modules(look: &Look) -> Vec<Module> {
     let mut all: Vec<Module> = features.map(|f| f.module(f.is_on(look))).collect();
     all.push(wgsl!("pass/material.wgsl"));
     match look.mode {
-        LightMode::Quick => all.push(wgsl!("pass/quick.wgsl")),
+        // The loop alone would take time to compile where there is no lamp.
+        LightMode::Quick => all.extend([
+            match LookFeature::Lamp.is_on(look) {
+                true => wgsl!("pass/quick_lamps.wgsl").neutral(),
+                false => wgsl!("pass/quick_lamps_off.wgsl"),
+            },
+            wgsl!("pass/quick.wgsl"),
+        ]),
         LightMode::Path => all.extend([wgsl!("base/random.wgsl"), wgsl!("pass/path.wgsl")]),
     }
     all

@@ -1,5 +1,5 @@
 //! Light by formulas: the sun and lamps with soft shadows, and light from the sky and from the
-//! ground with occlusion. Twin: `wgsl/pass/quick.wgsl`.
+//! ground with occlusion. Twins: `wgsl/pass/quick.wgsl`, `quick_lamps.wgsl`, `quick_lamps_off.wgsl`.
 
 use std::f64::consts::PI;
 

@@ -35,16 +35,5 @@ fn shade(ray: Beam, q: vec3<f32>, at: Surroundings, grain: f32, pixel: vec2<u32>
     let mirrored = sky_ambient(reflect(ray.axis, n));
     let coated = open * open * open * open * min(1.0, 2.0 * v.z);
     c += material.coat * mirrored * coated;
-    for (var nth = 0u; nth < lamp_count(); nth++) {
-        let lamp = lamp_from(nth, q);
-        let to_lamp = lamp.axis * frame;
-        let strength = lamp_light(nth, lamp);
-        if to_lamp.z <= 0.0 || all(strength == vec3<f32>(0.0)) {
-            continue;
-        }
-        let near = shadow(q, n, grain, lamp);
-        c += material_reflects(material, v, to_lamp, lamp.softness).rgb * (PI * near.open * strength);
-        decided &= near.decided;
-    }
-    return vec4<f32>(c, select(0.0, 1.0, decided));
+    return quick_lamps(vec4<f32>(c, select(0.0, 1.0, decided)), material, v, frame, q, n, grain);
 }
