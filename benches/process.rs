@@ -122,7 +122,7 @@ fn parts(name: &str, set: &str) -> Result<[f64; PARTS]> {
     let opened = begun.elapsed();
     let extras = Extras {
         time: true,
-        once: true,
+        rays: Some(plan.rays()),
         ..Extras::default()
     };
     let assets = Assets::default();

@@ -2,13 +2,14 @@
 //! With `-- --write` it writes its table into docs/benchmarks.md.
 //!
 //! The space between the eye and what it sees is empty. So a shadow ray that starts in front of the
-//! surface is free until it passes behind something in the picture. Depths of pixels are a bound, as
+//! surface is free until it passes behind something in the picture. Depths of pixels prove nothing, as
 //! thin parts can lie between their rays. The fronts of cones are proven. Both take a look-up for each
-//! pixel on the way. *Balls* take fewer: each lies within the cones of four cells of a level, and holds
-//! a piece of the ray with its penumbra.
+//! pixel or cell on the way, and prove nothing about the penumbra beside the ray. *Balls* take fewer
+//! look-ups: each lies within the cones of four cells of a level, and holds a piece of the ray with its
+//! penumbra.
 //!
 //! With a *shared cone*, the rays of a block of pixels go apart for a while, then a cone of parallel
-//! rays goes on for all of them, and they go on from its end.
+//! rays goes on for all of them, and they go on from its end. It holds no penumbra either.
 
 use anyhow::Result;
 use conemarch::base::outcome::Counts;
@@ -16,7 +17,7 @@ use conemarch::base::view::{Beam, View, footprint};
 use conemarch::cpu;
 use conemarch::pass::look::Light;
 use conemarch::picture::frame::{Frame, LevelLayer};
-use conemarch::plan::{Extras, Plan};
+use conemarch::plan::{Extras, Plan, WINDOW_STEP};
 use conemarch::preset;
 use conemarch::scene::{Advance, Assets, Solid, Step, Task};
 use glam::{DVec2, DVec3};
@@ -58,8 +59,8 @@ const STEPS: u32 = 512;
 /// A cone ends after a step that gains less than this share of its front.
 const LEAST: f64 = 1e-2;
 
-/// The cost of a ray: before a shared cone, of the cone, and of the rest.
-type Phases = [f64; 3];
+/// The cost of a ray before a shared cone, and of the rest.
+type Phases = [f64; 2];
 
 /// Ways to shorten shadow rays.
 #[derive(Clone, Copy)]
@@ -67,15 +68,18 @@ enum Way {
     Alone,
     Depths,
     Fronts,
+    /// Those of the pixel's own tile.
+    Tile,
     Balls,
     /// Pixels along each side of a block.
     Cone(u32),
 }
 
-const WAYS: [Way; 6] = [
+const WAYS: [Way; 7] = [
     Way::Alone,
     Way::Depths,
     Way::Fronts,
+    Way::Tile,
     Way::Balls,
     Way::Cone(2),
     Way::Cone(4),
@@ -85,8 +89,8 @@ const WAYS: [Way; 6] = [
 #[derive(Default)]
 struct Sums {
     rays: f64,
-    /// Look-ups of fronts, and balls that were tried.
-    looks: f64,
+    /// Look-ups of fronts, of those in the pixel's own tile, and balls that were tried.
+    looks: [f64; 2],
     balls: f64,
     /// For each way.
     costs: [Cost; WAYS.len()],
@@ -95,7 +99,7 @@ struct Sums {
 #[derive(Clone, Copy, Default)]
 struct Cost {
     alone: f64,
-    /// If lanes wait for the longest in each phase.
+    /// If lanes wait for the longest in each phase. Cones have lanes of their own.
     in_groups: f64,
 }
 
@@ -134,6 +138,7 @@ impl Task for Count<'_> {
                 .map_or(0.0, |level| front(levels, level, pixel))
         };
         let mut sums = Sums::default();
+        let mut cones = [const { Vec::new() }; WAYS.len()];
         let blocks = SIZE.map(|side| side / (BLOCK * EVERY));
         for block in (0..blocks[1]).flat_map(|y| (0..blocks[0]).map(move |x| [x, y])) {
             let corner = block.map(|n| n * BLOCK * EVERY);
@@ -142,47 +147,59 @@ impl Task for Count<'_> {
                 .map(|[x, y]| ray_from([corner[0] + x, corner[1] + y]))
                 .collect();
             sums.rays += rays.iter().flatten().count() as f64;
-            for (way, cost) in WAYS.into_iter().zip(&mut sums.costs) {
+            for (i, way) in WAYS.into_iter().enumerate() {
                 let mut start_of = |ray: &Beam| match way {
-                    Way::Depths => free_by(&view, ray, by_depth),
-                    Way::Fronts => free_by(&view, ray, |pixel| {
-                        sums.looks += 1.0;
-                        by_front(pixel)
-                    }),
+                    Way::Depths => free_by(&view, ray, (1, None), by_depth).0,
+                    Way::Fronts | Way::Tile => {
+                        let tile = matches!(way, Way::Tile).then_some(corner);
+                        let (free, looks) = free_by(&view, ray, (2, tile), by_front);
+                        sums.looks[usize::from(tile.is_some())] += looks;
+                        free
+                    }
                     Way::Balls => free_by_balls(&view, ray, sun.softness, levels, &mut sums.balls),
                     Way::Alone | Way::Cone(_) => 0.0,
                 };
                 let mut phases_of = |ray: &Beam| {
                     let start = start_of(ray);
-                    [0.0, 0.0, follow(solid, ray, [start, sun.far]).1]
+                    [0.0, follow(solid, ray, [start, sun.far]).1]
                 };
                 let phases: Vec<Phases> = match way {
-                    Way::Cone(side) => shared(solid, &rays, side, sun.far),
+                    Way::Cone(side) => shared(solid, &rays, (side, sun.far), &mut cones[i]),
                     _ => rays
                         .iter()
-                        .map(|ray| ray.as_ref().map_or([0.0; 3], &mut phases_of))
+                        .map(|ray| ray.as_ref().map_or([0.0; 2], &mut phases_of))
                         .collect(),
                 };
-                for group in phases.chunks(LANES) {
-                    for phase in 0..3 {
-                        let lanes = group.iter().map(|lane| lane[phase]);
-                        cost.in_groups += LANES as f64 * lanes.fold(0.0, f64::max);
-                    }
+                let cost = &mut sums.costs[i];
+                cost.alone += phases.iter().flatten().sum::<f64>();
+                for phase in 0..2 {
+                    let all: Vec<f64> = phases.iter().map(|lane| lane[phase]).collect();
+                    cost.in_groups += in_groups(&all);
                 }
-                // A cone counts once for each block.
-                let side = if let Way::Cone(side) = way { side } else { 1 };
-                let share =
-                    |[lead, cone, rest]: &Phases| lead + cone / f64::from(side * side) + rest;
-                cost.alone += phases.iter().map(share).sum::<f64>();
             }
+        }
+        for (cost, cones) in sums.costs.iter_mut().zip(cones) {
+            cost.alone += cones.iter().sum::<f64>();
+            cost.in_groups += in_groups(&cones);
         }
         sums
     }
 }
 
-/// The phases of rays of which blocks share a cone.
-fn shared<S: Solid>(solid: &S, rays: &[Option<Beam>], side: u32, far: f64) -> Vec<Phases> {
-    let mut all = vec![[0.0; 3]; rays.len()];
+/// What lanes cost that wait for the longest of their group.
+fn in_groups(all: &[f64]) -> f64 {
+    let longest = |lanes: &[f64]| lanes.iter().copied().fold(0.0, f64::max);
+    LANES as f64 * all.chunks(LANES).map(longest).sum::<f64>()
+}
+
+/// The phases of rays of which blocks share a cone. Adds the costs of the cones.
+fn shared<S: Solid>(
+    solid: &S,
+    rays: &[Option<Beam>],
+    (side, far): (u32, f64),
+    cones: &mut Vec<f64>,
+) -> Vec<Phases> {
+    let mut all = vec![[0.0; 2]; rays.len()];
     let parts = BLOCK / side;
     for part in 0..parts * parts {
         let first = [part % parts * side, part / parts * side];
@@ -232,11 +249,9 @@ fn shared<S: Solid>(solid: &S, rays: &[Option<Beam>], side: u32, far: f64) -> Ve
                 break;
             }
         }
-        for i in places {
-            all[i][1] = f64::from(work.iterations);
-        }
+        cones.push(f64::from(work.iterations));
         for (i, ray) in left {
-            all[i][2] = follow(solid, ray, [at.front - along(ray), far]).1;
+            all[i][1] = follow(solid, ray, [at.front - along(ray), far]).1;
         }
     }
     all
@@ -265,16 +280,31 @@ fn pixel(place: DVec2) -> Option<[u32; 2]> {
     inside.then(|| place.to_array().map(|n| n as u32))
 }
 
-/// How far a ray is nearer to the eye than the distances of the picture, pixel by pixel.
-fn free_by(view: &View, ray: &Beam, mut distance: impl FnMut([u32; 2]) -> f64) -> f64 {
-    let mut s = 0.0;
+/// How far a ray is nearer to the eye than the distances of the picture, which has a distance for each
+/// cell of some pixels, and may be a tile alone: that of a pixel. Also returns the look-ups.
+fn free_by(
+    view: &View,
+    ray: &Beam,
+    (cell, tile): (u32, Option<[u32; 2]>),
+    distance: impl Fn([u32; 2]) -> f64,
+) -> (f64, f64) {
+    let (mut s, mut looks) = (0.0, 0.0);
+    let mut last = None;
     loop {
         let q = ray.at(s);
-        let seen = (q.dot(view.forward) > 0.0)
-            .then(|| place(view, q))
-            .and_then(pixel);
-        if seen.is_none_or(|pixel| q.length() >= distance(pixel)) {
-            return s;
+        let ahead = (q.dot(view.forward) > 0.0).then(|| place(view, q));
+        let tile_of = |pixel: [u32; 2]| pixel.map(|n| n / WINDOW_STEP);
+        let inside = |pixel: &[u32; 2]| tile.is_none_or(|own| tile_of(own) == tile_of(*pixel));
+        let Some(pixel) = ahead.and_then(pixel).filter(inside) else {
+            return (s, looks);
+        };
+        let here = pixel.map(|n| n / cell);
+        let known = last.filter(|(at, _)| *at == here);
+        let known = known.map_or_else(|| distance(pixel), |(_, known)| known);
+        looks += f64::from(u8::from(last.is_none_or(|(at, _)| at != here)));
+        last = Some((here, known));
+        if q.length() >= known {
+            return (s, looks);
         }
         s += view.grain * q.length();
     }
@@ -364,18 +394,20 @@ fn main() -> Result<()> {
             light,
             frame: &frame,
         });
-        let [_, depths, fronts, by_balls, two, four] =
+        let [_, depths, fronts, tile, by_balls, two, four] =
             costs.map(|cost| cost.alone / costs[0].alone);
-        let [.., balls_in, two_in, four_in] = costs.map(|c| c.in_groups / costs[0].in_groups);
+        let [.., tile_in, balls_in, two_in, four_in] =
+            costs.map(|cost| cost.in_groups / costs[0].in_groups);
         rows.push(format!(
-            "{name} | {:.0} | {depths:.2} | {fronts:.2} | {:.0} | {by_balls:.2} | {balls_in:.2} | {:.0} | {two:.2} | {two_in:.2} | {four:.2} | {four_in:.2}",
+            "{name} | {:.0} | {depths:.2} | {fronts:.2} | {:.0} | {tile:.2} | {tile_in:.2} | {:.0} | {by_balls:.2} | {balls_in:.2} | {:.0} | {two:.2} | {two_in:.2} | {four:.2} | {four_in:.2}",
             costs[0].alone / rays,
-            looks / rays,
+            looks[0] / rays,
+            looks[1] / rays,
             balls / rays,
         ));
     }
     let table = markdown::table(
-        "rays to the sun, 1280 x 720 | iterations | by depths, a bound | by fronts | look-ups | by balls | in groups of 8 | balls for a ray | a cone for 2 x 2 | in groups of 8 | a cone for 4 x 4 | in groups of 8",
+        "rays to the sun, 1280 x 720 | iterations of a ray | by depths | by fronts | look-ups | by fronts of a tile | in groups of 8 | look-ups | by balls | in groups of 8 | balls | a cone for 2 x 2 | in groups of 8 | a cone for 4 x 4 | in groups of 8",
         "lr",
         rows,
     );

@@ -39,7 +39,7 @@ const DEPTHS: Extras = Extras {
     sketched: false,
     unread: false,
     reuse: false,
-    once: false,
+    rays: None,
     held: false,
 };
 const COUNTED: Extras = Extras {

@@ -207,7 +207,11 @@ fn render(
     let plan = plan_of(film, *first)?;
     let stamps = || -> Vec<_> { film.files().iter().map(|(_, file)| changed(file)).collect() };
     let loaded = stamps();
-    let extras = Extras::default();
+    // As `render` makes each of them.
+    let extras = Extras {
+        rays: Some(plan.rays()),
+        ..Extras::default()
+    };
     let per_pixel = Format::Png.bytes_per_pixel(Layer::Color, &plan, extras);
     memory::check(
         &plan.resolved(extras, assets),

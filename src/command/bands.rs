@@ -12,7 +12,7 @@ use crate::command::progress::Reporter;
 use crate::command::render::Render;
 use crate::command::sink::is_stdout;
 use crate::command::stats::Figures;
-use crate::command::tile::fingerprint;
+use crate::command::tile::{BUILD, fingerprint};
 use crate::command::unfinished::{Owner, Unfinished};
 use crate::command::{failure::usage, interrupt};
 use crate::pass::progress::Progress;
@@ -120,7 +120,7 @@ impl<'a> BigPicture<'a> {
             _ => format!("{} {depth:?} {}", args.layer.name(), bands.rows),
         };
         let owner = Owner {
-            version: env!("CARGO_PKG_VERSION").into(),
+            version: BUILD.into(),
             device,
             picture: fingerprint(plan, assets, &more),
         };

@@ -182,7 +182,7 @@ pub fn run(args: &Render) -> Result<()> {
     // A picture may take the place of the one whose preset it was rendered from.
     let preset = preset::file(&args.preset).map(|file| ("the preset", file));
     spared(&outputs[1..], preset.as_slice())?;
-    let extras = extras(args, format);
+    let extras = extras(args, format, &plan);
     let per_pixel = format.bytes_per_pixel(args.layer, &plan, extras);
     let mut largest = plan.resolved(extras, &assets).into_owned();
     largest.window = plan.window.or(bands.map(|bands| bands.block(0)));
@@ -357,13 +357,13 @@ fn explain(args: &Render, plan: &Plan, assets: &Assets, extras: Extras) -> Resul
     print(text.as_bytes())
 }
 
-fn extras(args: &Render, format: Format) -> Extras {
+fn extras(args: &Render, format: Format, plan: &Plan) -> Extras {
     let mut extras = args.layer.facts().extras;
     extras.normals |= format == Format::Exr;
     extras.variance |= format == Format::Exr;
     extras.count |= args.stats.is_some();
     extras.time = args.stats.is_some();
-    extras.once = true;
+    extras.rays = Some(plan.rays());
     extras
 }
 
@@ -386,7 +386,7 @@ fn warm_times(
     }
     let mut runner = Runner::new(executor, assets, "warm runs", AGAIN);
     let extras = Extras {
-        once: true,
+        rays: Some(plan.rays()),
         ..TIMED
     };
     let runs = (0..AGAIN).map(|i| runner.render(plan, extras, &of_how_many("run", i, AGAIN)));

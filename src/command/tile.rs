@@ -65,11 +65,19 @@ impl Tile {
     }
 }
 
+/// The version, and the sources that this program was built of.
+pub const BUILD: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (build ",
+    env!("CONEMARCH_BUILD"),
+    ")"
+);
+
 /// A hash of what decides the bits of a picture beside the device: the program, the plan, the files
 /// that it names, and more.
 pub fn fingerprint(plan: &Plan, assets: &Assets, more: &str) -> String {
     let mut hash = Sha256::new();
-    for part in [env!("CARGO_PKG_VERSION"), more, &preset::write(plan)] {
+    for part in [BUILD, more, &preset::write(plan)] {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part);
     }

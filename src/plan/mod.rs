@@ -297,9 +297,8 @@ impl Plan {
         if extras.depth_only && self.samples > 1 {
             plan.to_mut().samples = 1;
         }
-        let rays = plan.size.into_iter().chain([plan.samples]).map(u64::from);
-        if extras.once
-            && let Some(scene) = plan.scene.with_few_rays(rays.product(), assets)
+        if let Some(rays) = extras.rays
+            && let Some(scene) = plan.scene.with_few_rays(rays, assets)
         {
             plan.to_mut().scene = scene;
         }
@@ -314,6 +313,12 @@ impl Plan {
             plan.to_mut().march.shell = Some(plan.march.shell());
         }
         plan
+    }
+
+    /// The rays through all pixels of the whole picture, in all samples.
+    pub fn rays(&self) -> u64 {
+        let counts = self.size.into_iter().chain([self.samples]);
+        counts.map(u64::from).product()
     }
 
     /// Whether cones save more time than they take on a few cores.
@@ -374,7 +379,7 @@ impl Pass {
     }
 }
 
-/// What a render yields beside colour and depth. This never changes a picture.
+/// What a render yields beside colour and depth. It changes no picture, but for what `rays` tells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     /// Count evaluations and iterations.
@@ -398,8 +403,9 @@ pub struct Extras {
     /// Start from what the last frame left on the device: if only the look differs, from its
     /// rays, and if only tone and exposure differ, from its colours.
     pub reuse: bool,
-    /// The scene has no other picture, so nothing is made that pays only in several.
-    pub once: bool,
+    /// The rays of the whole picture, if the scene is to be rendered as suits so many: see
+    /// [`Plan::rays`]. Soft edges of shadows over heightfields differ in single pixels.
+    pub rays: Option<u64>,
     /// Keep the programs of the last frame when a number becomes zero: that of a feature of the look,
     /// the aperture or the rotation. The picture may differ in the last bits, and at edges.
     pub held: bool,

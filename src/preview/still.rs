@@ -47,7 +47,7 @@ impl Still {
         Place::prepare(&unused(Path::new("."), &name, "png")).map_err(|e| e.to_string())?;
         // As `render` makes the same picture.
         let extras = Extras {
-            once: true,
+            rays: Some(plan.rays()),
             ..Extras::default()
         };
         let work = renderer.begin(&plan, assets, extras);

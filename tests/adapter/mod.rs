@@ -40,7 +40,7 @@ pub const EVERYTHING: Extras = Extras {
     sketched: false,
     unread: false,
     reuse: false,
-    once: false,
+    rays: None,
     held: false,
 };
 /// Fronts and states of every level, and no colour.

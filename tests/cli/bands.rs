@@ -268,6 +268,10 @@ fn bands_of_another_picture_program_or_device_are_refused() {
             "begun by conemarch 0.0.7|with that version",
         ),
         (
+            changed("(build ", "(build 1"),
+            "begun by conemarch 0|(build |with that version",
+        ),
+        (
             changed("the CPU, f64", "some GPU"),
             "begun on some GPU|the CPU, f64|--device",
         ),

@@ -193,7 +193,8 @@ fn a_picture_with_few_rays_has_no_cone_map() {
     for (more, has_map) in [
         ("--size 512x512 --samples 2", false),
         ("--size 512x512 --samples 3", true),
-        ("--size 512x512 --samples 3 --layer depth", false),
+        ("--size 512x512 --samples 3 --layer depth", true),
+        ("--size 1024x768 --samples 1 --set camera.stereo=pair", true),
         ("--size 2048x512 --samples 1", true),
         ("--size 128x128 --tile 1,0/2x2 -o a.exr", false),
         ("--size 1024x1024 --samples 1 --tile 1,0/2x2 -o a.exr", true),

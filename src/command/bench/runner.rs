@@ -23,7 +23,7 @@ pub const COUNTED: Extras = Extras {
     sketched: false,
     unread: false,
     reuse: false,
-    once: false,
+    rays: None,
     held: false,
 };
 /// Asks the device for its times; no colours.

@@ -148,7 +148,7 @@ static HELP: LazyLock<Help> = LazyLock::new(|| {
     let samples = names(|kind| kind.facts().kinds.first().is_some_and(|k| !k.over_cells()));
     Help {
         tracer: format!(
-            "how rays find the surface: auto is walk, or max-mip in a picture by render that has too few rays for a cone map to pay; these find every first hit: {exact}; the hits of these are off by at most a pixel: {pixel}; the others may miss thin parts"
+            "how rays find the surface: auto is walk, or max-mip in a picture with fewer than three rays for each sample of the heights, for which a cone map seldom pays; the window always takes walk; these find every first hit: {exact}; the hits of these are off by at most a pixel: {pixel}; the others may miss thin parts"
         ),
         lookup: format!(
             "how height and cone are read between samples: interpolated, or from the nearest sample; only for {samples}"
