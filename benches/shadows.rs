@@ -19,10 +19,13 @@ use conemarch::pass::look::Light;
 use conemarch::picture::frame::{Frame, LevelLayer};
 use conemarch::plan::{Extras, Plan, WINDOW_STEP};
 use conemarch::preset;
-use conemarch::scene::{Advance, Assets, Solid, Step, Task};
+use conemarch::scene::{Advance, Assets, Solid, Task};
+use follow::{STEPS, follow};
 use glam::{DVec2, DVec3};
 use publish::publish;
 
+#[path = "common/follow.rs"]
+mod follow;
 #[path = "common/markdown.rs"]
 mod markdown;
 #[path = "common/publish.rs"]
@@ -54,8 +57,6 @@ const SHORTEST: f64 = 0.1;
 const APART: f64 = 6.0;
 /// A block whose hits are wider apart than so many of its sides has no cone.
 const WIDEST: f64 = 4.0;
-/// Steps of a ray, and of a cone.
-const STEPS: u32 = 512;
 /// A cone ends after a step that gains less than this share of its front.
 const LEAST: f64 = 1e-2;
 
@@ -161,7 +162,7 @@ impl Task for Count<'_> {
                 };
                 let mut phases_of = |ray: &Beam| {
                     let start = start_of(ray);
-                    [0.0, follow(solid, ray, [start, sun.far]).1]
+                    [0.0, iterations(solid, ray, [start, sun.far]).1]
                 };
                 let phases: Vec<Phases> = match way {
                     Way::Cone(side) => shared(solid, &rays, (side, sun.far), &mut cones[i]),
@@ -221,14 +222,14 @@ fn shared<S: Solid>(
         // A side has two footprints for each pixel.
         if group.len() < 2 || wide > WIDEST * f64::from(2 * side) * first.grain0 {
             for (i, ray) in &group {
-                all[*i][0] = follow(solid, ray, [0.0, far]).1;
+                all[*i][0] = iterations(solid, ray, [0.0, far]).1;
             }
             continue;
         }
         let start = APART * wide + group.iter().map(|(_, ray)| along(ray)).fold(0.0, f64::max);
         let mut left = Vec::new();
         for (i, ray) in &group {
-            let (free, cost) = follow(solid, ray, [0.0, start - along(ray)]);
+            let (free, cost) = iterations(solid, ray, [0.0, start - along(ray)]);
             all[*i][0] = cost;
             left.extend(free.then_some((*i, ray)));
         }
@@ -251,7 +252,7 @@ fn shared<S: Solid>(
         }
         cones.push(f64::from(work.iterations));
         for (i, ray) in left {
-            all[i][1] = follow(solid, ray, [at.front - along(ray), far]).1;
+            all[i][1] = iterations(solid, ray, [at.front - along(ray), far]).1;
         }
     }
     all
@@ -353,20 +354,12 @@ fn free_by_balls(
 }
 
 /// Whether a ray is free from the first distance to the second, and its iterations.
-fn follow<S: Solid>(solid: &S, ray: &Beam, [from, far]: [f64; 2]) -> (bool, f64) {
+fn iterations<S: Solid>(solid: &S, ray: &Beam, [from, far]: [f64; 2]) -> (bool, f64) {
     if from >= far {
         return (true, 0.0);
     }
-    let mut work = Counts::default();
-    let mut walk = solid.begin(ray, from, far, &mut work);
-    let mut step = Step::Moving;
-    for _ in 0..STEPS {
-        step = solid.walk_step(ray, &mut walk, &mut work);
-        if step != Step::Moving {
-            break;
-        }
-    }
-    (step == Step::Out, f64::from(work.iterations))
+    let (free, work) = follow(solid, ray, [from, far]);
+    (free, f64::from(work.iterations))
 }
 
 fn main() -> Result<()> {

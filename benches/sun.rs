@@ -14,10 +14,13 @@ use conemarch::cpu;
 use conemarch::pass::look::Light;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset;
-use conemarch::scene::{Advance, Assets, Solid, Step, Task};
+use conemarch::scene::{Advance, Assets, Solid, Task};
+use follow::{STEPS, follow};
 use glam::DVec3;
 use publish::publish;
 
+#[path = "common/follow.rs"]
+mod follow;
 #[path = "common/markdown.rs"]
 mod markdown;
 #[path = "common/publish.rs"]
@@ -39,8 +42,6 @@ const RAYS: usize = 16;
 const SAMPLES: f64 = 16.0;
 /// The radius of the samples' filter in footprints, which are half a pixel.
 const FILTER: f64 = 3.0;
-/// Steps of a ray, and of a cone.
-const STEPS: u32 = 512;
 /// A cone stops after a step that gains less than this share of its front.
 const LEAST: f64 = 1e-3;
 
@@ -120,15 +121,15 @@ impl Task for Count<'_> {
                 let off = sun.softness * share.sqrt();
                 let axis = (sun.axis + off * (cos * side + sin * other)).normalize();
                 let ray = beam(axis, 0.0, 0.0);
-                let (lit, evaluations) = follow(solid, &ray, [0.0, sun.far]);
-                let share = evaluations / RAYS as f64;
+                let (lit, work) = follow(solid, &ray, [0.0, sun.far]);
+                let share = f64::from(work.evaluations) / RAYS as f64;
                 census.ray_evaluations += share;
                 for (cones, free) in census.cones.iter_mut().zip(free) {
                     cones.left += if free { 0.0 } else { share };
                 }
                 if !free[1] {
-                    let (_, evaluations) = follow(solid, &ray, [ends[1].0, sun.far]);
-                    census.late_evaluations += evaluations / RAYS as f64;
+                    let (_, work) = follow(solid, &ray, [ends[1].0, sun.far]);
+                    census.late_evaluations += f64::from(work.evaluations) / RAYS as f64;
                 }
                 lit
             });
@@ -145,20 +146,6 @@ impl Task for Count<'_> {
         }
         census
     }
-}
-
-/// Whether a ray reaches the second distance from the first, and its evaluations.
-fn follow<S: Solid>(solid: &S, ray: &Beam, [from, far]: [f64; 2]) -> (bool, f64) {
-    let mut work = Counts::default();
-    let mut walk = solid.begin(ray, from, far, &mut work);
-    let mut step = Step::Moving;
-    for _ in 0..STEPS {
-        step = solid.walk_step(ray, &mut walk, &mut work);
-        if step != Step::Moving {
-            break;
-        }
-    }
-    (step == Step::Out, f64::from(work.evaluations))
 }
 
 /// How far a cone is proven free, and its evaluations.

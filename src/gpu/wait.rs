@@ -15,11 +15,18 @@ impl Device {
     /// # Errors
     /// The device was lost or reported an error.
     pub fn wait(&self) -> Result<(), DeviceError> {
-        let polled = self.device.poll(wgpu::PollType::Wait {
-            submission_index: None,
-            // A dispatch has a bounded number of steps. A device that needs longer hangs.
-            timeout: Some(Duration::from_secs(120)),
-        });
+        let poll = || {
+            self.device.poll(wgpu::PollType::Wait {
+                submission_index: None,
+                // A dispatch has a bounded number of steps. A device that needs longer hangs.
+                timeout: Some(Duration::from_secs(120)),
+            })
+        };
+        let mut polled = poll();
+        if matches!(polled, Err(wgpu::PollError::Timeout)) {
+            // The process, or the whole machine, may have slept that long.
+            polled = poll();
+        }
         self.trouble()?;
         polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))
     }

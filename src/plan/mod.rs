@@ -266,7 +266,8 @@ impl Plan {
 
     /// A warning if f32 is too coarse for the picture.
     pub fn precision_warning(&self) -> Option<String> {
-        self.scene.precision_warning(&self.viewpoint())
+        self.scene
+            .precision_warning(&self.viewpoint(), &self.view())
     }
 
     /// The step limit of a ray through the scene.

@@ -1,8 +1,10 @@
 //! The settings of a scene given by a distance estimate.
 
 use super::distance::Distance;
-use super::{AnySolid, Assets, Scene, SceneSettings, Viewpoint};
+use super::{AnySolid, Assets, Scene, SceneSettings, Solid, Step, Viewpoint};
 use crate::base::key::{Fault, Key, auto_count};
+use crate::base::outcome::Counts;
+use crate::base::view::{View, footprint};
 use crate::formula::Formula;
 use crate::heightfield::tracer::settings::PrepareError;
 use crate::keys;
@@ -21,6 +23,10 @@ pub const MOST_ITERATIONS: u32 = 1000;
 /// The largest step limit of a shadow ray. Each step iterates the formula, and Mesa's software
 /// Vulkan ends loops after 65 535 rounds.
 const MOST_SHADOW_STEPS: u32 = 512;
+/// Columns and rows of the rays that look for the nearest hit. They take a few milliseconds.
+const PROBES: [u32; 2] = [48, 27];
+/// Steps of each.
+const PROBE_STEPS: u32 = 256;
 
 impl DistanceSettings {
     /// The scene from a viewpoint.
@@ -44,9 +50,35 @@ impl DistanceSettings {
         let evaluator = self.formula.evaluator();
         let inside = evaluator.step(from.eye, MOST_ITERATIONS, 0.0).radius;
         let clear = bounds.distance(from.eye).max(inside);
-        // On the surface the footprint would be zero.
-        let least = 1e-10 * bounds.farthest(from.eye);
-        from.grain0 + from.grain * clear.max(least)
+        from.grain0 + from.grain * clear.max(self.least(from))
+    }
+
+    /// The smallest footprint of the hits of some rays over the image.
+    fn finest_hit(&self, from: &Viewpoint, view: &View) -> f64 {
+        let solid = self.seen(from);
+        let [across, down] = PROBES;
+        let rays = (0..across * down).map(|i| {
+            let places = [(i % across, across, 0), (i / across, down, 1)];
+            let pixel = places.map(|(nth, all, axis)| {
+                let place = u64::from(2 * nth + 1) * u64::from(view.size[axis]);
+                (place / u64::from(2 * all)) as u32
+            });
+            view.view_ray(pixel)
+        });
+        let footprints = rays.filter_map(|ray| {
+            let mut work = Counts::default();
+            let mut walk = solid.begin(&ray, 0.0, f64::INFINITY, &mut work);
+            let mut steps = (0..PROBE_STEPS).map(|_| solid.walk_step(&ray, &mut walk, &mut work));
+            let end = steps.find(|step| *step != Step::Moving);
+            let t = solid.walk_hit(&walk).t.max(self.least(from));
+            (end != Some(Step::Out)).then(|| footprint(&ray, t))
+        });
+        footprints.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Hits that are nearer count as this far, as the footprint of a hit at the eye is zero.
+    fn least(&self, from: &Viewpoint) -> f64 {
+        1e-10 * self.formula.bounds().farthest(from.eye)
     }
 }
 
@@ -120,10 +152,13 @@ impl SceneSettings for DistanceSettings {
     /// The estimate's noise in f32 is about 2e-8 of the coordinates (docs/method.md, 6), and
     /// the coordinates of any orbit are as large as the bounds. A footprint below a hundred
     /// times this noise is damaged.
-    fn precision_warning(&self, from: &Viewpoint) -> Option<String> {
-        let finest = self.finest_footprint(from);
+    fn precision_warning(&self, from: &Viewpoint, view: &View) -> Option<String> {
         let floor = 2e-6 * self.formula.bounds().half.max_element();
-        (finest < 0.99 * floor).then(|| {
+        let too_fine = |footprint: f64| footprint < 0.99 * floor;
+        // What is seen lies farther, mostly.
+        let bound = self.finest_footprint(from);
+        let finest = too_fine(bound).then(|| self.finest_hit(from, view).max(bound))?;
+        too_fine(finest).then(|| {
             format!(
                 "the finest footprint, {finest:.1e}, is below the f32 limit of about {floor:.0e}, so the nearest details are noise. Move the camera away, or render with --device cpu"
             )

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::stepping::Stepping;
 use super::{AnySolid, Assets, Scene};
 use crate::base::key::{Fault, Key};
+use crate::base::view::View;
 use crate::heightfield::assets::{AssetKeys, Preparation};
 use crate::heightfield::conemap::generate::generator::ShareWatch;
 use crate::heightfield::tracer::settings::{Make, PrepareError};
@@ -90,7 +91,7 @@ pub trait SceneSettings {
     }
 
     /// A warning if f32 is too coarse for the picture.
-    fn precision_warning(&self, _from: &Viewpoint) -> Option<String> {
+    fn precision_warning(&self, _from: &Viewpoint, _view: &View) -> Option<String> {
         None
     }
 

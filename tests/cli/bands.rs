@@ -286,6 +286,10 @@ fn bands_of_another_picture_program_or_device_are_refused() {
     // A big picture has bands without being asked, and does not begin anew over what is kept.
     let big = "render mandelbox --device cpu --size 4100x4100 -o a.png";
     folder.fails(big, 1, &format!("`{PART}`|--resume|remove it"));
+    // A small one has none. It tells what is left.
+    let small = said(&folder.done(&format!("{PICTURE} -o a.png")));
+    holds(&small, &[&format!("note: `{PART}`"), "--resume goes on"]);
+    assert!(folder.bytes(PART) == kept);
     let file = OpenOptions::new()
         .read(true)
         .open(folder.0.join(PART))

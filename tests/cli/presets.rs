@@ -88,16 +88,22 @@ fn the_list_of_presets_is_the_folder() {
     );
 }
 
-/// A smaller picture has the details of one with 720 rows. Presets for measurements refer to the pixel.
+/// Pictures have the details of 2160 rows at all smaller sizes. Presets for measurements refer to the
+/// pixel.
 #[test]
-fn built_in_pictures_keep_their_details_at_smaller_sizes() {
+fn built_in_pictures_have_the_same_details_up_to_2160_rows() {
     for (name, _) in BUILTIN {
         let reference = load(name, &[]).expect("built in").plan.reference;
-        assert_eq!(reference.is_none(), name.starts_with("bench-"), "{name}");
-        assert!(
-            reference.is_none_or(|height| height >= 720),
-            "{name}: {reference:?}"
-        );
+        let expected = (!name.starts_with("bench-")).then_some(2160);
+        assert_eq!(reference, expected, "{name}");
+    }
+}
+
+#[test]
+fn no_built_in_preset_is_too_near_to_a_surface_for_f32() {
+    for (name, _) in BUILTIN {
+        let plan = load(name, &[]).expect("built in").plan;
+        assert_eq!(plan.precision_warning(), None, "{name}");
     }
 }
 
