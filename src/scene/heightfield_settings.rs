@@ -15,10 +15,7 @@ use crate::heightfield::tracer::settings::{Make, PrepareError};
 /// 320 x 180, and cones from 640 x 360 on.
 const CONE_PIXELS: u64 = 100_000;
 
-/// A cone map pays from about so many rays for each sample of the heights on. `render --stats` with
-/// `scene.tracer` as `walk` and as `max-mip` told that, in four presets of 512 x 512 samples, the map
-/// took the time that 2.5 to 3.8 rays for each of them saved on the CPU, and 1.2 to 5.8 on software
-/// Vulkan.
+/// A cone map pays from about so many rays for each sample of the heights on (`bench few_rays`).
 const RAYS_PER_CONE: u64 = 3;
 
 impl SceneSettings for HeightfieldSettings {
