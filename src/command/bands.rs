@@ -55,12 +55,7 @@ impl Bands {
     /// # Errors
     /// It is to be resumed, and it has no bands.
     pub fn of(args: &Render, plan: &Plan, format: Format, output: &Path) -> Result<Option<Self>> {
-        let whole = output.metadata().is_ok_and(|m| !m.is_file()) || is_stdout(output);
-        let is_local = match format {
-            Format::Png => args.layer.facts().is_local,
-            format => format == Format::Exr,
-        };
-        let can = is_local && !whole && plan.window.is_none();
+        let can = Self::can(args, plan, format, output);
         if args.resume && !can {
             let local = Layer::ALL
                 .into_iter()
@@ -74,6 +69,16 @@ impl Bands {
         let is_big = plan.size.map(u64::from).iter().product::<u64>() > MOST_AT_ONCE;
         let has_bands = can && (is_big || args.resume);
         Ok(has_bands.then(|| Self::new(plan.size)))
+    }
+
+    /// Whether a picture can be rendered in bands.
+    pub fn can(args: &Render, plan: &Plan, format: Format, output: &Path) -> bool {
+        let whole = output.metadata().is_ok_and(|m| !m.is_file()) || is_stdout(output);
+        let is_local = match format {
+            Format::Png => args.layer.facts().is_local,
+            format => format == Format::Exr,
+        };
+        is_local && !whole && plan.window.is_none()
     }
 
     /// How many there are.

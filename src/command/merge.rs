@@ -285,7 +285,7 @@ fn in_rows(mut parts: Vec<Part>, [width, height]: [u32; 2]) -> Result<Vec<Vec<Pa
         if [y, x] < [next[1], next[0]] {
             let other = last.unwrap_or_default();
             return Err(anyhow!(
-                "`{}` and `{}` overlap; give each part of one --tile grid once",
+                "`{}` and `{}` overlap; give the parts of one --tile grid only, each once",
                 other.display(),
                 part.shown()
             ));

@@ -19,7 +19,7 @@ use crate::command::progress::Reporter;
 use crate::command::sink::{Results, Sink, apart, spared};
 use crate::command::stats::{Figures, Stats, summary};
 use crate::command::tile::Tile;
-use crate::command::unfinished::beside;
+use crate::command::unfinished::{beside, is_left};
 use crate::command::{completions, interrupt, memory, tile};
 use crate::gpu::adapters::Choice;
 use crate::measure::truth::{Cache, MOST_ROUNDS, cached};
@@ -176,13 +176,6 @@ pub fn run(args: &Render) -> Result<()> {
         plan.window = Some(tile.window(plan.size)?);
     }
     let bands = Bands::of(args, &plan, format, &output)?;
-    let left = beside(&output);
-    if bands.is_none() && left.exists() {
-        say(&format!(
-            "note: `{}` keeps bands of a picture that was not finished; --resume goes on with it",
-            left.display()
-        ));
-    }
     let stats = args.stats.as_deref();
     let outputs = [("the picture", Some(output.as_path())), ("--stats", stats)];
     apart(&outputs)?;
@@ -201,6 +194,12 @@ pub fn run(args: &Render) -> Result<()> {
     if args.explain {
         let _progress = Reporter::start("explaining");
         return explain(args, &plan, &assets, extras);
+    }
+    if bands.is_none() && Bands::can(args, &plan, format, &output) && is_left(&output) {
+        say(&format!(
+            "note: `{}` keeps bands of a picture that was not finished; --resume goes on with them",
+            beside(&output).display()
+        ));
     }
     let picture = Sink::prepare(&output)?;
     let figures = stats.map(Sink::prepare).transpose()?;

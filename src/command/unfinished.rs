@@ -56,6 +56,16 @@ pub fn beside(picture: &Path) -> PathBuf {
     name.into()
 }
 
+/// Whether the file beside a picture keeps bands, and no process adds to them.
+pub fn is_left(picture: &Path) -> bool {
+    let file = File::open(beside(picture)).ok();
+    file.is_some_and(|mut file| {
+        let is_free = !matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+        let bytes = file.metadata().map_or(0, |m| m.len());
+        is_free && head(&mut file).is_some_and(|(_, start)| bytes > start)
+    })
+}
+
 impl Unfinished {
     /// Opens the file beside a picture, or makes it. `lengths` are the bytes of the bands' rows.
     ///

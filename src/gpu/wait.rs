@@ -15,17 +15,17 @@ impl Device {
     /// # Errors
     /// The device was lost or reported an error.
     pub fn wait(&self) -> Result<(), DeviceError> {
-        let poll = || {
-            self.device.poll(wgpu::PollType::Wait {
+        let mut polled = Err(wgpu::PollError::Timeout);
+        // A dispatch has a bounded number of steps: a device that needs longer than these seconds
+        // hangs. If the process or the whole machine sleeps, only one of them passes.
+        for _ in 0..120 {
+            polled = self.device.poll(wgpu::PollType::Wait {
                 submission_index: None,
-                // A dispatch has a bounded number of steps. A device that needs longer hangs.
-                timeout: Some(Duration::from_secs(120)),
-            })
-        };
-        let mut polled = poll();
-        if matches!(polled, Err(wgpu::PollError::Timeout)) {
-            // The process, or the whole machine, may have slept that long.
-            polled = poll();
+                timeout: Some(Duration::from_secs(1)),
+            });
+            if !matches!(polled, Err(wgpu::PollError::Timeout)) {
+                break;
+            }
         }
         self.trouble()?;
         polled.map(|_| ()).map_err(|e| self.lost(e.to_string()))

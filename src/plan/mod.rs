@@ -266,6 +266,9 @@ impl Plan {
 
     /// A warning if f32 is too coarse for the picture.
     pub fn precision_warning(&self) -> Option<String> {
+        if let Some(eyes) = self.eyes() {
+            return eyes.iter().find_map(Self::precision_warning);
+        }
         self.scene
             .precision_warning(&self.viewpoint(), &self.view())
     }

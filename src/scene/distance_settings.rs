@@ -1,6 +1,7 @@
 //! The settings of a scene given by a distance estimate.
 
 use super::distance::Distance;
+use super::stepping::Stepping;
 use super::{AnySolid, Assets, Scene, SceneSettings, Solid, Step, Viewpoint};
 use crate::base::key::{Fault, Key, auto_count};
 use crate::base::outcome::Counts;
@@ -50,12 +51,18 @@ impl DistanceSettings {
         let evaluator = self.formula.evaluator();
         let inside = evaluator.step(from.eye, MOST_ITERATIONS, 0.0).radius;
         let clear = bounds.distance(from.eye).max(inside);
-        from.grain0 + from.grain * clear.max(self.least(from))
+        from.grain0 + from.grain * clear.max(self.least_distance(from))
     }
 
-    /// The smallest footprint of the hits of some rays over the image.
+    /// The smallest footprint of the hits of [`PROBES`] rays over the image. Parts between them may
+    /// be nearer.
     fn finest_hit(&self, from: &Viewpoint, view: &View) -> f64 {
-        let solid = self.seen(from);
+        // The truth's steps are too short for so few of them.
+        let stepping = Stepping {
+            stride: 1.0,
+            ..from.stepping
+        };
+        let solid = self.seen(&Viewpoint { stepping, ..*from });
         let [across, down] = PROBES;
         let rays = (0..across * down).map(|i| {
             let places = [(i % across, across, 0), (i / across, down, 1)];
@@ -70,14 +77,14 @@ impl DistanceSettings {
             let mut walk = solid.begin(&ray, 0.0, f64::INFINITY, &mut work);
             let mut steps = (0..PROBE_STEPS).map(|_| solid.walk_step(&ray, &mut walk, &mut work));
             let end = steps.find(|step| *step != Step::Moving);
-            let t = solid.walk_hit(&walk).t.max(self.least(from));
-            (end != Some(Step::Out)).then(|| footprint(&ray, t))
+            let t = solid.walk_hit(&walk).t.max(self.least_distance(from));
+            (end == Some(Step::Hit)).then(|| footprint(&ray, t))
         });
         footprints.fold(f64::INFINITY, f64::min)
     }
 
     /// Hits that are nearer count as this far, as the footprint of a hit at the eye is zero.
-    fn least(&self, from: &Viewpoint) -> f64 {
+    fn least_distance(&self, from: &Viewpoint) -> f64 {
         1e-10 * self.formula.bounds().farthest(from.eye)
     }
 }
@@ -155,9 +162,9 @@ impl SceneSettings for DistanceSettings {
     fn precision_warning(&self, from: &Viewpoint, view: &View) -> Option<String> {
         let floor = 2e-6 * self.formula.bounds().half.max_element();
         let too_fine = |footprint: f64| footprint < 0.99 * floor;
-        // What is seen lies farther, mostly.
+        // The bound is cheap, but often far too low.
         let bound = self.finest_footprint(from);
-        let finest = too_fine(bound).then(|| self.finest_hit(from, view).max(bound))?;
+        let finest = too_fine(bound).then(|| self.finest_hit(from, view))?;
         too_fine(finest).then(|| {
             format!(
                 "the finest footprint, {finest:.1e}, is below the f32 limit of about {floor:.0e}, so the nearest details are noise. Move the camera away, or render with --device cpu"

@@ -290,6 +290,11 @@ fn bands_of_another_picture_program_or_device_are_refused() {
     let small = said(&folder.done(&format!("{PICTURE} -o a.png")));
     holds(&small, &[&format!("note: `{PART}`"), "--resume goes on"]);
     assert!(folder.bytes(PART) == kept);
+    for (left, name) in [(&b"junk"[..], "j.png"), (&kept, "j.jpg")] {
+        folder.write(&format!("{name}.part"), left);
+        let other = said(&folder.done(&format!("{PICTURE} -o {name}")));
+        assert!(!other.contains("note"), "{name}: {other}");
+    }
     let file = OpenOptions::new()
         .read(true)
         .open(folder.0.join(PART))

@@ -107,6 +107,24 @@ fn no_built_in_preset_is_too_near_to_a_surface_for_f32() {
     }
 }
 
+/// The eye is by the face of a Mandelbox at height 6. A pair of eyes sees it from one eye alone.
+#[test]
+fn only_what_is_seen_is_too_near_for_f32() {
+    for (target, stereo, warns) in [
+        ("[0, 0, 5]", "off", true),
+        ("[0, 0, 7]", "off", false),
+        ("[0, 0, 5]", "pair", true),
+        ("[0, 0, 7]", "pair", false),
+    ] {
+        let text = format!(
+            "[scene]\nkind = 'distance'\nformula = 'mandelbox'
+            [camera]\neye = [0, 0, 6.001]\ntarget = {target}\nup = [0, 1, 0]\nfov = 40\nstereo = '{stereo}'"
+        );
+        let plan = read(&text, "near").expect("a preset");
+        assert_eq!(plan.precision_warning().is_some(), warns, "{text}");
+    }
+}
+
 #[test]
 fn built_in_presets_are_right_and_have_a_title() {
     for (name, text) in BUILTIN {

@@ -63,6 +63,10 @@ pub struct Run {
     pub(super) flights: VecDeque<Flight>,
     pub(super) corrections: u32,
     pub(super) ended: f64,
+    /// Since when the device has not answered, as of the last wait, and how long was waited since, in
+    /// milliseconds.
+    #[cfg(feature = "cli")]
+    quiet: (f64, f64),
     /// Blocks in the frame, without those of the first picture.
     pub(super) collected: usize,
     delivered: bool,
@@ -141,6 +145,8 @@ impl Run {
             flights: VecDeque::new(),
             corrections: 0,
             ended,
+            #[cfg(feature = "cli")]
+            quiet: (ended, 0.0),
             collected: 0,
             delivered: false,
             received: false,
@@ -390,6 +396,7 @@ impl Run {
             return Ok(());
         }
         let device = &self.shared.device;
+        let begun = (device.clock)();
         let since = match self.flights.front() {
             Some(flight) => {
                 device.wait_a_moment(flight.index.clone())?;
@@ -401,7 +408,15 @@ impl Run {
                 self.ended
             }
         };
-        if (device.clock)() - since > 120e3 {
+        // The process, or the whole machine, may have slept meanwhile.
+        let waited = ((device.clock)() - begun).min(1e3);
+        let before = if self.quiet.0 == since {
+            self.quiet.1
+        } else {
+            0.0
+        };
+        self.quiet = (since, before + waited);
+        if self.quiet.1 > 120e3 {
             return Err(device.lost("it has not answered for two minutes").into());
         }
         Ok(())
