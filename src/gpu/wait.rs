@@ -9,6 +9,29 @@ use wgpu::BufferUsages;
 use crate::gpu::buffer::{Buffer, bytes_for, create};
 use crate::gpu::device::{Device, DeviceError};
 
+/// A dispatch has a bounded number of steps, so a device that needs more seconds hangs.
+const MOST_SECONDS: u32 = 120;
+
+/// How long was waited for a device that does not answer.
+#[derive(Debug, Default)]
+pub struct Patience {
+    since: f64,
+    waited: f64,
+}
+
+impl Patience {
+    /// Whether the device hangs, after one more wait. Both times are in milliseconds; `since` is when
+    /// the work under way began. If the process or the whole machine sleeps, the wait takes longer, so
+    /// it counts as a second at most.
+    pub fn ends(&mut self, since: f64, waited: f64) -> bool {
+        if since != self.since {
+            *self = Self { since, waited: 0.0 };
+        }
+        self.waited += waited.min(1e3);
+        self.waited > 1e3 * f64::from(MOST_SECONDS)
+    }
+}
+
 impl Device {
     /// Waits until everything submitted has run.
     ///
@@ -16,9 +39,8 @@ impl Device {
     /// The device was lost or reported an error.
     pub fn wait(&self) -> Result<(), DeviceError> {
         let mut polled = Err(wgpu::PollError::Timeout);
-        // A dispatch has a bounded number of steps: a device that needs longer than these seconds
-        // hangs. If the process or the whole machine sleeps, only one of them passes.
-        for _ in 0..120 {
+        // If the process or the whole machine sleeps, only one of these seconds passes.
+        for _ in 0..MOST_SECONDS {
             polled = self.device.poll(wgpu::PollType::Wait {
                 submission_index: None,
                 timeout: Some(Duration::from_secs(1)),
@@ -121,4 +143,19 @@ pub fn read_picture(device: &Device, picture: &wgpu::Texture) -> Result<Vec<u8>,
     let padded: Vec<u8> = map(device, &staging, bytes as usize)?;
     let rows = padded.chunks(pitch as usize);
     Ok(rows.flat_map(|r| &r[..row as usize]).copied().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_process_that_sleeps_does_not_lose_patience() {
+        let mut patience = Patience::default();
+        assert!(!patience.ends(1.0, 1e6));
+        assert!((0..119).all(|_| !patience.ends(1.0, 1e3)));
+        // Other work begins anew.
+        assert!((0..120).all(|_| !patience.ends(2.0, 1e3)));
+        assert!(patience.ends(2.0, 1e3));
+    }
 }

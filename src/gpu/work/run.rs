@@ -11,6 +11,8 @@ use crate::gpu::error::RenderError;
 use crate::gpu::staging::Staging;
 use crate::gpu::stamps::{STAMPS, Stamps};
 use crate::gpu::target::Target;
+#[cfg(feature = "cli")]
+use crate::gpu::wait::Patience;
 use crate::gpu::work::job::{Job, Reusable};
 use crate::gpu::work::{FrameInputs, Shared};
 use crate::pass::layout::CellsHead;
@@ -63,10 +65,8 @@ pub struct Run {
     pub(super) flights: VecDeque<Flight>,
     pub(super) corrections: u32,
     pub(super) ended: f64,
-    /// Since when the device has not answered, as of the last wait, and how long was waited since, in
-    /// milliseconds.
     #[cfg(feature = "cli")]
-    quiet: (f64, f64),
+    patience: Patience,
     /// Blocks in the frame, without those of the first picture.
     pub(super) collected: usize,
     delivered: bool,
@@ -146,7 +146,7 @@ impl Run {
             corrections: 0,
             ended,
             #[cfg(feature = "cli")]
-            quiet: (ended, 0.0),
+            patience: Patience::default(),
             collected: 0,
             delivered: false,
             received: false,
@@ -408,15 +408,7 @@ impl Run {
                 self.ended
             }
         };
-        // The process, or the whole machine, may have slept meanwhile.
-        let waited = ((device.clock)() - begun).min(1e3);
-        let before = if self.quiet.0 == since {
-            self.quiet.1
-        } else {
-            0.0
-        };
-        self.quiet = (since, before + waited);
-        if self.quiet.1 > 120e3 {
+        if self.patience.ends(since, (device.clock)() - begun) {
             return Err(device.lost("it has not answered for two minutes").into());
         }
         Ok(())
