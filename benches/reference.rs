@@ -22,8 +22,8 @@ mod markdown;
 mod publish;
 
 const MARKS: [&str; 2] = ["<!-- reference -->", "<!-- /reference -->"];
-/// Sizes, and samples per pixel. 16 pixels of the large picture make one of the small picture, so the
-/// large one has twice the samples. More would take longer and only make the difference smaller.
+/// Sizes, and samples per pixel. A pixel of the small picture covers 16 of the large one, which have
+/// 512 samples together. With more, the noise and the difference would be smaller.
 const LARGE: ([u32; 2], u32) = ([1280, 720], 32);
 const SMALL: ([u32; 2], u32) = ([320, 180], 256);
 
