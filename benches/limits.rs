@@ -6,16 +6,17 @@
 //! balls. Rays from their fronts are counted on the CPU, in groups of 8 x 4 pixels spread over the
 //! picture.
 //!
-//! Rays from the eye, cones and rays to the sun are counted with lanes that take the next ray of their tile,
-//! too, as if taking it cost nothing.
+//! Rays from the eye, cones, rays to the sun and searches for free room are counted with lanes that take
+//! the next one of their tile, too, as if taking it cost nothing.
 
 use anyhow::Result;
 use conemarch::base::outcome::Counts;
 use conemarch::base::view::{Beam, footprint};
 use conemarch::cpu;
+use conemarch::pass::look::Light;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};
-use conemarch::scene::{Advance, Assets, Solid, Step, Task};
+use conemarch::scene::{Advance, Assets, ROOMS, Solid, Step, Task};
 use publish::publish;
 use views::VIEWS;
 
@@ -50,18 +51,22 @@ const STEPS: u32 = 512;
 /// A cone ends after a step that gains less than this share of its front.
 const LEAST: f64 = 1e-4;
 
-/// Which rays are counted.
+/// What is counted.
 #[derive(Clone, Copy, PartialEq)]
 enum Rays {
     Alone,
     FromIdealCones,
     /// From the hits.
     ToSun,
+    /// No rays, but searches for the free room about points above the hits, for occlusion: those of one
+    /// of the distances from the hits.
+    Room(u32),
 }
 
 /// Follows the rays of tiles.
 struct Follow<'a> {
     plan: &'a Plan,
+    light: Light,
     rays: Rays,
 }
 
@@ -95,7 +100,7 @@ impl Task for Follow<'_> {
             }
             let ray = view.view_ray(pixel);
             let (end, walk) = follow_ray(solid, &ray, [front, far], &mut work);
-            if self.rays != Rays::ToSun {
+            if matches!(self.rays, Rays::Alone | Rays::FromIdealCones) {
                 return work;
             }
             let mut work = Counts::default();
@@ -103,6 +108,12 @@ impl Task for Follow<'_> {
                 let hit = solid.walk_hit(&walk);
                 let normal = solid.surface(&ray, &hit).normal;
                 let grain = footprint(&ray, hit.t);
+                if let Rays::Room(nth) = self.rays {
+                    let nearest = self.light.look.occlusion_reach / 16.0;
+                    let h = nearest.max(2.0 * grain) * f64::from(1 << nth);
+                    solid.room(ray.at(hit.t) + h * normal, h, &mut work);
+                    return work;
+                }
                 let ray = Beam {
                     origin: ray.at(hit.t) + solid.shadow_lift(grain) * normal,
                     axis: sun,
@@ -212,7 +223,9 @@ fn counted(name: &str, size: [u32; 2], changes: &[&str], rays: Rays) -> Result<V
     cpu::render(&plan, &assets, Extras::default(), &mut |_| true)?;
     plan.size = size;
     let solid = plan.scene.solid(&plan.viewpoint(), &assets)?;
-    Ok(solid.run(Follow { plan: &plan, rays }))
+    let light = Light::of(&plan, &solid);
+    let plan = &plan;
+    Ok(solid.run(Follow { plan, light, rays }))
 }
 
 fn ideal_row(
@@ -300,9 +313,17 @@ fn main() -> Result<()> {
     let sun = lanes("rays to the sun", |name, size| {
         counted(name, size, &[], Rays::ToSun)
     })?;
+    // Over a formula, each takes one evaluation.
+    let rooms = lanes("searches for free room", |name, size| {
+        let nths = (0..ROOMS as u32).filter(|_| FIELDS.contains(&name));
+        let tiles: Result<Vec<_>> = nths
+            .map(|nth| counted(name, size, &[], Rays::Room(nth)))
+            .collect();
+        Ok(tiles?.concat())
+    })?;
     publish(
         "benchmarks.md",
         MARKS,
-        &format!("{formulas}\n{fields}\n{eye}\n{cones}\n{sun}"),
+        &format!("{formulas}\n{fields}\n{eye}\n{cones}\n{sun}\n{rooms}"),
     )
 }

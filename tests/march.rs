@@ -460,20 +460,42 @@ fn cones_are_left_out_where_they_save_few_steps() {
         plan.scene.outline(&plan.viewpoint(), &assets).unwrap();
         plan.resolved(Extras::default(), &assets).levels().len()
     };
+    for (name, small, large) in [
+        ("bench-far", 0, 0),
+        ("bench-inside", 0, 0),
+        ("bench-thin", 0, 4),
+        ("mandelbox-gate", 0, 4),
+        ("mandelbox-hall", 4, 4),
+        ("bricks", 0, 0),
+        ("spikes", 4, 4),
+        ("stones", 4, 4),
+        ("terrain", 4, 4),
+        ("valley-mist", 4, 4),
+    ] {
+        let own = "image.reference=auto";
+        assert_eq!(
+            levels(name, &[own, "image.size=[640, 360]"]),
+            small,
+            "{name}"
+        );
+        assert_eq!(
+            levels(name, &[own, "image.size=[1280, 720]"]),
+            large,
+            "{name}"
+        );
+    }
+    // The cones of many samples are marched once.
+    let mut plan = preset(
+        "mandelbox-stage",
+        &["image.reference=auto", "march.coarsest=auto"],
+    );
+    plan.size = [1280, 720];
+    for (samples, cones) in [(1, 0), (16, 4)] {
+        plan.samples = samples;
+        let resolved = plan.resolved(Extras::default(), &Assets::default());
+        assert_eq!(resolved.levels().len(), cones, "{samples} samples");
+    }
     for size in ["image.size=[640, 360]", "image.size=[1280, 720]"] {
-        for (name, cones) in [
-            ("bench-far", 0),
-            ("bench-inside", 0),
-            ("bench-thin", 4),
-            ("mandelbox-gate", 4),
-            ("bricks", 0),
-            ("spikes", 4),
-            ("stones", 4),
-            ("terrain", 4),
-            ("valley-mist", 4),
-        ] {
-            assert_eq!(levels(name, &[size]), cones, "{name}, {size}");
-        }
         // In a small picture of heights few rays share a cone.
         assert_eq!(levels("terrain", &["image.size=[160, 90]"]), 0);
         // A mode that is about cones keeps them.

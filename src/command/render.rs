@@ -16,7 +16,7 @@ use crate::command::failure::usage;
 use crate::command::output::{Format, Options, default_name};
 use crate::command::print::{print, say};
 use crate::command::progress::Reporter;
-use crate::command::sink::{Results, Sink, apart, spared};
+use crate::command::sink::{Results, Sink, apart, rescued, spared};
 use crate::command::stats::{Figures, Stats, summary};
 use crate::command::tile::Tile;
 use crate::command::unfinished::{beside, is_left};
@@ -231,19 +231,22 @@ pub fn run(args: &Render) -> Result<()> {
                 &mut executor,
                 (format, &output),
             )?;
-            results.put(picture, &content.0)?;
+            let put = results.put(picture, &content.0);
+            put.map_err(|fault| rescued(fault, &content.0, &output))?;
             content.1
         }
     };
     let summary = summary(&output, plan.pixels().size, &made);
     let is_inside = ends_at_the_eye(&made, &plan);
+    let mut counted = Ok(());
     if let Some(figures) = figures {
         // What has bands takes long.
         if bands.is_none() {
             warm_times(&mut executor, &plan, &assets, &mut made)?;
         }
         let stats = Stats::new(&name, &plan, &executor, &made);
-        results.put_json(figures, &stats)?;
+        // The picture is whole without them.
+        counted = results.put_json(figures, &stats);
     }
     let handed = interrupt::check()
         .map_err(Into::into)
@@ -253,6 +256,7 @@ pub fn run(args: &Render) -> Result<()> {
         None => handed?,
     }
     say(&summary);
+    counted?;
     if is_inside {
         say(
             "warning: every ray ends at the eye, so the picture shows nothing: camera.eye lies inside the solid, or touches it; move it away",

@@ -1,9 +1,10 @@
 //! Where results go: a file, or standard output under the name `-`.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use serde::Serialize;
 
 use crate::command::failure::usage;
@@ -94,6 +95,21 @@ pub fn spared(outputs: &[(&str, Option<&Path>)], inputs: &[(&str, PathBuf)]) -> 
 pub fn ending(path: &Path) -> String {
     let ending = path.extension().and_then(|e| e.to_str());
     ending.unwrap_or_default().to_lowercase()
+}
+
+/// Keeps a picture that could not be written in the folder of temporary files, and tells where.
+pub fn rescued(fault: OutputError, content: &[u8], output: &Path) -> anyhow::Error {
+    let suffix = format!(".{}", ending(output));
+    let mut builder = tempfile::Builder::new();
+    let file = builder.prefix("conemarch-").suffix(&suffix).tempfile();
+    let kept = file.and_then(|mut file| {
+        file.write_all(content)?;
+        Ok(file.keep()?.1)
+    });
+    match kept {
+        Ok(kept) => anyhow!("{fault}; the picture is in `{}`", kept.display()),
+        Err(_) => fault.into(),
+    }
 }
 
 /// A name in messages.

@@ -8,6 +8,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
+use crate::base::outcome::Counts;
 use crate::base::srgb::linear;
 use crate::base::view::Beam;
 use crate::pass::LookFeature;
@@ -91,7 +92,7 @@ pub fn glow<S: Solid>(solid: &S, light: &Light, ray: &Beam, end: f64) -> DVec3 {
         return DVec3::ZERO;
     }
     let Glow { rate, parts, .. } = light.glow;
-    let away = |t: f64| solid.room(ray.at(t), f64::MAX) * rate;
+    let away = |t: f64| solid.room(ray.at(t), f64::MAX, &mut Counts::default()) * rate;
     let (least, most) = (end / f64::from(parts), end / GLOW_LEAST);
     let (mut t, mut far, mut sum) = (0.0, away(0.0), 0.0);
     let mut dim = far;
@@ -113,7 +114,7 @@ pub fn glow<S: Solid>(solid: &S, light: &Light, ray: &Beam, end: f64) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::outcome::{Counts, State};
+    use crate::base::outcome::State;
     use crate::formula::Formula;
     use crate::pass::trace::trace;
     use crate::scene::{Assets, Task};
@@ -137,7 +138,8 @@ mod tests {
                 };
                 let part = |i: u32| {
                     let t = end * (f64::from(i) + 0.5) / f64::from(PARTS);
-                    let dim = solid.room(ray.at(t), f64::MAX) * light.glow.rate;
+                    let dim =
+                        solid.room(ray.at(t), f64::MAX, &mut Counts::default()) * light.glow.rate;
                     (-dim - fog_depth(light, &ray, t)).exp()
                 };
                 let sum: f64 = (0..PARTS).map(part).sum();

@@ -11,7 +11,7 @@
 
 mod assets;
 pub mod camera;
-mod cones;
+pub mod cones;
 pub mod film;
 pub mod lamps;
 pub mod layers;
@@ -338,8 +338,12 @@ impl Plan {
             size: self.size,
             // A low limit does not make rays cheap: it leaves more of them unfinished.
             steps: self.march.ray_steps(None).max(march::STEPS),
-            levels: (!self.scene.tells_distance()).then(|| self.march.levels()),
-            has_samples: self.samples > 1,
+            levels: self.march.levels(),
+            samples: self.samples,
+            rule: match self.scene.tells_distance() {
+                true => cones::DISTANCE,
+                false => cones::HEIGHTS,
+            },
         })
     }
 }

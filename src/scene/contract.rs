@@ -88,7 +88,7 @@ pub trait Solid: Sync {
 
     /// The free room about a point, for occlusion. It may be a guess that exceeds the
     /// clearance. Where it is more than `enough`, any number from `enough` on will do.
-    fn room(&self, q: DVec3, _enough: f64) -> f64 {
+    fn room(&self, q: DVec3, _enough: f64, _work: &mut Counts) -> f64 {
         self.clearance(q)
     }
 
@@ -96,7 +96,7 @@ pub trait Solid: Sync {
     fn rooms(&self, q: DVec3, axis: DVec3, nearest: f64) -> [f64; ROOMS] {
         std::array::from_fn(|i| {
             let h = nearest * f64::from(1 << i);
-            self.room(q + h * axis, h)
+            self.room(q + h * axis, h, &mut Counts::default())
         })
     }
 

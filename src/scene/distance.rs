@@ -350,7 +350,7 @@ impl Solid for Distance {
         self.read(q, step, 0.0, &mut Counts::default()).1.max(0.0)
     }
 
-    fn room(&self, q: DVec3, _enough: f64) -> f64 {
+    fn room(&self, q: DVec3, _enough: f64, _work: &mut Counts) -> f64 {
         self.value(q).max(0.0)
     }
 

@@ -144,7 +144,7 @@ impl Heightfield {
 
     /// The radius of a ball about a local position that is proven empty, from windows of maxima.
     /// The search ends where the radius is at least `enough`, or where no window has more room.
-    fn empty_radius(&self, p: DVec3, enough: f64) -> f64 {
+    fn empty_radius(&self, p: DVec3, enough: f64, work: &mut Counts) -> f64 {
         let (surface, place) = (&self.made.surface, &self.made.placement);
         let slack = self.slack.truncate().max_element();
         let mut free = place.distance(p);
@@ -158,6 +158,7 @@ impl Heightfield {
             if free >= enough.min(place.texel * node) {
                 break;
             }
+            work.evaluations += 1;
             // The point is at least half a node from every side of the window.
             let window = window(surface, level, p.truncate() - 0.5 * node, BVec2::FALSE);
             let sides = (p.truncate() - window.low).min(window.high - p.truncate());
@@ -326,16 +327,16 @@ impl Solid for Heightfield {
     fn clearance(&self, q: DVec3) -> f64 {
         let p = self.made.placement.position(self.eye + q);
         // The ball cannot reach below the surface.
-        self.empty_radius(p, self.surface_gap(p))
+        self.empty_radius(p, self.surface_gap(p), &mut Counts::default())
     }
 
     /// A mean of two values: the proven radius is far too small over steep ground, and the height
     /// above the surface ignores what stands beside the point.
-    fn room(&self, q: DVec3, enough: f64) -> f64 {
+    fn room(&self, q: DVec3, enough: f64, work: &mut Counts) -> f64 {
         let p = self.made.placement.position(self.eye + q);
         let gap = self.surface_gap(p);
         let rest = (enough - HEIGHTFIELD_GUESS * gap) / (1.0 - HEIGHTFIELD_GUESS);
-        let proven = self.empty_radius(p, rest);
+        let proven = self.empty_radius(p, rest, work);
         proven + HEIGHTFIELD_GUESS * (gap - proven)
     }
 

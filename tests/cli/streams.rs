@@ -61,13 +61,29 @@ mod full {
     }
 
     #[test]
-    fn a_full_disk_is_an_error_that_names_the_file_and_leaves_nothing() {
+    fn a_full_disk_is_an_error_that_names_the_file_and_loses_no_picture() {
         let folder = Folder::new();
         std::os::unix::fs::symlink("/dev/full", folder.0.join("full.png")).expect("a link");
-        let full_png = tiny("mandelbox", "-o full.png");
-        folder.fails(&full_png, 1, "full.png|No space left|elsewhere");
-        let stats = tiny("mandelbox", "-o a.png --stats /dev/full");
-        folder.fails(&stats, 1, "/dev/full: cannot be written");
+        fs::create_dir(folder.0.join("temporary")).expect("a folder");
+        let render = |args| {
+            let mut command = folder.command(&tiny("mandelbox", args));
+            command.env("TMPDIR", folder.0.join("temporary"));
+            said(&output(&mut command))
+        };
+        let told = render("-o full.png");
+        let end = told.lines().last().unwrap_or_default();
+        assert!(
+            end.starts_with("error: full.png: cannot be written: No space left"),
+            "{told}"
+        );
+        let kept = end.split('`').nth(1).expect("where the picture is");
+        let told = render("-o a.png --stats /dev/full");
+        assert!(
+            told.contains("error: /dev/full: cannot be written"),
+            "{told}"
+        );
+        let kept = fs::read(kept).expect("the picture");
+        assert_eq!(kept, folder.bytes("a.png"));
         let output = output(folder.command("presets").stdout(full()));
         assert_eq!(output.status.code(), Some(1), "{}", said(&output));
         assert!(said(&output).starts_with("error: standard output cannot be written"));
