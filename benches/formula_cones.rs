@@ -1,18 +1,18 @@
 //! Where cones over the pixels of a formula pay: `cargo bench --bench formula_cones`. With `-- --write` it
-//! writes its table into docs/benchmarks.md.
+//! writes its tables into docs/benchmarks.md. `-- KEY=VALUE...` changes the presets.
 //!
-//! Each preset is traced by rays alone and with cones from 1/16 on, in turns, with one sample. The table
-//! has the number by which the program chooses, here from all pixels instead of a few, least first.
+//! Each preset is traced by rays alone and with cones from 1/16 on, in turns. The tables have the number by
+//! which the program chooses, here from all pixels instead of a few, least first.
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use conemarch::command::executor::Executor;
 use conemarch::gpu::adapters::Choice;
-use conemarch::plan::cones::DISTANCE;
-use conemarch::plan::{Extras, Pass};
+use conemarch::plan::cones::Rule;
+use conemarch::plan::look::Look;
+use conemarch::plan::{Extras, Pass, Plan};
 use conemarch::preset::{self, Override};
 use conemarch::scene::Assets;
 use median::median;
-use publish::publish;
 
 #[path = "common/markdown.rs"]
 mod markdown;
@@ -21,81 +21,101 @@ mod median;
 #[path = "common/publish.rs"]
 mod publish;
 
-/// Warm runs that a median is taken of.
-const RUNS: usize = 5;
 const MARKS: [&str; 2] = ["<!-- formula-cones -->", "<!-- /formula-cones -->"];
-const SIZES: [[u32; 2]; 2] = [[640, 360], [1280, 720]];
-/// Rays alone, and cones.
-const PLANS: [&str; 2] = ["march.coarsest=1", "march.coarsest=16"];
+const SMALL: [u32; 2] = [640, 360];
+const LARGE: [u32; 2] = [1280, 720];
+/// Runs before those that a median is taken of: the first counts, and the second compiles.
+const BEFORE: usize = 2;
+/// The coarsest level of rays alone, and of cones.
+const COARSEST: [u32; 2] = [1, 16];
 
-fn main() -> Result<()> {
-    let mut executors = Vec::new();
-    for _ in PLANS {
-        let (executor, who) = Executor::open(&Choice::Auto)?;
-        eprintln!("measuring on {who}");
-        executors.push(executor);
-    }
-    let mut rows: Vec<(f64, String)> = Vec::new();
-    for (name, _) in preset::BUILTIN {
-        let assets = Assets::default();
-        for size in SIZES {
-            let own = preset::load(name, &[Override::read("march.coarsest=auto")?])?;
-            let mut own = own.plan.one_sample();
-            if !own.scene.tells_distance() {
-                break;
+/// The number by which the program chooses, and a row with it.
+type Row = (f64, String);
+
+/// Compares rays alone with cones, `runs` times.
+fn row(executors: &mut [Executor], name: &str, plan: &Plan, runs: usize) -> Result<Row> {
+    let assets = Assets::default();
+    let chosen = plan.resolved(Extras::default(), &assets).levels().len();
+    let mut times = [vec![], vec![]];
+    // Evaluations of the rays of each, and of the cones.
+    let (mut rays, mut cones) = ([0.0; 2], 0.0);
+    for run in 0..BEFORE + runs {
+        for (nth, coarsest) in COARSEST.into_iter().enumerate() {
+            let mut plan = plan.clone();
+            plan.march.coarsest = Some(coarsest);
+            let extras = Extras {
+                // Without colours a pixel has one sample.
+                depth_only: plan.samples == 1,
+                count: run == 0,
+                unread: run > 0,
+                ..Extras::default()
+            };
+            let frame = executors[nth].render(&plan, &assets, extras, &mut |_| true)?;
+            if run >= BEFORE {
+                times[nth].push(frame.march_ms);
             }
-            eprintln!("{name} {size:?}");
-            own.size = size;
-            let chosen = own.resolved(Extras::default(), &assets).levels().len();
-            let mut times = [vec![], vec![]];
-            // Of the rays of each plan, and of the cones.
-            let (mut rays, mut cones) = ([0.0; 2], 0.0);
-            for run in 0..RUNS + 2 {
-                for (nth, change) in PLANS.iter().enumerate() {
-                    let mut plan = preset::load(name, &[Override::read(change)?])?;
-                    plan.plan.size = size;
-                    // The first run counts, and the second compiles.
-                    let extras = Extras {
-                        depth_only: true,
-                        count: run == 0,
-                        ..Extras::default()
-                    };
-                    let plan = plan.plan.one_sample();
-                    let frame = executors[nth].render(&plan, &assets, extras, &mut |_| true)?;
-                    if run > 1 {
-                        times[nth].push(frame.march_ms);
-                    }
-                    for pass in &frame.passes {
-                        let evaluations = pass.evaluations.unwrap_or(0) as f64;
-                        match pass.pass {
-                            Pass::Trace if run == 0 => rays[nth] = evaluations,
-                            Pass::March(_) => cones += evaluations,
-                            _ => {}
-                        }
-                    }
+            for pass in &frame.passes {
+                let evaluations = pass.evaluations.unwrap_or(0) as f64;
+                match pass.pass {
+                    Pass::Trace => rays[nth] += evaluations,
+                    Pass::March(_) => cones += evaluations,
+                    _ => {}
                 }
             }
-            let [alone, with] = times.map(median);
-            let [cones, left] = [cones, rays[1]].map(|n| n / rays[0]);
-            let number = DISTANCE.price * cones + left;
-            rows.push((
-                number,
-                format!(
-                    "{name} | {} x {} | {:.1} | {cones:.2} | {left:.2} | {number:.2} | {alone:.0} | {with:.0} | {:.2} | {}",
-                    size[0],
-                    size[1],
-                    rays[0] / f64::from(size[0] * size[1]),
-                    with / alone,
-                    if chosen > 0 { "cones" } else { "none" }
-                ),
-            ));
         }
     }
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let table = markdown::table(
-        "march and trace | size | evaluations of rays alone, per pixel | share of cones | share of rays after them | number | rays alone, ms | with cones, ms | with / alone | chosen",
-        "llrrrrrrrl",
-        rows.into_iter().map(|row| row.1).collect::<Vec<_>>(),
+    let [alone, with] = times.map(median);
+    let [cones, left] = [cones, rays[1]].map(|n| n / rays[0]);
+    let number = Rule::of(plan).price * cones + left;
+    let [w, h] = plan.size;
+    let per_ray = rays[0] / plan.rays() as f64;
+    let chosen = if chosen > 0 { "cones" } else { "none" };
+    let row = format!(
+        "{name} | {w} x {h} | {per_ray:.1} | {cones:.2} | {left:.2} | {number:.2} | {alone:.0} | {with:.0} | {:.2} | {chosen}",
+        with / alone
     );
-    publish("benchmarks.md", MARKS, &table)
+    Ok((number, row))
+}
+
+fn table(samples: &str, mut rows: Vec<Row>) -> String {
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let head = format!(
+        "march and trace, {samples} | size | evaluations of a ray alone | share of cones | share of rays after them | number | rays alone, ms | with cones, ms | with / alone | chosen"
+    );
+    markdown::table(&head, "llrrrrrrrl", rows.into_iter().map(|row| row.1))
+}
+
+fn main() -> Result<()> {
+    let writes = std::env::args().any(|a| a == "--write");
+    let changes = std::env::args().filter(|a| a.contains('='));
+    let changes: Result<Vec<_>, _> = changes.map(|c| Override::read(&c)).collect();
+    let mut changes = changes?;
+    ensure!(!writes || changes.is_empty(), "--write takes no changes");
+    changes.push(Override::read("march.coarsest=auto")?);
+    let mut executors = Vec::new();
+    for _ in COARSEST {
+        executors.push(Executor::open(&Choice::Auto)?.0);
+    }
+    let [mut one, mut many] = [vec![], vec![]];
+    for (name, _) in preset::BUILTIN {
+        let mut plan = preset::load(name, &changes)?.plan.one_sample();
+        if !plan.scene.tells_distance() {
+            continue;
+        }
+        eprintln!("{name}");
+        for size in [LARGE, SMALL] {
+            plan.size = size;
+            one.push(row(&mut executors, name, &plan, 5)?);
+        }
+        // Colours that take no time.
+        plan.look = Look {
+            key: 0.0,
+            occlusion: 0.0,
+            ..Look::default()
+        };
+        plan.samples = 16;
+        many.push(row(&mut executors, name, &plan, 3)?);
+    }
+    let [one, many] = [("one sample", one), ("16 samples", many)].map(|(s, rows)| table(s, rows));
+    publish::publish("benchmarks.md", MARKS, &format!("{one}\n{many}"))
 }

@@ -462,3 +462,49 @@ fn broken_twins_and_long_files_are_found() {
         assert_eq!(found.len(), lines - MOST_LINES);
     }
 }
+
+/// Marks of a page without a partner. Programs write tables between `<!-- name -->` and `<!-- /name -->`,
+/// or `<!-- command: begin -->` and `<!-- command: end -->`.
+fn lone_marks(text: &str) -> Vec<String> {
+    let (mut lone, mut open) = (Vec::new(), None);
+    for line in text.lines() {
+        let Some(mark) = line
+            .strip_prefix("<!-- ")
+            .and_then(|m| m.strip_suffix(" -->"))
+        else {
+            continue;
+        };
+        let end = mark.strip_prefix('/').or(mark.strip_suffix(": end"));
+        let begin = mark.strip_suffix(": begin").unwrap_or(mark);
+        match (end, open.take()) {
+            (Some(end), Some(begin)) if end == begin => {}
+            // A remark.
+            (None, None) if begin.contains(';') => {}
+            (None, None) => open = Some(begin),
+            (_, other) => lone.extend([Some(mark), other].into_iter().flatten().map(String::from)),
+        }
+    }
+    lone.extend(open.map(String::from));
+    lone
+}
+
+#[test]
+fn a_place_of_a_table_has_both_marks() {
+    for (text, lone) in [
+        ("<!-- a -->\n1\n<!-- /a -->", vec![]),
+        ("<!-- a b: begin -->\n1\n<!-- a b: end -->", vec![]),
+        ("<!-- /a -->", vec!["/a"]),
+        ("<!-- a -->", vec!["a"]),
+        ("<!-- a -->\n<!-- /b -->", vec!["/b", "a"]),
+    ] {
+        assert_eq!(lone_marks(text), lone, "{text}");
+    }
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let pages = std::fs::read_dir(docs)
+        .unwrap()
+        .map(|page| page.unwrap().path());
+    for page in pages.filter(|page| page.extension().is_some_and(|e| e == "md")) {
+        let lone = lone_marks(&std::fs::read_to_string(&page).unwrap());
+        assert!(lone.is_empty(), "{}: {lone:?}", page.display());
+    }
+}

@@ -14,9 +14,9 @@ use crate::command::bench::runner::{Runner, TIMED};
 use crate::command::executor::{Executor, device};
 use crate::command::failure::usage;
 use crate::command::output::{Format, Options, default_name};
-use crate::command::print::{print, say};
+use crate::command::print::{deliver, print, say};
 use crate::command::progress::Reporter;
-use crate::command::sink::{Results, Sink, apart, rescued, spared};
+use crate::command::sink::{Results, Sink, apart, ending, is_stdout, rescued, spared};
 use crate::command::stats::{Figures, Stats, summary};
 use crate::command::tile::Tile;
 use crate::command::unfinished::{beside, is_left};
@@ -231,8 +231,16 @@ pub fn run(args: &Render) -> Result<()> {
                 &mut executor,
                 (format, &output),
             )?;
-            let put = results.put(picture, &content.0);
-            put.map_err(|fault| rescued(fault, &content.0, &output))?;
+            let put = match picture {
+                Sink::Stdout => deliver(&content.0),
+                file => results.put(file, &content.0).map_err(Into::into),
+            };
+            let ending = if is_stdout(&output) {
+                "png".into()
+            } else {
+                ending(&output)
+            };
+            put.map_err(|fault| rescued(fault, &content.0, &ending))?;
             content.1
         }
     };

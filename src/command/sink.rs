@@ -1,15 +1,15 @@
 //! Where results go: a file, or standard output under the name `-`.
 
-use std::fs;
-use std::io::Write;
+use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use anyhow::{Context, Result, anyhow};
 use serde::Serialize;
 
 use crate::command::failure::usage;
 use crate::command::print::deliver;
-use crate::picture::{OutputError, Place, commit};
+use crate::picture::{OutputError, Place, commit, keep};
 
 /// Where one result goes.
 #[derive(Debug)]
@@ -97,18 +97,21 @@ pub fn ending(path: &Path) -> String {
     ending.unwrap_or_default().to_lowercase()
 }
 
-/// Keeps a picture that could not be written in the folder of temporary files, and tells where.
-pub fn rescued(fault: OutputError, content: &[u8], output: &Path) -> anyhow::Error {
-    let suffix = format!(".{}", ending(output));
-    let mut builder = tempfile::Builder::new();
-    let file = builder.prefix("conemarch-").suffix(&suffix).tempfile();
-    let kept = file.and_then(|mut file| {
-        file.write_all(content)?;
-        Ok(file.keep()?.1)
-    });
-    match kept {
-        Ok(kept) => anyhow!("{fault}; the picture is in `{}`", kept.display()),
-        Err(_) => fault.into(),
+/// Keeps a picture that met a full disk in the folder of temporary files, and tells where.
+pub fn rescued(fault: anyhow::Error, picture: &[u8], ending: &str) -> anyhow::Error {
+    let is_full = |e: &(dyn Error + 'static)| match (e.downcast_ref(), e.downcast_ref()) {
+        (Some(OutputError::File { is_full, .. }), _) => *is_full,
+        (_, Some(e)) => io::Error::kind(e) == io::ErrorKind::StorageFull,
+        _ => false,
+    };
+    if !fault.chain().any(is_full) {
+        return fault;
+    }
+    match keep(picture, ending) {
+        Ok(kept) => anyhow!("{fault:#}; the picture is in `{}`", kept.display()),
+        Err(e) => anyhow!(
+            "{fault:#}; the folder of temporary files does not take the picture either: {e}"
+        ),
     }
 }
 

@@ -18,6 +18,8 @@ pub enum OutputError {
         path: PathBuf,
         /// What is wrong, and what to do instead.
         why: String,
+        /// Whether the disk is full.
+        is_full: bool,
     },
     /// The picture could not be encoded.
     #[error("the picture could not be encoded as {format}: {why}")]
@@ -44,13 +46,18 @@ impl OutputError {
         Self::File {
             path: path.to_path_buf(),
             why: why.into(),
+            is_full: false,
         }
     }
 
     /// A failure while content is written: a full disk, mostly.
     pub(crate) fn full(path: &Path, e: &io::Error) -> Self {
         let would = "free some space, or name a file elsewhere";
-        Self::file(path, format!("cannot be written: {e}; {would}"))
+        Self::File {
+            path: path.to_path_buf(),
+            why: format!("cannot be written: {e}; {would}"),
+            is_full: e.kind() == io::ErrorKind::StorageFull,
+        }
     }
 
     /// A failure of the file system while doing something.

@@ -31,7 +31,7 @@ pub use exr::{
 pub use folder::Folder;
 pub use layer::{Layer, LayerFacts, Shades, heat};
 #[cfg(feature = "cli")]
-pub use place::{Place, clear, commit, set_unfinished};
+pub use place::{Place, clear, commit, keep, set_unfinished};
 pub use png::{LAYER_KEYWORD, PngHead, write_png, write_png_rows};
 pub use stereo::beside;
 pub use web::{write_jpeg, write_webp};

@@ -73,7 +73,7 @@ impl Place {
         }
         // Locked while the file is made, so that an interrupt misses none.
         let mut list = unfinished();
-        let made = builder(&format!(".{}.", name.to_string_lossy())).tempfile_in(folder);
+        let made = builder(&format!(".{}.", name.to_string_lossy()), ".tmp").tempfile_in(folder);
         let (file, held) = made.map(tempfile::NamedTempFile::into_parts).map_err(|e| {
             // The error itself names the temporary file.
             let why = format!(
@@ -162,15 +162,25 @@ impl Seek for ErrorKeepingFile<'_> {
 
 /// Makes temporary files with the rights of any new file: those of `tempfile` are for their
 /// owner alone.
-fn builder(prefix: &str) -> tempfile::Builder<'_, 'static> {
+fn builder<'a>(prefix: &'a str, suffix: &'a str) -> tempfile::Builder<'a, 'a> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(prefix).suffix(".tmp");
+    builder.prefix(prefix).suffix(suffix);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder
+}
+
+/// Writes content to a new file in the folder of temporary files, which stays. Returns its path.
+///
+/// # Errors
+/// That folder is full too, or is not there.
+pub fn keep(content: &[u8], ending: &str) -> io::Result<PathBuf> {
+    let mut file = builder("conemarch-", &format!(".{ending}")).tempfile()?;
+    file.write_all(content)?;
+    Ok(file.keep()?.1)
 }
 
 /// Gives written files their names. If one of them cannot be renamed, the files after it are

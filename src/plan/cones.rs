@@ -6,6 +6,8 @@
 
 use crate::base::outcome::Counts;
 use crate::base::view::{Beam, View};
+use crate::plan::Plan;
+use crate::plan::march::Mode;
 use crate::plan::pyramid::Level;
 use crate::scene::{Advance, Solid, Step, Task};
 
@@ -14,29 +16,46 @@ const RAYS: [u32; 2] = [16, 9];
 /// The rays are followed in this stride, which has no factor in common with their number. So the first
 /// ones are spread over the picture.
 const STRIDE: u32 = 89;
-/// After so many rays, the others are left out if what they were to decide differs by this share of the
-/// evaluations of rays alone.
+/// After so many rays, the others are left out if what cones save or lose is more than this share of
+/// what rays alone need.
 const SURE: (u32, f64) = (36, 0.2);
 
-/// Cones pay if `price` evaluations of cones for each sample, and those of the rays after them, are less
-/// than a share of the evaluations of rays alone. The rest of the share is what rays wait for each other.
+/// When cones pay: if `price` times the evaluations of the cones, for each sample, and those of the rays
+/// after them, are less than a share of the evaluations of rays alone. The share is less than 1, as rays
+/// after cones wait longer for each other.
 pub struct Rule {
-    /// Time of an evaluation of a cone, in that of a ray.
+    /// What an evaluation of a cone weighs.
     pub price: f64,
     /// The share for one sample of each pixel, and for several.
-    shares: [f64; 2],
+    pub shares: [f64; 2],
 }
 
-/// Over a formula a cone goes by balls, which cost more than the estimate of a ray. Measured in 17 views
-/// from 640 x 360 to 1920 x 1080: by this rule, the prediction is within 0.06 of the time near the limit.
-pub const DISTANCE: Rule = Rule {
+impl Rule {
+    /// The rule for a scene and a mode.
+    pub fn of(plan: &Plan) -> Self {
+        match plan.scene.tells_distance() {
+            true if plan.march.mode == Mode::Proven => PROVEN,
+            true => DISTANCE,
+            false => HEIGHTS,
+        }
+    }
+}
+
+/// Over a formula. Price and shares are fitted to the times of all built-in presets, with one sample and
+/// with 16 (`bench formula_cones`).
+const DISTANCE: Rule = Rule {
     price: 2.3,
     shares: [0.74, 0.85],
 };
-/// Over heights the work of the cones is part of the share. Over the built-in heightfields from 640 x 360
-/// on, cones are faster up to 0.81 and rays alone from 0.845 on; with 16 samples cones up to 0.90, and rays
-/// alone from 0.97 on.
-pub const HEIGHTS: Rule = Rule {
+/// In mode `proven`, where rays go by balls as cones do (`bench formula_cones -- march.mode=proven`).
+const PROVEN: Rule = Rule {
+    price: 1.4,
+    ..DISTANCE
+};
+/// Over heights the cones cost so little that only the rays are compared. Over the built-in heightfields
+/// from 640 x 360 on, cones are faster up to 0.81 and rays alone from 0.845 on; with 16 samples cones up to
+/// 0.90, and rays alone from 0.97 on.
+const HEIGHTS: Rule = Rule {
     price: 0.0,
     shares: [0.84, 0.9],
 };

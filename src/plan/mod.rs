@@ -33,7 +33,7 @@ use crate::scene::{AnySolid, Assets, Scene, Viewpoint};
 use crate::time::clock::Timing;
 use crate::time::track::Track;
 use camera::Camera;
-use cones::Probe;
+use cones::{Probe, Rule};
 use look::{LightMode, Look};
 use march::Marching;
 use pyramid::{Block, Level};
@@ -340,10 +340,7 @@ impl Plan {
             steps: self.march.ray_steps(None).max(march::STEPS),
             levels: self.march.levels(),
             samples: self.samples,
-            rule: match self.scene.tells_distance() {
-                true => cones::DISTANCE,
-                false => cones::HEIGHTS,
-            },
+            rule: Rule::of(self),
         })
     }
 }

@@ -64,26 +64,43 @@ mod full {
     fn a_full_disk_is_an_error_that_names_the_file_and_loses_no_picture() {
         let folder = Folder::new();
         std::os::unix::fs::symlink("/dev/full", folder.0.join("full.png")).expect("a link");
-        fs::create_dir(folder.0.join("temporary")).expect("a folder");
-        let render = |args| {
+        for name in ["kept", "out"] {
+            fs::create_dir(folder.0.join(name)).expect("a folder");
+        }
+        let fails = |args: &str, kept: &str| {
             let mut command = folder.command(&tiny("mandelbox", args));
-            command.env("TMPDIR", folder.0.join("temporary"));
-            said(&output(&mut command))
+            let command = command.env("TMPDIR", folder.0.join(kept)).stdout(full());
+            let output = output(command);
+            assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+            let told = said(&output);
+            told.lines().last().expect("an error").to_string()
         };
-        let told = render("-o full.png");
-        let end = told.lines().last().unwrap_or_default();
+        // The picture is whole without its figures.
+        let told = fails("-o out/a.png --stats /dev/full", "kept");
         assert!(
-            end.starts_with("error: full.png: cannot be written: No space left"),
+            told.starts_with("error: /dev/full: cannot be written"),
             "{told}"
         );
-        let kept = end.split('`').nth(1).expect("where the picture is");
-        let told = render("-o a.png --stats /dev/full");
-        assert!(
-            told.contains("error: /dev/full: cannot be written"),
-            "{told}"
-        );
-        let kept = fs::read(kept).expect("the picture");
-        assert_eq!(kept, folder.bytes("a.png"));
+        for (args, start) in [
+            ("-o full.png", "error: full.png: cannot be written"),
+            ("-o -", "error: standard output cannot be written"),
+        ] {
+            let told = fails(args, "kept");
+            assert!(
+                told.starts_with(start) && told.contains("No space left"),
+                "{told}"
+            );
+            let kept = told.rsplit('`').nth(1).expect("where the picture is");
+            assert_eq!(
+                fs::read(kept).expect("the picture"),
+                folder.bytes("out/a.png")
+            );
+            fs::remove_file(kept).expect("it was there");
+            let told = fails(args, "nowhere");
+            assert!(told.contains("does not take the picture either"), "{told}");
+        }
+        let left = |name| fs::read_dir(folder.0.join(name)).expect("a folder").count();
+        assert_eq!([left("kept"), left("out")], [0, 1]);
         let output = output(folder.command("presets").stdout(full()));
         assert_eq!(output.status.code(), Some(1), "{}", said(&output));
         assert!(said(&output).starts_with("error: standard output cannot be written"));

@@ -49,6 +49,7 @@ use conemarch::pass::LookFeature;
 use conemarch::pass::look::tone;
 use conemarch::pass::tone_map::Tone;
 use conemarch::picture::frame::Frame;
+use conemarch::plan::look::LightMode;
 use conemarch::plan::march::Mode;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::BUILTIN;
@@ -128,17 +129,22 @@ fn faults(apart: &Apart) -> Vec<&'static str> {
 #[test]
 fn the_two_executors_agree_on_every_preset() {
     for (name, _) in BUILTIN {
-        let plan = sized(name, [240, 135]);
-        let frame = render(&plan, Extras::default());
-        let reference = on_cpu(&plan, Extras::default());
-        let apart = apart(&plan, &frame, &reference);
-        println!("{name}: {:.4}", apart.flip);
-        assert_eq!(faults(&apart), [""; 0], "{name}: {apart:?}");
-        // A picture, and not an empty one that agrees with another.
-        let [_, hit, unconverged] = frame.census();
-        assert!(hit > 5_000, "{name}: {hit} hits");
-        // More than a few rays that end nowhere is a fault of the preset.
-        assert!(unconverged < 60, "{name}: {unconverged} unconverged");
+        let mut plan = sized(name, [240, 135]);
+        let mut modes = vec![plan.look.mode, LightMode::Quick];
+        modes.dedup();
+        for mode in modes {
+            plan.look.mode = mode;
+            let frame = render(&plan, Extras::default());
+            let reference = on_cpu(&plan, Extras::default());
+            let apart = apart(&plan, &frame, &reference);
+            println!("{name}, {mode:?}: {:.4}", apart.flip);
+            assert_eq!(faults(&apart), [""; 0], "{name}: {apart:?}");
+            // A picture, and not an empty one that agrees with another.
+            let [_, hit, unconverged] = frame.census();
+            assert!(hit > 5_000, "{name}: {hit} hits");
+            // More than a few rays that end nowhere is a fault of the preset.
+            assert!(unconverged < 60, "{name}: {unconverged} unconverged");
+        }
     }
 }
 

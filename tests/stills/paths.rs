@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use conemarch::base::shader::Sources;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::layers::Trap;
 use conemarch::plan::look::{LightMode, Look};
@@ -14,6 +15,7 @@ use alone::alone;
 use super::common::folder::Folder;
 use super::common::plans::{preset, sized};
 use super::sky::file;
+use super::unhurried::replaced;
 use super::work::{bits, bits_however_cut};
 use crate::adapter::{self, EVERYTHING, HIT, both, on_cpu, render};
 
@@ -96,6 +98,32 @@ fn light_of_the_sky_is_stopped_within_the_reach() {
             assert!(far < 0.9, "{sky}: {far}");
         }
     }
+}
+
+/// Paths that end by chance stand for those that go on.
+#[test]
+fn paths_that_end_by_chance_lose_no_light() {
+    const PATH: &str = include_str!("../../wgsl/pass/path.wgsl");
+    let sure = |path: &str| {
+        let is_it = path == "wgsl/pass/path.wgsl";
+        is_it.then(|| replaced(PATH, "PATH_SURE = 2u;", "PATH_SURE = 99u;"))
+    };
+    let mut plan = followed(sized("mandelbox-hall", [32, 18]), 256);
+    plan.look = Look {
+        mode: LightMode::Path,
+        bounces: 8,
+        fill: 1.0,
+        key: 0.0,
+        ..Look::default()
+    };
+    let mut renderer = adapter::open();
+    let [by_chance, all] = [None, Some(Arc::new(sure) as Sources)].map(|sources| {
+        renderer.sources = sources;
+        let frame = renderer.render(&plan, &Assets::default(), Extras::default(), &mut |_| true);
+        mean(&frame.unwrap())
+    });
+    println!("{by_chance:.5} {all:.5}");
+    assert!((by_chance / all - 1.0).abs() < 0.01, "{by_chance} {all}");
 }
 
 /// On a body without hollows, a dull surface under a small sun is as bright as the formula says.

@@ -16,7 +16,7 @@ use crate::adapter;
 const HASTE: f64 = 0.01;
 
 /// A text of a shader file in which a part is replaced.
-fn replaced(text: &str, part: &str, by: &str) -> String {
+pub fn replaced(text: &str, part: &str, by: &str) -> String {
     assert_eq!(text.matches(part).count(), 1, "{part}");
     text.replace(part, by)
 }
