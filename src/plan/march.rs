@@ -130,7 +130,7 @@ settings! {
     pub struct Marching {
         mode: Mode = Mode::Safe, word(&Mode::WORDS), "the method; benchmarks.md explains and compares the modes; proven needs scene.estimate = \"tight\" over a formula" => Program;
         coarsest: Option<u32> = None, divisor(),
-            "side in pixels of the blocks of the first cone pass, 1 for no cones; auto is 16, or 1 in modes safe and proven where a few rays tell that cones cost more than they save, and always on a discrete GPU";
+            "side in pixels of the blocks of the first cone pass, 1 for no cones; auto is 16, or 1 in modes safe and proven where a few rays tell that cones cost more than they save, or over a heightfield below 100000 pixels, and always on a discrete GPU";
         detail: f64 = 1.0, number(1e-3, 1e3),
             "hit threshold in footprints: a ray ends where the estimate is at most this";
         shell: Option<f64> = None, auto_number(0.0, 0.99),
