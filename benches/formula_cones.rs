@@ -1,5 +1,5 @@
 //! Where cones over the pixels of a formula pay: `cargo bench --bench formula_cones`. With `-- --write` it
-//! writes its tables into docs/benchmarks.md. `-- KEY=VALUE...` changes the presets.
+//! writes its tables into docs/benchmarks.md. `-- [KEY=VALUE...] [PRESET...]` changes the presets, or chooses some.
 //!
 //! Each preset is traced by rays alone and with cones from 1/16 on, in turns. The tables have the number by
 //! which the program chooses, here from all pixels instead of a few, least first.
@@ -90,7 +90,12 @@ fn main() -> Result<()> {
     let changes = std::env::args().filter(|a| a.contains('='));
     let changes: Result<Vec<_>, _> = changes.map(|c| Override::read(&c)).collect();
     let mut changes = changes?;
-    ensure!(!writes || changes.is_empty(), "--write takes no changes");
+    let args = std::env::args().skip(1);
+    let names: Vec<_> = args
+        .filter(|a| !a.contains('=') && !a.starts_with("--"))
+        .collect();
+    let is_usual = changes.is_empty() && names.is_empty();
+    ensure!(is_usual || !writes, "--write needs all presets as they are");
     changes.push(Override::read("march.coarsest=auto")?);
     let mut executors = Vec::new();
     for _ in COARSEST {
@@ -99,7 +104,8 @@ fn main() -> Result<()> {
     let [mut one, mut many] = [vec![], vec![]];
     for (name, _) in preset::BUILTIN {
         let mut plan = preset::load(name, &changes)?.plan.one_sample();
-        if !plan.scene.tells_distance() {
+        let is_asked = names.is_empty() || names.iter().any(|n| n == name);
+        if !plan.scene.tells_distance() || !is_asked {
             continue;
         }
         eprintln!("{name}");

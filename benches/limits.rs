@@ -6,7 +6,7 @@
 //! balls. Rays from their fronts are counted on the CPU, in groups of 8 x 4 pixels spread over the
 //! picture.
 //!
-//! Rays from the eye, cones, rays to the sun and searches for free room are counted with lanes that take
+//! Rays from the eye, cones, rays to the sun and searches for occlusion are counted with lanes that take
 //! the next one of their tile, too, as if taking it cost nothing.
 
 use anyhow::Result;
@@ -14,6 +14,7 @@ use conemarch::base::outcome::Counts;
 use conemarch::base::view::{Beam, footprint};
 use conemarch::cpu;
 use conemarch::pass::look::Light;
+use conemarch::pass::occlusion::nearest;
 use conemarch::plan::{Extras, Plan};
 use conemarch::preset::{self, Override};
 use conemarch::scene::{Advance, Assets, ROOMS, Solid, Step, Task};
@@ -46,6 +47,8 @@ const WIDE: usize = 32;
 const NARROW: usize = 8;
 /// All cones of a picture. The others are rays of every third tile.
 const CONES: &str = "cones of all levels";
+/// Five for each pixel of those tiles.
+const SEARCHES: &str = "searches for occlusion";
 /// Steps of a ray, and of a cone.
 const STEPS: u32 = 512;
 /// A cone ends after a step that gains less than this share of its front.
@@ -109,8 +112,7 @@ impl Task for Follow<'_> {
                 let normal = solid.surface(&ray, &hit).normal;
                 let grain = footprint(&ray, hit.t);
                 if let Rays::Room(nth) = self.rays {
-                    let nearest = self.light.look.occlusion_reach / 16.0;
-                    let h = nearest.max(2.0 * grain) * f64::from(1 << nth);
+                    let h = nearest(&self.light, grain) * f64::from(1 << nth);
                     solid.room(ray.at(hit.t) + h * normal, h, &mut work);
                     return work;
                 }
@@ -255,6 +257,7 @@ fn lanes(title: &str, of: impl Fn(&str, [u32; 2]) -> Result<Vec<Vec<Counts>>>) -
         let all: f64 = tiles.iter().flatten().map(|c| f64::from(of(c))).sum();
         let pixels = match title {
             CONES => f64::from(size[0] * size[1]),
+            SEARCHES => (tiles.iter().flatten().count() / ROOMS) as f64,
             _ => tiles.iter().flatten().count() as f64,
         };
         let part = |width| {
@@ -314,7 +317,7 @@ fn main() -> Result<()> {
         counted(name, size, &[], Rays::ToSun)
     })?;
     // Over a formula, each takes one evaluation.
-    let rooms = lanes("searches for free room", |name, size| {
+    let rooms = lanes(SEARCHES, |name, size| {
         let nths = (0..ROOMS as u32).filter(|_| FIELDS.contains(&name));
         let tiles: Result<Vec<_>> = nths
             .map(|nth| counted(name, size, &[], Rays::Room(nth)))

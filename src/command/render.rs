@@ -16,7 +16,7 @@ use crate::command::failure::usage;
 use crate::command::output::{Format, Options, default_name};
 use crate::command::print::{deliver, print, say};
 use crate::command::progress::Reporter;
-use crate::command::sink::{Results, Sink, apart, ending, is_stdout, rescued, spared};
+use crate::command::sink::{Results, Sink, apart, rescued, spared};
 use crate::command::stats::{Figures, Stats, summary};
 use crate::command::tile::Tile;
 use crate::command::unfinished::{beside, is_left};
@@ -235,12 +235,7 @@ pub fn run(args: &Render) -> Result<()> {
                 Sink::Stdout => deliver(&content.0),
                 file => results.put(file, &content.0).map_err(Into::into),
             };
-            let ending = if is_stdout(&output) {
-                "png".into()
-            } else {
-                ending(&output)
-            };
-            put.map_err(|fault| rescued(fault, &content.0, &ending))?;
+            put.map_err(|fault| rescued(fault, &content.0, &output))?;
             content.1
         }
     };
@@ -264,13 +259,12 @@ pub fn run(args: &Render) -> Result<()> {
         None => handed?,
     }
     say(&summary);
-    counted?;
     if is_inside {
         say(
             "warning: every ray ends at the eye, so the picture shows nothing: camera.eye lies inside the solid, or touches it; move it away",
         );
     }
-    Ok(())
+    counted
 }
 
 /// Renders a picture at once. Returns its file and its figures.

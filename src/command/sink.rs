@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::command::failure::usage;
 use crate::command::print::deliver;
-use crate::picture::{OutputError, Place, commit, keep};
+use crate::picture::{OutputError, Place, commit, is_full, keep};
 
 /// Where one result goes.
 #[derive(Debug)]
@@ -98,16 +98,20 @@ pub fn ending(path: &Path) -> String {
 }
 
 /// Keeps a picture that met a full disk in the folder of temporary files, and tells where.
-pub fn rescued(fault: anyhow::Error, picture: &[u8], ending: &str) -> anyhow::Error {
-    let is_full = |e: &(dyn Error + 'static)| match (e.downcast_ref(), e.downcast_ref()) {
+pub fn rescued(fault: anyhow::Error, picture: &[u8], output: &Path) -> anyhow::Error {
+    let was_full = |e: &(dyn Error + 'static)| match (e.downcast_ref(), e.downcast_ref()) {
         (Some(OutputError::File { is_full, .. }), _) => *is_full,
-        (_, Some(e)) => io::Error::kind(e) == io::ErrorKind::StorageFull,
+        (_, Some(e)) => is_full(io::Error::kind(e)),
         _ => false,
     };
-    if !fault.chain().any(is_full) {
+    if !fault.chain().any(was_full) {
         return fault;
     }
-    match keep(picture, ending) {
+    let ending = match is_stdout(output) {
+        true => "png".into(),
+        false => ending(output),
+    };
+    match keep(picture, &ending) {
         Ok(kept) => anyhow!("{fault:#}; the picture is in `{}`", kept.display()),
         Err(e) => anyhow!(
             "{fault:#}; the folder of temporary files does not take the picture either: {e}"

@@ -148,6 +148,7 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         let mut request = FrameRequest {
             plan: plan.clone(),
+            march: plan.march.clone(),
             rays_alone: false,
             assets: assets.snapshot(false),
             all_assets: assets.clone(),

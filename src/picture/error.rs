@@ -39,6 +39,13 @@ impl OutputError {
     }
 }
 
+/// Whether an error means that nothing more can be stored.
+#[cfg(feature = "cli")]
+pub fn is_full(kind: io::ErrorKind) -> bool {
+    use io::ErrorKind::{QuotaExceeded, StorageFull};
+    matches!(kind, StorageFull | QuotaExceeded)
+}
+
 /// Failures of files.
 #[cfg(feature = "cli")]
 impl OutputError {
@@ -56,7 +63,7 @@ impl OutputError {
         Self::File {
             path: path.to_path_buf(),
             why: format!("cannot be written: {e}; {would}"),
-            is_full: e.kind() == io::ErrorKind::StorageFull,
+            is_full: is_full(e.kind()),
         }
     }
 

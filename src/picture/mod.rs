@@ -23,6 +23,8 @@ mod web;
 
 pub use bloom::{Bloom, SummedLight};
 pub use error::OutputError;
+#[cfg(feature = "cli")]
+pub use error::is_full;
 pub use exr::{
     FAR, Named, exr_row_bytes, exr_rows, write_exr, write_exr_channels, write_exr_part,
     write_exr_rows,

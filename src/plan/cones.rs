@@ -5,23 +5,25 @@
 //! So cones are faster where they leave the rays few of their steps. A few rays tell.
 
 use crate::base::outcome::Counts;
-use crate::base::view::{Beam, View};
+use crate::base::view::View;
 use crate::plan::Plan;
-use crate::plan::march::Mode;
+use crate::plan::march::{self, Mode};
 use crate::plan::pyramid::Level;
-use crate::scene::{Advance, Solid, Step, Task};
+use crate::scene::{Advance, Assets, Solid, Step, Task};
 
 /// Rays along each axis of the picture.
 const RAYS: [u32; 2] = [16, 9];
-/// The rays are followed in this stride, which has no factor in common with their number. So the first
-/// ones are spread over the picture.
+/// The rays are followed in parts.
+const PARTS: u32 = 4;
+/// The stride between rays that follow each other. It has no factor in common with their number, so
+/// each part is spread over the picture.
 const STRIDE: u32 = 89;
-/// After so many rays, the others are left out if what cones save or lose is more than this share of
-/// what rays alone need.
-const SURE: (u32, f64) = (36, 0.2);
+/// The parts that are left are skipped if what cones save or lose is more than this share of what rays
+/// alone need.
+const SURE: f64 = 0.2;
 
-/// When cones pay: if `price` times the evaluations of the cones, for each sample, and those of the rays
-/// after them, are less than a share of the evaluations of rays alone. The share is less than 1, as rays
+/// When cones pay: if `price` times the evaluations of the cones, divided by the samples, and those of the
+/// rays after them are together less than a share of the evaluations of rays alone. The share is less than 1, as rays
 /// after cones wait longer for each other.
 pub struct Rule {
     /// What an evaluation of a cone weighs.
@@ -60,23 +62,83 @@ const HEIGHTS: Rule = Rule {
     shares: [0.84, 0.9],
 };
 
-/// Follows a few rays.
-pub struct Probe {
-    /// The view.
-    pub view: View,
-    /// Its width and height in pixels.
-    pub size: [u32; 2],
-    /// The step limit of a ray.
-    pub steps: u32,
-    /// The levels of the cones.
-    pub levels: Vec<Level>,
-    /// Samples of each pixel.
-    pub samples: u32,
-    /// When cones pay.
-    pub rule: Rule,
+/// Whether cones save more time than they take on a few cores.
+pub fn pay(plan: &Plan, assets: &Assets) -> bool {
+    if plan.size.map(u64::from).iter().product::<u64>() < plan.scene.cone_pixels() {
+        return false;
+    }
+    // Rays alone have another shell.
+    let solid = |coarsest| {
+        let mut plan = plan.clone();
+        plan.march.coarsest = coarsest;
+        plan.scene.probed(&plan.viewpoint(), assets)
+    };
+    let (Some(alone), Some(with)) = (solid(Some(1)), solid(None)) else {
+        return true;
+    };
+    let levels = plan.march.levels();
+    let rule = Rule::of(plan);
+    let samples = f64::from(plan.samples);
+    let share = rule.shares[usize::from(plan.samples > 1)];
+    let (mut needed, mut saved) = (0.0, 0.0);
+    for part in 0..PARTS {
+        let follow = |levels| Follow {
+            view: plan.view(),
+            size: plan.size,
+            // A low limit does not make rays cheap: it leaves more of them unfinished.
+            steps: plan.march.ray_steps(None).max(march::STEPS),
+            part,
+            levels,
+        };
+        let rays = alone.run(follow(&[])).rays;
+        let after = with.run(follow(&levels));
+        needed += rays;
+        saved += share * rays - after.rays - rule.price * after.cones / samples;
+        if saved.abs() > SURE * needed {
+            break;
+        }
+    }
+    saved > 0.0
 }
 
-impl Probe {
+/// Follows some rays of a view from the fronts of cones.
+struct Follow<'a> {
+    view: View,
+    /// The width and height of the picture in pixels.
+    size: [u32; 2],
+    /// The step limit of a ray.
+    steps: u32,
+    part: u32,
+    /// The levels of the cones.
+    levels: &'a [Level],
+}
+
+/// Evaluations.
+#[derive(Default)]
+struct Evaluations {
+    rays: f64,
+    /// The pixels' parts of those of their cones.
+    cones: f64,
+}
+
+impl Task for Follow<'_> {
+    type Output = Evaluations;
+
+    fn run<S: Solid>(self, solid: &S) -> Evaluations {
+        let mut sum = Evaluations::default();
+        let all = RAYS[0] * RAYS[1];
+        for n in (self.part..all).step_by(PARTS as usize) {
+            let pixel = self.pixel(n * STRIDE % all);
+            let front = self.cones(solid, pixel, &mut sum);
+            if front <= solid.bounds_far() {
+                self.ray(solid, pixel, front, &mut sum);
+            }
+        }
+        sum
+    }
+}
+
+impl Follow<'_> {
     /// The pixel in the middle of one of the parts of the picture.
     fn pixel(&self, i: u32) -> [u32; 2] {
         let middle = |axis: usize, i: u32| {
@@ -86,25 +148,24 @@ impl Probe {
         [middle(0, i % RAYS[0]), middle(1, i / RAYS[0])]
     }
 
-    /// Evaluations of a ray from a front on.
-    fn follow<S: Solid>(&self, solid: &S, ray: &Beam, front: f64) -> f64 {
+    fn ray<S: Solid>(&self, solid: &S, pixel: [u32; 2], front: f64, sum: &mut Evaluations) {
+        let ray = self.view.view_ray(pixel);
         let mut work = Counts::default();
-        let mut walk = solid.begin(ray, front, solid.bounds_far(), &mut work);
+        let mut walk = solid.begin(&ray, front, solid.bounds_far(), &mut work);
         for _ in 0..self.steps {
-            if solid.walk_step(ray, &mut walk, &mut work) != Step::Moving {
+            if solid.walk_step(&ray, &mut walk, &mut work) != Step::Moving {
                 break;
             }
         }
-        f64::from(work.evaluations)
+        sum.rays += f64::from(work.evaluations);
     }
 
-    /// The front of a pixel's finest cone, and the pixel's part of the evaluations of its cones.
-    fn cones<S: Solid>(&self, solid: &S, pixel: [u32; 2]) -> (f64, f64) {
-        let (mut front, mut evaluations) = (0.0, 0.0);
-        for level in &self.levels {
-            let cone = self
-                .view
-                .view_cone(pixel.map(|n| n / level.divisor), level.divisor);
+    /// The front of a pixel's finest cone.
+    fn cones<S: Solid>(&self, solid: &S, pixel: [u32; 2], sum: &mut Evaluations) -> f64 {
+        let mut front = 0.0;
+        for level in self.levels {
+            let cell = pixel.map(|n| n / level.divisor);
+            let cone = self.view.view_cone(cell, level.divisor);
             let mut work = Counts::default();
             let mut at = Advance::at(front, true);
             for _ in 0..level.steps {
@@ -114,38 +175,11 @@ impl Probe {
                 }
             }
             front = at.front;
-            evaluations += f64::from(work.evaluations) / f64::from(level.divisor.pow(2));
+            sum.cones += f64::from(work.evaluations) / f64::from(level.divisor.pow(2));
             if front > solid.bounds_far() {
                 break;
             }
         }
-        (front, evaluations)
-    }
-}
-
-impl Task for Probe {
-    /// Whether cones pay.
-    type Output = bool;
-
-    fn run<S: Solid>(self, solid: &S) -> bool {
-        let [mut alone, mut cones, mut left] = [0.0; 3];
-        let share = self.rule.shares[usize::from(self.samples > 1)];
-        let all = RAYS[0] * RAYS[1];
-        let mut saved = 0.0;
-        for n in 1..=all {
-            let pixel = self.pixel(n * STRIDE % all);
-            let ray = self.view.view_ray(pixel);
-            alone += self.follow(solid, &ray, 0.0);
-            let (front, evaluations) = self.cones(solid, pixel);
-            cones += evaluations;
-            if front <= solid.bounds_far() {
-                left += self.follow(solid, &ray, front);
-            }
-            saved = share * alone - left - self.rule.price * cones / f64::from(self.samples);
-            if n >= SURE.0 && saved.abs() > SURE.1 * alone {
-                break;
-            }
-        }
-        saved > 0.0
+        front
     }
 }

@@ -33,7 +33,6 @@ use crate::scene::{AnySolid, Assets, Scene, Viewpoint};
 use crate::time::clock::Timing;
 use crate::time::track::Track;
 use camera::Camera;
-use cones::{Probe, Rule};
 use look::{LightMode, Look};
 use march::Marching;
 use pyramid::{Block, Level};
@@ -309,7 +308,7 @@ impl Plan {
         if extras.depth_only && self.look.sky.path().is_some() {
             plan.to_mut().look.sky = self.look.sky.without();
         }
-        if plan.march.may_drop_cones() && !plan.cones_pay(assets) {
+        if plan.march.may_drop_cones() && !cones::pay(&plan, assets) {
             plan.to_mut().march.coarsest = Some(1);
         }
         // What is left of it may get stages of cones that rays do without.
@@ -323,25 +322,6 @@ impl Plan {
     pub fn rays(&self) -> u64 {
         let counts = self.size.into_iter().chain([self.samples]);
         counts.map(u64::from).product()
-    }
-
-    /// Whether cones save more time than they take on a few cores.
-    fn cones_pay(&self, assets: &Assets) -> bool {
-        if self.size.map(u64::from).iter().product::<u64>() < self.scene.cone_pixels() {
-            return false;
-        }
-        let Some(solid) = self.scene.probed(&self.viewpoint(), assets) else {
-            return true;
-        };
-        solid.run(Probe {
-            view: self.view(),
-            size: self.size,
-            // A low limit does not make rays cheap: it leaves more of them unfinished.
-            steps: self.march.ray_steps(None).max(march::STEPS),
-            levels: self.march.levels(),
-            samples: self.samples,
-            rule: Rule::of(self),
-        })
     }
 }
 

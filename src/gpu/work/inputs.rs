@@ -3,7 +3,6 @@
 //! If earlier frames have left everything that a [`FrameRequest`] needs, it becomes [`FrameInputs`]
 //! at once. Otherwise a thread prepares them.
 
-use std::borrow::Cow;
 use std::sync::{Arc, MutexGuard, PoisonError};
 
 use bytemuck::{bytes_of, cast_slice};
@@ -32,6 +31,7 @@ use crate::pass::tone_map::Tone;
 use crate::pass::turn::{self, StageKind};
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::look::LightMode;
+use crate::plan::march::Marching;
 use crate::plan::{Extras, Pass, Plan, UNTIL_TILE};
 use crate::scene::{AnySolid, Assets};
 
@@ -67,6 +67,8 @@ fn arrays_of(scene: &AnySolid, light: &Light) -> Vec<SceneArray> {
 /// A frame that is asked for.
 pub struct FrameRequest {
     pub plan: Plan,
+    /// The march that was asked for, as that of the plan is resolved.
+    pub march: Marching,
     /// Whether rays start without cones although the plan has cone levels.
     pub rays_alone: bool,
     /// A copy of what is there, which no other thread changes.
@@ -136,18 +138,20 @@ impl FrameRequest {
 
     /// Resolves the plan, as far as its assets are there.
     pub fn resolve(&mut self) {
-        let (plan, extras) = (&self.plan, self.extras);
+        let extras = self.extras;
+        let mut plan = self.plan.clone();
+        plan.march = self.march.clone();
+        let may_drop = plan.march.may_drop_cones();
         // Cones have too few cells to keep a large device busy, and save its rays little.
-        let is_large = self.shared.device.is_discrete() && plan.march.may_drop_cones();
-        let mut plan = Cow::Borrowed(plan);
+        let is_large = self.shared.device.is_discrete() && may_drop;
         if is_large {
-            plan.to_mut().march.coarsest = Some(1);
+            plan.march.coarsest = Some(1);
         }
         let mut resolved = plan.resolved(extras, &self.assets).into_owned();
         // Frames that follow each other keep the stages of cones if these may come and go, or a move of
         // the eye would make buffers and programs. The first picture is of cones too.
-        let may_come = extras.reuse && self.plan.march.may_drop_cones() && !is_large;
-        self.rays_alone = (extras.sketched && self.plan.march.may_drop_cones() || may_come)
+        let may_come = extras.reuse && may_drop && !is_large;
+        self.rays_alone = (extras.sketched && may_drop || may_come)
             && !extras.levels
             && !resolved.march.may_drop_cones();
         if self.rays_alone {
