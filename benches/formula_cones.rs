@@ -68,7 +68,8 @@ fn row(executors: &mut [Executor], name: &str, plan: &Plan, runs: usize) -> Resu
     let [cones, left] = [cones, rays[1]].map(|n| n / rays[0]);
     let number = Rule::of(plan).price * cones + left;
     let [w, h] = plan.size;
-    let per_ray = rays[0] / plan.rays() as f64;
+    // Through a lens, the centre of a pixel has one more ray.
+    let per_ray = rays[0] / f64::from(w * h * plan.visits());
     let chosen = if chosen > 0 { "cones" } else { "none" };
     let row = format!(
         "{name} | {w} x {h} | {per_ray:.1} | {cones:.2} | {left:.2} | {number:.2} | {alone:.0} | {with:.0} | {:.2} | {chosen}",

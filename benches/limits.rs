@@ -47,7 +47,7 @@ const WIDE: usize = 32;
 const NARROW: usize = 8;
 /// All cones of a picture. The others are rays of every third tile.
 const CONES: &str = "cones of all levels";
-/// Five for each pixel of those tiles.
+/// There are [`ROOMS`] for each pixel.
 const SEARCHES: &str = "searches for occlusion";
 /// Steps of a ray, and of a cone.
 const STEPS: u32 = 512;

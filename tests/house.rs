@@ -481,7 +481,13 @@ fn lone_marks(text: &str) -> Vec<String> {
             // A remark.
             (None, None) if begin.contains(';') => {}
             (None, None) => open = Some(begin),
-            (_, other) => lone.extend([Some(mark), other].into_iter().flatten().map(String::from)),
+            (None, Some(other)) => {
+                lone.push(other.to_string());
+                open = Some(begin);
+            }
+            (Some(_), other) => {
+                lone.extend([Some(mark), other].into_iter().flatten().map(String::from));
+            }
         }
     }
     lone.extend(open.map(String::from));
@@ -493,6 +499,8 @@ fn a_place_of_a_table_has_both_marks() {
     for (text, lone) in [
         ("<!-- a -->\n1\n<!-- /a -->", vec![]),
         ("<!-- a b: begin -->\n1\n<!-- a b: end -->", vec![]),
+        ("<!-- Made by a program; do not edit. -->", vec![]),
+        ("<!-- a -->\n<!-- b -->\n<!-- /b -->", vec!["a"]),
         ("<!-- /a -->", vec!["/a"]),
         ("<!-- a -->", vec!["a"]),
         ("<!-- a -->\n<!-- /b -->", vec!["/b", "a"]),

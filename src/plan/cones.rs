@@ -7,7 +7,7 @@
 use crate::base::outcome::Counts;
 use crate::base::view::View;
 use crate::plan::Plan;
-use crate::plan::march::{self, Mode};
+use crate::plan::march;
 use crate::plan::pyramid::Level;
 use crate::scene::{Advance, Assets, Solid, Step, Task};
 
@@ -29,14 +29,14 @@ pub struct Rule {
     /// What an evaluation of a cone weighs.
     pub price: f64,
     /// The share for one sample of each pixel, and for several.
-    pub shares: [f64; 2],
+    shares: [f64; 2],
 }
 
 impl Rule {
     /// The rule for a scene and a mode.
     pub fn of(plan: &Plan) -> Self {
         match plan.scene.tells_distance() {
-            true if plan.march.mode == Mode::Proven => PROVEN,
+            true if plan.march.stepping().proven => PROVEN,
             true => DISTANCE,
             false => HEIGHTS,
         }
@@ -127,7 +127,7 @@ impl Task for Follow<'_> {
     fn run<S: Solid>(self, solid: &S) -> Evaluations {
         let mut sum = Evaluations::default();
         let all = RAYS[0] * RAYS[1];
-        for n in (self.part..all).step_by(PARTS as usize) {
+        for n in self.part * all / PARTS..(self.part + 1) * all / PARTS {
             let pixel = self.pixel(n * STRIDE % all);
             let front = self.cones(solid, pixel, &mut sum);
             if front <= solid.bounds_far() {
