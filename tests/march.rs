@@ -488,7 +488,7 @@ fn cones_are_left_out_where_they_cost_more_than_they_save() {
     let proven = [
         "march.mode=proven",
         "image.reference=auto",
-        "image.size=[1280, 720]",
+        "image.size=[640, 360]",
     ];
     assert_eq!(levels("mandelbox-stage", &proven), 4);
     // The cones of many samples are marched once.
