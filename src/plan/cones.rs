@@ -23,8 +23,8 @@ const STRIDE: u32 = 89;
 const SURE: f64 = 0.2;
 
 /// When cones pay: if `price` times the evaluations of the cones, divided by the samples, and those of the
-/// rays after them are together less than a share of the evaluations of rays alone. The share is less than 1, as rays
-/// after cones wait longer for each other.
+/// rays after them are together less than a share of the evaluations of rays alone. The share is less
+/// than 1, as rays after cones wait longer for each other.
 pub struct Rule {
     /// What an evaluation of a cone weighs.
     pub price: f64,
