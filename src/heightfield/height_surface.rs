@@ -14,6 +14,7 @@ use thiserror::Error;
 
 use crate::base::array::SceneArray;
 use crate::base::shader::Module;
+use crate::heightfield::max_mip::MipLevel;
 use crate::heightfield::{ConeMap, Heights, MaxMip, Patches, heights::bilinear};
 use crate::wgsl;
 
@@ -48,6 +49,9 @@ pub enum HeightSurfaceError {
     Unwrapped(usize),
 }
 
+/// Most numbers of the pyramid with the windows of all levels: WebGPU promises buffers of 128 MiB.
+const MOST_NUMBERS: usize = 128 << 20 >> 2;
+
 /// The uniform that all tracers read.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -74,7 +78,11 @@ pub struct HeightmapUniform {
     pub lod: f32,
     /// Rounds of refinement.
     pub rounds: u32,
-    /// Where each level of the pyramid starts in its buffer.
+    /// The finest level that has windows.
+    pub finest: u32,
+    /// The next field is aligned to 16 bytes.
+    pub pad: [u32; 3],
+    /// Where each level of the pyramid starts in its buffer, with its windows after it.
     pub starts: [u32; MOST_LEVELS],
 }
 
@@ -126,6 +134,16 @@ pub struct HeightSurface {
     cells: [u32; 2],
     domain: [i32; 2],
     maxima: MaxMip,
+    windows: Vec<MipLevel>,
+    finest: u32,
+}
+
+/// The finest level whose windows are stored. Those of level 0 are left out of a large map.
+fn finest(maxima: &MaxMip) -> u32 {
+    let windows = |size: [u32; 2]| size.map(|n| n as usize + 1).iter().product::<usize>();
+    let both = |level: &MipLevel| level.max.len() + windows(level.size);
+    let all: usize = maxima.levels.iter().map(both).sum();
+    u32::from(all > MOST_NUMBERS)
 }
 
 /// Checks that a map of so many cells can be tiled.
@@ -160,9 +178,13 @@ impl HeightSurface {
     ) -> Result<Self, HeightSurfaceError> {
         let cells = heights.cells(patches);
         check_tiles(cells, heights.wrap(), tiles)?;
+        let maxima = MaxMip::new(cells, heights.apexes(patches));
+        let finest = finest(&maxima);
         Ok(Self {
             domain: [0, 1].map(|a| (cells[a] * tiles[a]) as i32),
-            maxima: MaxMip::new(cells, heights.apexes(patches)),
+            windows: maxima.windows(tiles.map(|n| n > 1), finest),
+            finest,
+            maxima,
             heights,
             patches,
             cells,
@@ -192,6 +214,16 @@ impl HeightSurface {
     /// Apexes of the cells of one tile, and their maxima.
     pub fn maxima(&self) -> &MaxMip {
         &self.maxima
+    }
+
+    /// The finest level that has windows.
+    pub fn finest(&self) -> u32 {
+        self.finest
+    }
+
+    /// The windows of a level: see [`MaxMip::windows`].
+    pub fn windows(&self, level: u32) -> &MipLevel {
+        &self.windows[level as usize]
     }
 
     /// The cell of the first tile that corresponds to a cell of the domain.
@@ -267,13 +299,22 @@ impl HeightSurface {
         ]
     }
 
+    /// The levels of the maxima, each with its windows.
+    fn levels(&self) -> impl Iterator<Item = [&MipLevel; 2]> {
+        let both = self.maxima.levels.iter().zip(&self.windows);
+        both.map(|(level, windows)| [level, windows])
+    }
+
     /// The values of the WGSL struct, for a tracer.
     pub fn uniform(&self, map: &ConeMap, tracer: TracerParameters) -> HeightmapUniform {
         let mut starts = [0; MOST_LEVELS];
         let mut end = 0;
-        for (start, level) in starts.iter_mut().zip(&self.maxima.levels) {
+        for (start, levels) in starts.iter_mut().zip(self.levels()) {
             *start = end;
-            end += level.max.len() as u32;
+            end += levels
+                .map(|level| level.max.len() as u32)
+                .iter()
+                .sum::<u32>();
         }
         HeightmapUniform {
             samples: self.heights.size().map(|n| n as i32),
@@ -287,6 +328,8 @@ impl HeightSurface {
             steps: tracer.steps,
             lod: tracer.lod as f32,
             rounds: tracer.rounds,
+            finest: self.finest,
+            pad: [0; 3],
             starts,
         }
     }
@@ -294,7 +337,7 @@ impl HeightSurface {
     /// The heights and the pyramid of maxima, as the shaders read them.
     pub fn arrays(self: &Arc<Self>) -> Vec<SceneArray> {
         let maxima = |surface: &Self| {
-            let all = surface.maxima.levels.iter().flat_map(|level| &level.max);
+            let all = surface.levels().flatten().flat_map(|level| &level.max);
             cast_slice(&all.copied().collect::<Vec<f32>>()).to_vec()
         };
         vec![

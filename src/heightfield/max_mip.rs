@@ -72,6 +72,38 @@ impl MaxMip {
         Places { low, high }
     }
 
+    /// The windows of every level. A window is two by two neighbouring nodes: window (x, y) is of
+    /// the nodes x - 1 and x, and y - 1 and y. Along an axis that goes `round`, the last node is
+    /// beside the first. Elsewhere there is nothing beside them. Levels below `finest` are empty.
+    pub fn windows(&self, round: [bool; 2], finest: u32) -> Vec<MipLevel> {
+        let of = |level: &MipLevel| {
+            // The nodes before and after the place of a window.
+            let pair = |axis: usize, i: u32| {
+                let last = level.size[axis] - 1;
+                let ends = if round[axis] { [last, 0] } else { [0, last] };
+                let before = if i == 0 { ends[0] } else { i - 1 };
+                [before, if i > last { ends[1] } else { i }]
+            };
+            let size = level.size.map(|n| n + 1);
+            let over = |[x, y]: [u32; 2]| {
+                let ([x0, x1], [y0, y1]) = (pair(0, x), pair(1, y));
+                let row = |y| level.at(x0, y).max(level.at(x1, y));
+                row(y0).max(row(y1))
+            };
+            MipLevel {
+                size,
+                max: grid(size).map(over).collect(),
+            }
+        };
+        let none = MipLevel {
+            size: [0; 2],
+            max: Vec::new(),
+        };
+        let levels = (0..).zip(&self.levels);
+        let all = levels.map(|(n, level)| if n < finest { none.clone() } else { of(level) });
+        all.collect()
+    }
+
     /// The level of the single node.
     pub fn coarsest(&self) -> u32 {
         self.levels.len() as u32 - 1

@@ -113,32 +113,43 @@ impl LocalCone {
 pub fn window(surface: &HeightSurface, level: u32, rear: DVec2, back: BVec2) -> Window {
     let (domain, cells) = (surface.domain(), surface.cells());
     let last = DVec2::from_array(domain.map(|n| f64::from(n - 1)));
-    let inside = rear.floor().clamp(DVec2::ZERO, last);
-    let node = surface.node(inside.as_ivec2().to_array(), level);
-    // Before the block there is nothing, and so behind it.
-    let beside = [0, 1].map(|i| {
-        let next = match back.test(i) {
-            true => node.low[i] - 1,
-            false => node.high[i],
+    let rear = rear.floor();
+    let inside = rear.clamp(DVec2::ZERO, last);
+    let cell = inside.as_ivec2().to_array();
+    let own = surface.tile_cell(cell);
+    let windows = surface.windows(level);
+    let axis = |i: usize| {
+        // The window before the node or the one after it. Outside of the block it is the outer one.
+        let after = rear[i] > inside[i] || rear[i] == inside[i] && !back.test(i);
+        let at = (own[i] >> level) + u32::from(after);
+        let (tile, cells) = (cell[i] - own[i] as i32, cells[i] as i32);
+        let (at_cell, width) = ((at << level) as i32, 1 << level);
+        let nodes = windows.size[i] - 1;
+        let low = match at {
+            // The last node of the tile before may be narrow.
+            0 => ((nodes - 1) << level) as i32 - cells,
+            _ => at_cell - width,
         };
-        let within = inside[i] == rear[i].floor() && (0..domain[i]).contains(&next);
-        if within { next } else { node.low[i] }
-    });
-    let other = surface.node(beside, level);
-    let [x, y] = [0, 1].map(|i| [node.place[i], other.place[i]]);
-    let of = &surface.maxima().levels[level as usize];
-    let row = |y| of.at(x[0], y).max(of.at(x[1], y));
-    // All tiles are alike.
-    let edge = |i: usize, at: i32, none: f64| {
-        let open = 1 << level >= cells[i] || at <= 0 || at >= domain[i];
-        if open { none } else { f64::from(at) }
+        let high = match at == nodes {
+            true => cells + width.min(cells),
+            false => cells.min(at_cell + width),
+        };
+        // All tiles are alike.
+        let whole = width >= cells;
+        let edge = |open: bool, none: f64, edge: i32| if open { none } else { f64::from(edge) };
+        let (low, high) = (tile + low, tile + high);
+        let low = edge(whole || low <= 0, -CONE_NO_EDGE, low);
+        (
+            at,
+            low,
+            edge(whole || high >= domain[i], CONE_NO_EDGE, high),
+        )
     };
-    let low = [0, 1].map(|i| edge(i, node.low[i].min(other.low[i]), -CONE_NO_EDGE));
-    let high = [0, 1].map(|i| edge(i, node.high[i].max(other.high[i]), CONE_NO_EDGE));
+    let [(x, left, right), (y, near, far)] = [axis(0), axis(1)];
     Window {
-        low: low.into(),
-        high: high.into(),
-        maximum: f64::from(row(y[0]).max(row(y[1]))),
+        low: DVec2::new(left, near),
+        high: DVec2::new(right, far),
+        maximum: f64::from(windows.at(x, y)),
     }
 }
 
@@ -169,7 +180,7 @@ pub fn maxima_cone(
         let (p, half) = (cone.origin + t * cone.axis, cone.half(t));
         let wide = CONE_FIT * (half.truncate() + cone.slack.truncate()).max_element();
         // The least level whose nodes are wider than that.
-        let fits = u32::BITS - (wide.min(1e6) as u32).leading_zeros();
+        let fits = (u32::BITS - (wide.min(1e6) as u32).leading_zeros()).max(surface.finest());
         lift = lift.min(maxima.coarsest().saturating_sub(fits));
         let level = (fits + lift).min(maxima.coarsest());
         let (low, high) = (p - half, p + half);

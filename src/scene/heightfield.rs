@@ -151,8 +151,9 @@ impl Heightfield {
         // The least level whose nodes are wider than such a ball.
         let wide = 2.0 * (enough.max(0.0) / place.texel + slack);
         let fits = u32::BITS - (wide.min(1e6) as u32).leading_zeros();
-        let most = fits.min(surface.maxima().coarsest());
-        for level in (0..=most).rev() {
+        let finest = surface.finest();
+        let most = fits.max(finest).min(surface.maxima().coarsest());
+        for level in (finest..=most).rev() {
             // Within the map, the room in a window is at most as wide as one of its nodes.
             let node = f64::from(1 << level);
             if free >= enough.min(place.texel * node) {

@@ -1,12 +1,16 @@
 //! Random cones over heightfields of every kind, in f64 and on the device: no ray of a cone meets
 //! anything before the front that is claimed for it, and fronts come near what is met.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use bytemuck::cast_slice;
 use conemarch::base::outcome;
 use conemarch::base::shader::Module;
 use conemarch::base::view::{Beam, CHORD_SLACK};
 use conemarch::heightfield::MaxMip;
 use conemarch::heightfield::assets::Ready;
+use conemarch::heightfield::height_surface::HeightSurface;
 use conemarch::heightfield::heights::Patches;
 use conemarch::heightfield::paint::Colors;
 use conemarch::heightfield::pattern::Pattern;
@@ -18,7 +22,7 @@ use conemarch::wgsl;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::cases::{END, run, surface, tracer};
+use crate::cases::{END, alone, run, surface, tracer};
 use crate::common::cones::{claimed, cone, ray_of};
 use crate::common::probe::{Numbers, Probe, probe};
 use crate::common::random::Random;
@@ -50,6 +54,15 @@ fn any(seed: u64) -> Seen {
     let power = random.between(2.0, 4.0);
     let setting = (size, wrap, tiles, patches);
     let surface = surface(setting, field.heights(size, seed as u32, power));
+    anywhere(
+        format!("{seed}: {} {setting:?}", field.name()),
+        surface,
+        random,
+    )
+}
+
+/// A surface of any width and depth anywhere, seen from any side and from within.
+fn anywhere(name: String, surface: Arc<HeightSurface>, random: &mut Random) -> Seen {
     let width = 10.0_f64.powf(random.between(-1.0, 2.0));
     let depth = width * 10.0_f64.powf(random.between(-2.0, 0.3));
     let turn = if random.unit() < 0.3 {
@@ -81,7 +94,7 @@ fn any(seed: u64) -> Seen {
     let kind = TracerKind::MaxMip.into();
     let tracer = tracer(&surface, &kind, None).unwrap();
     Seen {
-        name: format!("{seed}: {} {setting:?}, eye {eye}", field.name()),
+        name: format!("{name}, eye {eye}"),
         truth: Tracer::reference(surface.clone()),
         ready: Ready {
             tracer,
@@ -185,14 +198,7 @@ fn told(seen: &Seen, claims: &[(Beam, f64)], seed: u64) -> Told {
 fn no_ray_meets_a_heightfield_before_the_front() {
     let (mut sum, mut count) = (0.0, 0);
     for seed in 0..600 {
-        let (seen, random) = (any(seed), &mut Random::new(1000 + seed));
-        let solid = seen.solid();
-        let claim = |random: &mut Random| {
-            let cone = seen.cone(random);
-            (cone, claimed(&solid, &cone, 1 + random.index(3) as u32))
-        };
-        let claims: Vec<_> = (0..60).map(|_| claim(random)).collect();
-        let told = told(&seen, &claims, 100 * seed);
+        let told = told_of(&any(seed), seed);
         assert_eq!(told.behind, None);
         (sum, count) = (sum + told.reached, count + told.count);
     }
@@ -200,6 +206,33 @@ fn no_ray_meets_a_heightfield_before_the_front() {
     let share = sum / count as f64;
     println!("fronts reach {share} of {count}");
     assert!(count > 3000 && share > 0.7, "{share} of {count}");
+}
+
+/// What the CPU claims of cones over a heightfield.
+fn told_of(seen: &Seen, seed: u64) -> Told {
+    let (solid, random) = (seen.solid(), &mut Random::new(1000 + seed));
+    let claim = |random: &mut Random| {
+        let cone = seen.cone(random);
+        (cone, claimed(&solid, &cone, 1 + random.index(3) as u32))
+    };
+    let claims: Vec<_> = (0..60).map(|_| claim(random)).collect();
+    told(seen, &claims, 100 * seed)
+}
+
+#[test]
+fn no_ray_meets_a_large_heightfield_whose_cells_have_no_windows() {
+    let setting = alone([3600, 3600], Patches::Bilinear);
+    let surface = surface(setting, Pattern::Spikes.heights(setting.0, 7, 2.6));
+    assert_eq!((surface.finest(), surface.windows(0).max.len()), (1, 0));
+    // WebGPU promises buffers of 128 MiB.
+    let arrays = surface.arrays();
+    let bytes = arrays.iter().map(|array| array.bytes().len());
+    assert!(bytes.max().unwrap() <= 128 << 20);
+    let see = |seed| anywhere("large".into(), surface.clone(), &mut Random::new(seed));
+    for seed in 0..20 {
+        assert_eq!(told_of(&see(seed), seed).behind, None);
+    }
+    assert_eq!(told_by_device(0..4, &see, &|_, _| ()), [""; 0]);
 }
 
 /// The cone of a question, as f32 holds it.
@@ -226,10 +259,10 @@ fn narrowed(cone: &Beam) -> (Beam, Numbers) {
 type Change<'a> = &'a dyn Fn(&Seen, &mut Probe);
 
 /// What the device claims of cones over some heightfields, with a change.
-fn told_by_device(seeds: std::ops::Range<u64>, change: Change) -> Vec<String> {
+fn told_by_device(seeds: Range<u64>, see: &dyn Fn(u64) -> Seen, change: Change) -> Vec<String> {
     let mut behind = Vec::new();
     for seed in seeds {
-        let (seen, random) = (any(7000 + seed), &mut Random::new(8000 + seed));
+        let (seen, random) = (see(7000 + seed), &mut Random::new(8000 + seed));
         let solid = seen.solid();
         let mut modules = solid.modules();
         modules.extend(outcome::modules(false));
@@ -260,7 +293,7 @@ fn told_by_device(seeds: std::ops::Range<u64>, change: Change) -> Vec<String> {
 
 #[test]
 fn no_ray_meets_a_heightfield_before_the_front_on_the_device() {
-    assert_eq!(told_by_device(0..24, &|_, _| ()), [""; 0]);
+    assert_eq!(told_by_device(0..24, &any, &|_, _| ()), [""; 0]);
 }
 
 /// Replaces a text of the shader.
@@ -273,30 +306,44 @@ fn edit(probe: &mut Probe, old: &str, new: &str) {
 
 #[test]
 fn the_check_sees_what_is_wrong_with_a_walk() {
-    // An exit is not tested; the far node is not read; the next tile is not read.
+    // An exit is not tested; the window is the one before.
     for (old, new) in [
         ("over > 0.0 && over + step * fall > 0.0", "over > 0.0"),
-        ("maxima[maxima_place(level, j)]", "0.0"),
         (
-            "heightmap_tile_cell(beside)",
-            "min(beside, heightmap.cells - 1)",
+            "maxima[start + u32(number)]",
+            "maxima[start + u32(number) - 1u]",
         ),
     ] {
-        let behind = told_by_device(0..24, &|_, probe| edit(probe, old, new));
+        let behind = told_by_device(0..24, &any, &|_, probe| edit(probe, old, new));
         println!("{old}: {} of 24", behind.len());
         assert!(!behind.is_empty(), "{old}");
     }
-    // Maxima of the samples in place of those of the cells.
-    let samples = |seen: &Seen, probe: &mut Probe| {
+    // The next tile is not read; maxima of the samples in place of those of the cells.
+    let tiled = |seen: &Seen| {
         let surface = &seen.ready.surface;
-        if surface.heights().wrap() == [true; 2] {
-            let heights = surface.heights();
+        let (domain, cells) = (surface.domain(), surface.cells());
+        [0, 1].map(|i| domain[i] > cells[i] as i32)
+    };
+    let alone = |seen: &Seen, probe: &mut Probe| {
+        replace_maxima(probe, seen.ready.surface.maxima(), [false; 2]);
+    };
+    let samples = |seen: &Seen, probe: &mut Probe| {
+        let heights = seen.ready.surface.heights();
+        if heights.wrap() == [true; 2] {
             let maxima = MaxMip::new(heights.size(), heights.data().to_vec());
-            let all = maxima.levels.iter().flat_map(|level| &level.max);
-            let bytes = cast_slice(&all.copied().collect::<Vec<f32>>()).to_vec();
-            let own = probe.parameters.iter_mut().find(|p| p.0 == "maxima");
-            own.unwrap().1 = bytes;
+            replace_maxima(probe, &maxima, tiled(seen));
         }
     };
-    assert!(!told_by_device(0..24, &samples).is_empty());
+    assert!(!told_by_device(0..24, &any, &alone).is_empty());
+    assert!(!told_by_device(0..24, &any, &samples).is_empty());
+}
+
+/// Replaces the pyramid and its windows, of a map whose axes go round or not.
+fn replace_maxima(probe: &mut Probe, maxima: &MaxMip, round: [bool; 2]) {
+    let windows = maxima.windows(round, 0);
+    let both = maxima.levels.iter().zip(&windows);
+    let all = both.flat_map(|(level, windows)| level.max.iter().chain(&windows.max));
+    let bytes = cast_slice(&all.copied().collect::<Vec<f32>>()).to_vec();
+    let own = probe.parameters.iter_mut().find(|p| p.0 == "maxima");
+    own.unwrap().1 = bytes;
 }

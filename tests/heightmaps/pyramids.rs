@@ -43,6 +43,37 @@ fn planes_lie_above_all_heights() {
 }
 
 #[test]
+fn a_window_is_as_high_as_the_highest_of_its_four_nodes() {
+    for (name, heights) in small() {
+        let mip = MaxMip::new(heights.size(), heights.data().to_vec());
+        for round in [[false, false], [true, false], [false, true], [true, true]] {
+            let all = mip.windows(round, 1);
+            assert_eq!(all[0].max, [0.0; 0]);
+            for (level, windows) in mip.levels.iter().zip(&all).skip(1) {
+                assert_eq!(windows.size, level.size.map(|n| n + 1));
+                let [w, h] = level.size.map(i64::from);
+                for (x, y) in (0..=h).flat_map(|y| (0..=w).map(move |x| (x, y))) {
+                    let beside = |at: i64, n: i64, round: bool| match round {
+                        true => vec![(at - 1).rem_euclid(n), at % n],
+                        false => [at - 1, at]
+                            .into_iter()
+                            .filter(|i| (0..n).contains(i))
+                            .collect(),
+                    };
+                    let mut highest = f32::NEG_INFINITY;
+                    for i in beside(x, w, round[0]) {
+                        for j in beside(y, h, round[1]) {
+                            highest = highest.max(level.at(i as u32, j as u32));
+                        }
+                    }
+                    assert_eq!(windows.at(x as u32, y as u32), highest, "{name}: {x}, {y}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn the_least_of_nine_is_the_least_around_a_place() {
     for wrap in WRAPS {
         let heights = field(Pattern::Spikes, [7, 5], wrap);

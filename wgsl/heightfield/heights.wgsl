@@ -20,7 +20,9 @@ struct HeightmapUniform {
     steps: u32,
     lod: f32,
     rounds: u32,
-    /// Where each level of the pyramid starts.
+    /// The finest level that has windows.
+    finest: u32,
+    /// Where each level of the pyramid starts, with its windows after it.
     starts: array<vec4<u32>, 4>,
 }
 

@@ -65,27 +65,30 @@ fn cone_within(cone: LocalCone, top: f32, part: vec2<f32>) -> vec2<f32> {
 /// tile begins nodes of its own.
 fn cone_window(level: u32, rear: vec2<f32>, back: vec2<bool>) -> Window {
     let domain = heightmap.domain;
-    let inside = clamp(floor(rear), vec2<f32>(0.0), vec2<f32>(domain - 1));
+    let cells = heightmap.cells;
+    let place = floor(rear);
+    let inside = clamp(place, vec2<f32>(0.0), vec2<f32>(domain - 1));
     let cell = vec2<i32>(inside);
-    let node = maxima_node(cell, level);
-    // Before the block there is nothing, and so behind it.
-    let next = select(node.high, node.low - 1, back);
-    let within = (inside == floor(rear)) & (next >= vec2<i32>(0)) & (next < domain);
-    let beside = select(node.low, next, within);
-    let other = maxima_node(beside, level);
-    let i = vec2<u32>(heightmap_tile_cell(cell)) >> vec2<u32>(level);
-    let j = vec2<u32>(heightmap_tile_cell(beside)) >> vec2<u32>(level);
-    let low = min(node.low, other.low);
-    let high = max(node.high, other.high);
+    let own = heightmap_tile_cell(cell);
+    let tile = cell - own;
+    // The window before the node or the one after it. Outside of the block it is the outer one.
+    let after = select(place >= inside, place > inside, back);
+    let at = (own >> vec2<u32>(level)) + select(vec2<i32>(0), vec2<i32>(1), after);
+    let width = vec2<i32>(1i << level);
+    let nodes = (cells + width - 1) >> vec2<u32>(level);
+    let at_cell = at << vec2<u32>(level);
+    // The last node of the tile before may be narrow.
+    let before = ((nodes - 1) << vec2<u32>(level)) - cells;
+    let low = tile + select(at_cell - width, before, at == vec2<i32>(0));
+    let high = tile + select(min(at_cell + width, cells), cells + min(width, cells), at == nodes);
     // All tiles are alike.
-    let whole = vec2<i32>(1i << level) >= heightmap.cells;
+    let whole = width >= cells;
+    let start = heightmap.starts[level >> 2u][level & 3u];
+    let number = nodes.x * nodes.y + at.y * (nodes.x + 1) + at.x;
     return Window(
         select(vec2<f32>(low), vec2<f32>(-CONE_NO_EDGE), whole | (low <= vec2<i32>(0))),
         select(vec2<f32>(high), vec2<f32>(CONE_NO_EDGE), whole | (high >= domain)),
-        max(
-            max(maxima[maxima_place(level, i)], maxima[maxima_place(level, vec2<u32>(j.x, i.y))]),
-            max(maxima[maxima_place(level, vec2<u32>(i.x, j.y))], maxima[maxima_place(level, j)]),
-        ),
+        maxima[start + u32(number)],
     );
 }
 
@@ -113,7 +116,7 @@ fn maxima_cone(cone: LocalCone, front: f32, end: f32) -> Advance {
         let half = cone.radius + t * cone.growth;
         let wide = CONE_FIT * (max(half.x, half.y) + max(cone.slack.x, cone.slack.y));
         // The least level whose nodes are wider than that.
-        let fits = 32u - countLeadingZeros(u32(min(wide, 1e6)));
+        let fits = max(32u - countLeadingZeros(u32(min(wide, 1e6))), heightmap.finest);
         lift = min(lift, max(coarsest, fits) - fits);
         let level = min(fits + lift, coarsest);
         let low = p - half;

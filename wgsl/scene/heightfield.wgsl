@@ -144,7 +144,7 @@ fn empty_radius(p: vec3<f32>, enough: f32) -> f32 {
     // The least level whose nodes are wider than such a ball.
     let wide = 2.0 * (max(enough, 0.0) / heightfield.texel + slack);
     let fits = 32u - countLeadingZeros(u32(min(wide, 1e6)));
-    var level = min(fits, heightmap.levels - 1u);
+    var level = min(max(fits, heightmap.finest), heightmap.levels - 1u);
     for (var i = 0u; i < HEIGHTFIELD_SEARCHES; i++) {
         // Within the map, the room in a window is at most as wide as one of its nodes.
         if free >= min(enough, heightfield.texel * f32(1u << level)) {
@@ -159,7 +159,7 @@ fn empty_radius(p: vec3<f32>, enough: f32) -> f32 {
         let gap = (p.z - heightfield.slack.z - window.maximum) * heightfield.depth;
         free = max(free, min(room, gap));
         // A smaller window has less room.
-        if gap >= room || level == 0u {
+        if gap >= room || level == heightmap.finest {
             break;
         }
         level--;
