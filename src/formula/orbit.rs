@@ -150,13 +150,17 @@ impl Orbits {
         [sharp, grown.scalar].map(|w| past / end(w))
     }
 
-    /// The estimate, and a radius for steps of rays.
+    /// The estimate, and a radius for steps of rays: the largest for which the folds are linear in no
+    /// iteration, in the first one, or in all of the prefix.
     #[inline(always)]
     fn chain<J: Jacobian>(&self, p: DVec3, most: u32, clear: f64) -> Reading {
         let Self(folds) = self;
         let exit = folds.exit(p);
         let (mut z, mut n) = (p, 0);
         let mut grown = Growth::<J>::START;
+        // The growth factor with the norm after the first iteration, and the radius in which that is
+        // linear.
+        let (mut middle, mut free) = (grown.norm, grown.free);
         // Where the Jacobian is not used, it is not followed.
         let prefix = if folds.scale > 0.0 { PREFIX } else { 0 };
         while n < most.min(prefix) && !folds.ended(z, exit) {
@@ -165,6 +169,10 @@ impl Orbits {
                 break;
             }
             self.follow(&mut grown, z, &fold);
+            (middle, free) = match n {
+                0 => (grown.norm, grown.free),
+                _ => (folds.growth(&fold) * middle + 1.0, free),
+            };
             z = folds.next(&fold, p);
             n += 1;
         }
@@ -174,11 +182,14 @@ impl Orbits {
             z = folds.next(&fold, p);
             n += 1;
         }
-        let [sharp, scalar] = self.estimates(folds.top(z, p), &grown);
-        let [long, short] = [sharp, scalar].map(|e| (e - clear) / folds.lipschitz);
+        let past = folds.top(z, p);
+        let [sharp, scalar] = self.estimates(past, &grown);
+        let between = past / (grown.product * middle + grown.sum + folds.tail);
+        let [long, between, short] =
+            [sharp, between, scalar].map(|e| (e - clear) / folds.lipschitz);
         Reading {
             value: sharp,
-            radius: short.max(long.min(grown.free)),
+            radius: short.max(between.min(free)).max(long.min(grown.free)),
             iterations: n,
         }
     }

@@ -190,6 +190,7 @@ impl Orbits {
         let (one, none) = (Reals::splat(simd, 1.0), Reals::splat(simd, 0.0));
         let (mut z, mut n) = (p, none);
         let mut grown = Growths::<S, J>::start(simd);
+        let (mut middle, mut free) = (grown.norm, grown.free);
         let prefix = if folds.scale > 0.0 { PREFIX } else { 0 };
         let mut follows = on;
         for i in 0..most {
@@ -204,17 +205,23 @@ impl Orbits {
                 if follows.any_true() {
                     self.follow_lanes(follows, &mut grown, z, &fold);
                     grows &= !follows;
+                    let further = folds.growth_lanes(&fold) * middle + 1.0;
+                    let first = i == 0;
+                    middle = follows.select(if first { grown.norm } else { further }, middle);
+                    free = if first { grown.free } else { free };
                 }
             }
             grown.grow(grows, folds.growth_lanes(&fold));
             z = Triples::select(on, folds.next_lanes(&fold, p), z);
             n += on.select(one, none);
         }
-        let [sharp, scalar] = self.estimates_lanes(folds.top_lanes(z, p), &grown);
+        let past = folds.top_lanes(z, p);
+        let [sharp, scalar] = self.estimates_lanes(past, &grown);
+        let between = past / (grown.product * middle + grown.sum + folds.tail);
         let clear = Reals::simd_from(simd, *clear);
-        let long = (sharp - clear) / folds.lipschitz;
-        let short = (scalar - clear) / folds.lipschitz;
-        readings(sharp, short.max(long.min(grown.free)), n)
+        let step = |estimate: Reals<S>| (estimate - clear) / folds.lipschitz;
+        let (long, short) = (step(sharp).min(grown.free), step(scalar));
+        readings(sharp, short.max(step(between).min(free)).max(long), n)
     }
 
     /// See `Orbits::spread`.

@@ -49,7 +49,7 @@ pub enum HeightSurfaceError {
     Unwrapped(usize),
 }
 
-/// Most numbers of the pyramid with the windows of all levels: WebGPU promises buffers of 128 MiB.
+/// Most numbers of a pyramid with its windows: WebGPU promises buffers of 128 MiB.
 const MOST_NUMBERS: usize = 128 << 20 >> 2;
 
 /// The uniform that all tracers read.
@@ -82,8 +82,10 @@ pub struct HeightmapUniform {
     pub finest: u32,
     /// The next field is aligned to 16 bytes.
     pub pad: [u32; 3],
-    /// Where each level of the pyramid starts in its buffer, with its windows after it.
+    /// Where each level of the pyramid starts in its buffer.
     pub starts: [u32; MOST_LEVELS],
+    /// Where the windows of each level start there.
+    pub windows: [u32; MOST_LEVELS],
 }
 
 /// A tracer's numbers in the uniform.
@@ -138,12 +140,18 @@ pub struct HeightSurface {
     finest: u32,
 }
 
-/// The finest level whose windows are stored. Those of level 0 are left out of a large map.
+/// The finest level that has windows, so that these fit into a buffer with the maxima.
 fn finest(maxima: &MaxMip) -> u32 {
-    let windows = |size: [u32; 2]| size.map(|n| n as usize + 1).iter().product::<usize>();
-    let both = |level: &MipLevel| level.max.len() + windows(level.size);
-    let all: usize = maxima.levels.iter().map(both).sum();
-    u32::from(all > MOST_NUMBERS)
+    let windows = |level: &MipLevel| level.size.map(|n| n as usize + 1).iter().product::<usize>();
+    let nodes = |level: &MipLevel| level.max.len();
+    let mut all: usize = maxima.levels.iter().map(nodes).sum();
+    all += maxima.levels.iter().map(windows).sum::<usize>();
+    let mut finest = 0;
+    while all > MOST_NUMBERS && finest < maxima.coarsest() {
+        all -= windows(&maxima.levels[finest as usize]);
+        finest += 1;
+    }
+    finest
 }
 
 /// Checks that a map of so many cells can be tiled.
@@ -299,22 +307,20 @@ impl HeightSurface {
         ]
     }
 
-    /// The levels of the maxima, each with its windows.
-    fn levels(&self) -> impl Iterator<Item = [&MipLevel; 2]> {
-        let both = self.maxima.levels.iter().zip(&self.windows);
-        both.map(|(level, windows)| [level, windows])
+    /// The levels of the pyramid, and then their windows.
+    fn levels(&self) -> impl Iterator<Item = &MipLevel> {
+        self.maxima.levels.iter().chain(&self.windows)
     }
 
     /// The values of the WGSL struct, for a tracer.
     pub fn uniform(&self, map: &ConeMap, tracer: TracerParameters) -> HeightmapUniform {
-        let mut starts = [0; MOST_LEVELS];
+        let (mut starts, mut windows) = ([0; MOST_LEVELS], [0; MOST_LEVELS]);
+        let count = self.maxima.levels.len();
+        let all = starts[..count].iter_mut().chain(&mut windows[..count]);
         let mut end = 0;
-        for (start, levels) in starts.iter_mut().zip(self.levels()) {
+        for (start, level) in all.zip(self.levels()) {
             *start = end;
-            end += levels
-                .map(|level| level.max.len() as u32)
-                .iter()
-                .sum::<u32>();
+            end += level.max.len() as u32;
         }
         HeightmapUniform {
             samples: self.heights.size().map(|n| n as i32),
@@ -331,13 +337,14 @@ impl HeightSurface {
             finest: self.finest,
             pad: [0; 3],
             starts,
+            windows,
         }
     }
 
-    /// The heights and the pyramid of maxima, as the shaders read them.
+    /// The heights, and the pyramid of maxima with its windows, as the shaders read them.
     pub fn arrays(self: &Arc<Self>) -> Vec<SceneArray> {
         let maxima = |surface: &Self| {
-            let all = surface.levels().flatten().flat_map(|level| &level.max);
+            let all = surface.levels().flat_map(|level| &level.max);
             cast_slice(&all.copied().collect::<Vec<f32>>()).to_vec()
         };
         vec![

@@ -74,7 +74,8 @@ impl MaxMip {
 
     /// The windows of every level. A window is two by two neighbouring nodes: window (x, y) is of
     /// the nodes x - 1 and x, and y - 1 and y. Along an axis that goes `round`, the last node is
-    /// beside the first. Elsewhere there is nothing beside them. Levels below `finest` are empty.
+    /// beside the first, at the outer sides of the block too. Elsewhere there is nothing beside them.
+    /// Levels below `finest` are empty.
     pub fn windows(&self, round: [bool; 2], finest: u32) -> Vec<MipLevel> {
         let of = |level: &MipLevel| {
             // The nodes before and after the place of a window.

@@ -179,7 +179,7 @@ pub fn maxima_cone(
         work.evaluations += 1;
         let (p, half) = (cone.origin + t * cone.axis, cone.half(t));
         let wide = CONE_FIT * (half.truncate() + cone.slack.truncate()).max_element();
-        // The least level whose nodes are wider than that.
+        // The least level with windows whose nodes are wider than that.
         let fits = (u32::BITS - (wide.min(1e6) as u32).leading_zeros()).max(surface.finest());
         lift = lift.min(maxima.coarsest().saturating_sub(fits));
         let level = (fits + lift).min(maxima.coarsest());

@@ -83,7 +83,7 @@ settings! {
         light: DVec3 = DVec3::new(-0.3, -0.7, 0.75), triple(-1e6, 1e6), "direction to the light; must not be [0, 0, 0]";
         light_color: DVec3 = DVec3::new(1.0, 0.90, 0.76), triple(0.0, 1.0), "colour of the light, sRGB";
         mode: LightMode = LightMode::Quick, word(&LightMode::WORDS), "how light is found: quick by formulas, path by rays from surface to surface, whose noise goes away with many samples" => Program;
-        bounces: u32 = 2, count(0, 16), "in mode path, how often light goes from surface to surface before the last one; 0 for light of the sun and the sky alone, which near surfaces stop within occlusion_reach";
+        bounces: u32 = 2, count(0, 16), "in mode path, how many surfaces light may come from before it reaches the one that is seen; 0 for light of the sun, lamps and the sky alone, and then only surfaces within occlusion_reach hide the sky";
         roughness: f64 = 0.45, number(0.05, 1.0), "roughness of the surface: 0.05 is a polished one, 1 a dull one";
         metal: f64 = 0.0, number(0.0, 1.0), "1 for metal, whose reflections have the colour of the surface, and 0 for paint";
         key: f64 = 1.7, number(0.0, 100.0), "strength of the light";
@@ -119,7 +119,7 @@ settings! {
         glow_width: f64 = 0.02, number(0.005, 1.0),
             "distance from the surface at which the glow of the air has fallen to 1/e, as a share of the distance from eye to target";
         glow_color: DVec3 = DVec3::new(0.30, 0.55, 1.0), triple(0.0, 1.0), "colour of the glow of the air, sRGB";
-        gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights of paint: 0 for none, 0.08 for most materials, 2 for a mirror; a metal has its own";
+        gloss: f64 = 0.08, number(0.0, 10.0), "strength of the highlights of paint: 0 for none, 0.08 for most materials, 2 and more for a mirror; a metal has its own";
         sky_high: DVec3 = DVec3::new(0.30, 0.42, 0.58), triple(0.0, 1.0), "colour of the sky overhead, sRGB";
         sky_low: DVec3 = DVec3::new(0.80, 0.77, 0.73), triple(0.0, 1.0), "colour of the sky below, sRGB";
         palette: Vec<DVec3> = vec![

@@ -148,7 +148,7 @@ impl Heightfield {
         let (surface, place) = (&self.made.surface, &self.made.placement);
         let slack = self.slack.truncate().max_element();
         let mut free = place.distance(p);
-        // The least level whose nodes are wider than such a ball.
+        // The least level with windows whose nodes are wider than such a ball.
         let wide = 2.0 * (enough.max(0.0) / place.texel + slack);
         let fits = u32::BITS - (wide.min(1e6) as u32).leading_zeros();
         let finest = surface.finest();

@@ -341,8 +341,8 @@ fn the_check_sees_what_is_wrong_with_a_walk() {
 /// Replaces the pyramid and its windows, of a map whose axes go round or not.
 fn replace_maxima(probe: &mut Probe, maxima: &MaxMip, round: [bool; 2]) {
     let windows = maxima.windows(round, 0);
-    let both = maxima.levels.iter().zip(&windows);
-    let all = both.flat_map(|(level, windows)| level.max.iter().chain(&windows.max));
+    let levels = maxima.levels.iter().chain(&windows);
+    let all = levels.flat_map(|level| &level.max);
     let bytes = cast_slice(&all.copied().collect::<Vec<f32>>()).to_vec();
     let own = probe.parameters.iter_mut().find(|p| p.0 == "maxima");
     own.unwrap().1 = bytes;

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use bytemuck::bytes_of;
-use conemarch::base::outcome;
+use conemarch::base::outcome::{self, Counts};
 use conemarch::base::shader::Program;
 use conemarch::heightfield::conemap::MapKind;
 use conemarch::heightfield::height_surface::HeightSurface;
@@ -174,6 +174,33 @@ fn inexact_shaders_agree_with_their_twins() {
             println!("{}, {}: {apart} of 6000 apart", case.name, own.name);
             let most = if is_software() { 90 } else { 120 };
             assert!(apart < most, "{}, {}: {apart} apart", case.name, own.name);
+        }
+    }
+}
+
+/// A shader that reads other cones than its twin may find the same hits, but not in as many steps.
+#[test]
+fn tracers_of_nodes_take_as_many_steps_on_the_device() {
+    for case in surfaces() {
+        let all: Vec<_> = rays(&case.surface, 2000, 23).iter().map(narrow).collect();
+        for own in tracers(&case.surface, Accuracy::Pixel) {
+            let asked: Vec<Numbers> = all.iter().map(question).collect();
+            let answers = probe_of(&own.tracer).ask(&asked);
+            let device: f64 = answers.iter().map(|a| f64::from(a[1][2])).sum();
+            let steps = |ray: &LocalRay| {
+                let (mut trace, mut work) = (own.tracer.begin(ray, 0.0, END), Counts::default());
+                let mut step = || own.tracer.step(ray, &mut trace, &mut work);
+                1 + std::iter::from_fn(|| (step() == Step::Moving).then_some(())).count()
+            };
+            let here = all.iter().map(steps).sum::<usize>() as f64;
+            println!("{}, {}: {device} of {here} steps", case.name, own.name);
+            let share = device / here;
+            assert!(
+                (0.99..1.01).contains(&share),
+                "{}, {}: {share}",
+                case.name,
+                own.name
+            );
         }
     }
 }

@@ -157,39 +157,54 @@ const ROTATIONS: [DVec3; 3] = [
 /// The table of docs/method.md, 3.
 #[test]
 fn steps_are_too_long_by_as_much_as_is_said() {
-    const PLAIN: [f64; 10] = [1.1, 1.3, 1.2, 1.25, 1.2, 1.3, 1.4, 1.5, 1.01, 1.12];
-    const ROTATED: [f64; 10] = [1.0, 1.15, 1.2, 1.1, 1.2, 1.1, 1.15, 1.2, 1.15, 1.15];
+    const PLAIN: [f64; 10] = [1.1, 1.25, 1.15, 1.2, 1.2, 1.1, 1.15, 1.2, 1.01, 1.05];
+    const ROTATED: [f64; 10] = [1.0, 1.2, 1.2, 1.1, 1.2, 1.2, 1.1, 1.2, 1.05, 1.05];
     // With constants of 0.3 to 10 L |s|.
     const LARGE: [f64; 10] = [1.0, 1.75, 1.25, 1.8, 2.8, 1.65, 1.55, 2.45, 1.0, 0.9];
     const JULIA: [f64; 10] = [1.1, 1.1, 1.1, 1.1, 1.1, 1.0, 1.0, 1.0, 1.1, 1.0];
+    let mut untrue = Vec::new();
     for (i, mut m) in settings().into_iter().enumerate() {
-        let check = |m: &Mandelbox, said: f64| {
+        let scale = m.scale;
+        let worst = |m: &Mandelbox| {
             let evaluator = m.evaluator();
-            let worst = search(m, 3000, |p, _| evaluator.step(p, MANY, 0.0).radius);
-            assert!(worst.ratio < said, "{m:?}: {worst:?}");
+            search(m, 3000, |p, _| evaluator.step(p, MANY, 0.0).radius).ratio
         };
-        check(&m, PLAIN[i]);
-        for rotation in ROTATIONS {
-            m.rotation = rotation;
-            check(&m, ROTATED[i]);
-        }
-        m.rotation = DVec3::ZERO;
+        // No step is longer than is said, and the search comes near it.
+        let mut check = |what: &str, found: f64, said: f64| {
+            let told = format!("scale {scale}, {what}: {found:.3}, said {said}");
+            println!("{told}");
+            if found >= said * ROUNDED || found < 0.7 * said {
+                untrue.push(told);
+            }
+        };
+        check("plain", worst(&m), PLAIN[i]);
+        let rotated = ROTATIONS.map(|rotation| {
+            worst(&Mandelbox {
+                rotation,
+                ..m.clone()
+            })
+        });
+        check(
+            "rotated",
+            rotated.into_iter().fold(0.0, f64::max),
+            ROTATED[i],
+        );
         m.julia_constant = m.fold_limit * DVec3::new(0.7, -0.4, 1.1);
         m.julia = true;
-        check(&m, JULIA[i]);
+        check("Julia", worst(&m), JULIA[i]);
         let random = &mut Random::new(78);
-        let mut worst = 0.0_f64;
+        let mut large = 0.0_f64;
         for _ in 0..30 {
             let length = m.fold_limit * m.scale.abs() * 10.0_f64.powf(random.between(-0.5, 1.0));
             m.julia_constant = length * random.direction();
             let evaluator = m.evaluator();
             let climbs = start_in_julia_mode(&m, 400, random);
             let found = search_from(climbs, random, |p, _| evaluator.step(p, MANY, 0.0).radius);
-            worst = worst.max(found.ratio);
+            large = large.max(found.ratio);
         }
-        assert!(worst > 0.8 * LARGE[i], "{m:?}: {worst}");
-        assert!(worst < LARGE[i] * ROUNDED, "{m:?}: {worst}");
+        check("large constants", large, LARGE[i]);
     }
+    assert!(untrue.is_empty(), "{untrue:#?}");
 }
 
 /// With a rotation, cones go by steps over a constant that is larger than any overstep.

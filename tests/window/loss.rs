@@ -41,6 +41,10 @@ fn open<'a>(desktop: &'a Desktop, folder: &Folder, line: &str) -> Preview<'a> {
 /// Loses the device at the next submission.
 fn lose(folder: &Folder, what: &str) {
     folder.write(what, "");
+    wait_until_lost(folder, what);
+}
+
+fn wait_until_lost(folder: &Folder, what: &str) {
     let began = Instant::now();
     while folder.0.join(what).exists() {
         assert!(began.elapsed() < Duration::from_secs(20), "no submission");
@@ -140,7 +144,7 @@ fn a_lost_device_and_a_question_are_answered_over_settings_that_do_not_fit() {
     folder.write("lose-shown", "");
     view.key("F1");
     view.wait_for("the keys", |shot| *shot != told);
-    assert!(!folder.0.join("lose-shown").exists());
+    wait_until_lost(&folder, "lose-shown");
     view.key("F1");
     view.key("ctrl+z");
     view.key("Tab");

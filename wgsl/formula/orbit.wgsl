@@ -93,6 +93,9 @@ fn estimate_step(p: real3, most: u32, clear: real) -> real2 {
     var z = p;
     var n = 0u;
     var grown = growth_start();
+    // The growth factor with the norm after the first iteration, and the radius in which that is linear.
+    var middle = real(1.0);
+    var free = grown.free;
     // Where the Jacobian is not used, it is not followed.
     while n < min(most, ORBIT_PREFIX * folds.followed) && !fold_ended(z, exit) {
         let f = fold(z);
@@ -100,6 +103,8 @@ fn estimate_step(p: real3, most: u32, clear: real) -> real2 {
             break;
         }
         growth_follows(&grown, z, f);
+        middle = select(abs(f.factor) * middle + real(1.0), grown.norm, n == 0u);
+        free = select(free, grown.free, n == 0u);
         z = fold_next(f, p);
         n += 1u;
     }
@@ -111,11 +116,17 @@ fn estimate_step(p: real3, most: u32, clear: real) -> real2 {
     }
     count_evaluation();
     count_iterations(n);
-    let all = orbit_estimates(fold_top(z, p), grown);
+    let past = fold_top(z, p);
+    let all = orbit_estimates(past, grown);
     let lipschitz = real(formula_lipschitz());
     let long = (all.sharp - clear) / lipschitz;
     let short = (all.scalar - clear) / lipschitz;
-    return real2(all.sharp, max(short, min(long, grown.free)));
+    var step = max(short, min(long, grown.free));
+    if folds.followed != 0u {
+        let between = past / (grown.product * middle + grown.sum + real(folds.tail));
+        step = max(step, min((between - clear) / lipschitz, free));
+    }
+    return real2(all.sharp, step);
 }
 
 fn estimate(p: real3, most: u32) -> real {

@@ -22,8 +22,10 @@ struct HeightmapUniform {
     rounds: u32,
     /// The finest level that has windows.
     finest: u32,
-    /// Where each level of the pyramid starts, with its windows after it.
+    pad: array<u32, 3>,
+    /// Where each level of the pyramid starts, and where its windows do.
     starts: array<vec4<u32>, 4>,
+    windows: array<vec4<u32>, 4>,
 }
 
 /// Whether the patches are boxes as high as one sample, instead of bilinear between four samples.

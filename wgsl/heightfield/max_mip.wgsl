@@ -1,6 +1,7 @@
 // The pyramid of maxima over the apexes of the cells of a height map, level after level in one
 // buffer, fine to coarse. Each level halves the one below, rounding up (Tevs, Ihrke,
 // Seidel 2008). Level 0 is the apexes themselves: a cell's highest point.
+// The windows come after all levels (`maxima_cone.wgsl`).
 
 /// The highest point of a cell of the domain.
 fn heightmap_apex(cell: vec2<i32>) -> f32 {

@@ -83,12 +83,11 @@ fn cone_window(level: u32, rear: vec2<f32>, back: vec2<bool>) -> Window {
     let high = tile + select(min(at_cell + width, cells), cells + min(width, cells), at == nodes);
     // All tiles are alike.
     let whole = width >= cells;
-    let start = heightmap.starts[level >> 2u][level & 3u];
-    let number = nodes.x * nodes.y + at.y * (nodes.x + 1) + at.x;
+    let start = heightmap.windows[level >> 2u][level & 3u];
     return Window(
         select(vec2<f32>(low), vec2<f32>(-CONE_NO_EDGE), whole | (low <= vec2<i32>(0))),
         select(vec2<f32>(high), vec2<f32>(CONE_NO_EDGE), whole | (high >= domain)),
-        maxima[start + u32(number)],
+        maxima[start + u32(at.y * (nodes.x + 1) + at.x)],
     );
 }
 
@@ -115,7 +114,7 @@ fn maxima_cone(cone: LocalCone, front: f32, end: f32) -> Advance {
         let p = cone.origin + t * cone.axis;
         let half = cone.radius + t * cone.growth;
         let wide = CONE_FIT * (max(half.x, half.y) + max(cone.slack.x, cone.slack.y));
-        // The least level whose nodes are wider than that.
+        // The least level with windows whose nodes are wider than that.
         let fits = max(32u - countLeadingZeros(u32(min(wide, 1e6))), heightmap.finest);
         lift = min(lift, max(coarsest, fits) - fits);
         let level = min(fits + lift, coarsest);

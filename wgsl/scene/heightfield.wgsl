@@ -141,7 +141,7 @@ fn surface_gap(p: vec3<f32>) -> f32 {
 fn empty_radius(p: vec3<f32>, enough: f32) -> f32 {
     let slack = max(heightfield.slack.x, heightfield.slack.y);
     var free = block_distance(p);
-    // The least level whose nodes are wider than such a ball.
+    // The least level with windows whose nodes are wider than such a ball.
     let wide = 2.0 * (max(enough, 0.0) / heightfield.texel + slack);
     let fits = 32u - countLeadingZeros(u32(min(wide, 1e6)));
     var level = min(max(fits, heightmap.finest), heightmap.levels - 1u);
