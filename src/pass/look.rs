@@ -19,6 +19,7 @@ use crate::pass::sky::{SkyLight, SkyUniform};
 use crate::plan::Plan;
 use crate::plan::lamps::MOST_LAMPS;
 use crate::plan::look::{LightMode, Look, MOST_STOPS, PATH_STEPS, PaletteSpace, SHADOW_STEPS};
+use crate::plan::march::Mode;
 use crate::scene::sky::Sky;
 use crate::scene::{AnySolid, MOST_SHADOW_STEPS};
 
@@ -171,6 +172,12 @@ impl Light {
         };
         let crossing = solid.twin().most_steps().unwrap_or(least);
         let auto = crossing.clamp(least, MOST_SHADOW_STEPS);
+        let shadow_steps = look.shadow_steps.unwrap_or(auto);
+        // The truth has short steps, and its shadows are as whole as those of other modes.
+        let shadow_steps = match plan.march.mode {
+            Mode::Truth => (f64::from(shadow_steps) / plan.march.stride()).min(1e6) as u32,
+            _ => shadow_steps,
+        };
         let world_up = plan.camera.up.normalize();
         let above =
             (plan.camera.eye - plan.camera.target).dot(world_up) - look.fog_level * distance;
@@ -180,7 +187,7 @@ impl Light {
         };
         Self {
             softness: look.light_size.to_radians().tan(),
-            shadow_steps: look.shadow_steps.unwrap_or(auto),
+            shadow_steps,
             // Over a heightfield the rays' own limits are enough: few steps have many rounds.
             path_steps: match solid.twin().most_steps() {
                 Some(most) => 64 * most,

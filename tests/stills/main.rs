@@ -260,6 +260,21 @@ fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
     }
 }
 
+/// The truth's steps are short, so its shadow rays need many more of them.
+#[test]
+fn shadow_rays_of_the_truth_reach_the_light() {
+    let mut plan = sized("mandelbox-gate", [96, 54]);
+    plan.march.mode = Mode::Ray;
+    let plain = on_cpu(&plan, Extras::default()).undecided;
+    let truth = truth(&plan, &Assets::default(), &mut |_| true).unwrap();
+    let own = truth.frame.undecided;
+    assert!(
+        own <= plain,
+        "{own} and {plain} of {}",
+        truth.frame.state.len()
+    );
+}
+
 #[test]
 fn every_mode_renders_on_both_executors() {
     let mut plan = sized("bench-outside", [96, 54]);
