@@ -139,12 +139,17 @@ impl Distance {
         }
         let t = (w.t + w.pace).min(w.end);
         let eps = self.threshold(ray, t);
+        // A ray from an eye within the bounds has no ball and no threshold there. The field tells enough.
+        let trial = match w.radius == 0.0 {
+            true => w.room,
+            false => DISTANCE_TRIAL * w.radius,
+        };
         Some(Ahead {
             t,
             q: ray.at(t),
             eps,
             clear: self.stepping.shell * eps,
-            trial: DISTANCE_TRIAL * w.radius + 2.0 * eps,
+            trial: trial + 2.0 * eps,
         })
     }
 

@@ -275,6 +275,33 @@ fn shadow_rays_of_the_truth_reach_the_light() {
     );
 }
 
+/// Where rays start at the eye, no pixel has a width yet.
+#[test]
+fn rays_alone_leave_an_eye_within_the_bounds() {
+    let mut plan = sized("mandelbox-hall", [96, 54]);
+    plan.march.coarsest = Some(1);
+    let middle = |frame: &Frame| {
+        let mut depths = frame.depth.clone();
+        depths.sort_by(f32::total_cmp);
+        quantile(&depths, 0.5)
+    };
+    plan.march.mode = Mode::Ray;
+    let said = middle(&on_cpu(&plan, Extras::default()));
+    for mode in [Mode::RayRelaxed, Mode::Safe, Mode::Proven] {
+        plan.march.mode = mode;
+        for frame in [
+            render(&plan, Extras::default()),
+            on_cpu(&plan, Extras::default()),
+        ] {
+            let seen = middle(&frame);
+            assert!(
+                (seen / said - 1.0).abs() < 1e-3,
+                "{mode:?}: {seen} and {said}"
+            );
+        }
+    }
+}
+
 #[test]
 fn every_mode_renders_on_both_executors() {
     let mut plan = sized("bench-outside", [96, 54]);

@@ -224,7 +224,8 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     let t = min(w.t + w.pace, w.end);
     let gone = t - w.t;
     let eps = distance_scene.detail * footprint(ray, t);
-    let trial = DISTANCE_TRIAL * w.radius + 2.0 * eps;
+    // A ray from an eye within the bounds has no ball and no threshold there. The field tells enough.
+    let trial = select(DISTANCE_TRIAL * w.radius, w.room, w.radius == 0.0) + 2.0 * eps;
     let clear = distance_scene.shell * eps;
     let f = field(ray.origin + t * ray.axis, clear, trial);
     // Near a fold the ball may be tiny, and rays would creep.
