@@ -309,10 +309,7 @@ fn the_check_sees_what_is_wrong_with_a_walk() {
     // An exit is not tested; the window is the one before.
     for (old, new) in [
         ("over > 0.0 && over + step * fall > 0.0", "over > 0.0"),
-        (
-            "maxima[start + u32(number)]",
-            "maxima[start + u32(number) - 1u]",
-        ),
+        ("nodes.x + 1) + at.x", "nodes.x + 1) + at.x - 1"),
     ] {
         let behind = told_by_device(0..24, &any, &|_, probe| edit(probe, old, new));
         println!("{old}: {} of 24", behind.len());
