@@ -230,16 +230,17 @@ fn the_two_executors_agree_on_every_feature_of_the_look() {
     }
 }
 
-/// Cones and relaxed rays with a shell err no more than classical sphere tracing with
-/// the same hit rule does, and the slides' rule errs more: on every bench view.
+/// Cones, and rays with a shell, err no more than rays without either do, and the slides' rule errs
+/// more: on every bench view.
 #[test]
-fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
+fn safe_is_no_worse_than_the_rival_and_the_slides_are() {
     // Room for one pixel of 14 400 that f32 decides otherwise.
     let allowed = 1e-4;
     // A share that nobody overlooks, and no rounding makes.
     let plain = 0.01;
     for name in bench_views() {
-        let mut plan = sized(name, [160, 90]);
+        let mut plan = sized(name, [240, 135]);
+        plan.march.clip = Some(true);
         let truth = truth(&plan, &Assets::default(), &mut |_| true).unwrap();
         let mut wrong = |mode| {
             plan.march.mode = mode;
@@ -250,10 +251,17 @@ fn safe_is_no_worse_than_plain_rays_and_the_slides_are() {
             (report.behind + report.holes, starts)
         };
         let (safe, safe_starts) = wrong(Mode::Safe);
-        let (ray, _) = wrong(Mode::Ray);
+        let (rival, _) = wrong(Mode::RayRelaxed);
         let (slides, slides_starts) = wrong(Mode::SlidesDeep);
-        assert!(safe <= ray + allowed, "{name}: safe {safe}, ray {ray}");
-        assert!(slides > ray + plain, "{name}: slides {slides}, ray {ray}");
+        println!("{name}: safe {safe}, rival {rival}, slides {slides}");
+        assert!(
+            safe <= rival + allowed,
+            "{name}: safe {safe}, rival {rival}"
+        );
+        assert!(
+            slides > rival + plain,
+            "{name}: slides {slides}, rival {rival}"
+        );
         // No pixel starts behind the skin of the truth; with the slides' rule, many do.
         assert_eq!(safe_starts, 0.0, "{name}");
         assert!(slides_starts > plain, "{name}: {slides_starts}");
@@ -295,7 +303,7 @@ fn rays_alone_leave_an_eye_within_the_bounds() {
         ] {
             let seen = middle(&frame);
             assert!(
-                (seen / said - 1.0).abs() < 1e-3,
+                (seen / said - 1.0).abs() < 0.01,
                 "{mode:?}: {seen} and {said}"
             );
         }
