@@ -1,6 +1,6 @@
 //! Light by paths at equal error, of `safe` and of rays alone:
 //! `cargo bench --bench equal_error`. With `-- --write` it writes its table into
-//! docs/benchmarks.md. It takes ten minutes or more on two cores.
+//! docs/benchmarks.md. It takes half an hour on two cores.
 //!
 //! The *rival* is mode `ray-relaxed` with `clip` on, as in `rival.rs`, and each of its rays of light makes
 //! its first step by itself. Errors are those of a small
@@ -30,12 +30,22 @@ mod markdown;
 mod publish;
 
 const MARKS: [&str; 2] = ["<!-- equal-error -->", "<!-- /equal-error -->"];
-const PRESETS: [&str; 5] = [
-    "mandelbox",
-    "mandelbox-canyon",
-    "mandelbox-gate",
-    "mandelbox-lattice",
-    "mandelbox-reef",
+/// Views of different kinds, and those in which cones save most of march and trace.
+const SETS: [[&str; 5]; 2] = [
+    [
+        "mandelbox",
+        "mandelbox-canyon",
+        "mandelbox-gate",
+        "mandelbox-lattice",
+        "mandelbox-reef",
+    ],
+    [
+        "mandelbox-citadel",
+        "mandelbox-grotto",
+        "mandelbox-hall",
+        "mandelbox-temple",
+        "mandelbox-towers",
+    ],
 ];
 /// The settings of `safe`, and of the rival.
 const MODES: [&[&str]; 2] = [&[], &["march.mode=ray-relaxed", "march.clip=on"]];
@@ -125,7 +135,7 @@ fn main() -> Result<()> {
         assets: Assets::default(),
     };
     let mut measured = Vec::new();
-    for name in PRESETS {
+    for name in SETS.concat() {
         let load = |settings: &[&str]| -> Result<Plan> {
             let settings: Result<Vec<_>, _> = settings.iter().map(|s| Override::read(s)).collect();
             let mut plan = preset::load(name, &settings?)?.plan;
@@ -139,7 +149,7 @@ fn main() -> Result<()> {
     }
     // The references take much longer than what is timed.
     let (mut rows, mut products) = (Vec::new(), [1.0, 1.0]);
-    for (name, plans, [safe, rival]) in measured {
+    for (nth, (name, plans, [safe, rival])) in measured.into_iter().enumerate() {
         let errors = bench.errors(&plans)?;
         let rise = errors[1] / errors[0];
         let ratios = [0, 1].map(|i| rise * rival[i] / safe[i]);
@@ -148,11 +158,15 @@ fn main() -> Result<()> {
             "{name} | {rise:.3} | {:.0} | {:.0} | {:.2} | {:.0} | {:.0} | {:.2}",
             rival[0], safe[0], ratios[0], rival[1], safe[1], ratios[1]
         ));
+        let set = SETS[0].len();
+        if (nth + 1) % set == 0 {
+            let [primary, all] = products.map(|p| p.powf(1.0 / set as f64));
+            rows.push(format!(
+                "*geometric mean of these five* | | | | {primary:.2} | | | {all:.2}"
+            ));
+            products = [1.0, 1.0];
+        }
     }
-    let [primary, all] = products.map(|p| p.powf(1.0 / PRESETS.len() as f64));
-    rows.push(format!(
-        "geometric mean | | | | {primary:.2} | | | {all:.2}"
-    ));
     let table = markdown::table(
         "640 x 360, 16 samples, 2 bounces | squared error, rival / safe | march and trace, ms: rival | safe | rival / safe at equal error | all passes, ms: rival | safe | rival / safe at equal error",
         "lr",

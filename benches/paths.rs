@@ -126,6 +126,15 @@ fn more_bounces(path: &str) -> Option<String> {
     (path == "wgsl/pass/path.wgsl").then(|| text.replace("look.bounces", "(4u * look.bounces)"))
 }
 
+/// The shaders in which samples know nothing of each other.
+fn independent(path: &str) -> Option<String> {
+    const KEY: &str = "random_hash(seed ^ (purpose * 0x9e3779b9u))";
+    let text = include_str!("../wgsl/base/random.wgsl");
+    assert!(text.contains(KEY));
+    let key = format!("random_hash({KEY} + sample)");
+    (path == "wgsl/base/random.wgsl").then(|| text.replace(KEY, &key))
+}
+
 impl Bench {
     fn render(&mut self, plan: &Plan, mode: LightMode, samples: u32) -> Result<Frame> {
         let mut plan = plan.clone();
@@ -173,27 +182,30 @@ impl Bench {
         for name in NOISE {
             eprintln!("noise, {name}");
             let plan = plan(name, &["image.reference=auto", "look.bounces=2"])?;
-            let mut render = |samples| self.render(&plan, LightMode::Path, samples);
-            let fine = render(MOST_SAMPLES)?;
-            let mut errors = Vec::new();
-            for samples in SAMPLES {
-                let frame = render(samples)?;
-                let all = frame
-                    .radiance
-                    .iter()
-                    .flatten()
-                    .zip(fine.radiance.iter().flatten());
-                let squares = all.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
-                errors.push(squares / frame.radiance.len() as f64);
+            let fine = self.render(&plan, LightMode::Path, MOST_SAMPLES)?;
+            for is_independent in [true, false] {
+                self.renderer.sources = is_independent.then(|| Arc::new(independent) as _);
+                let mut errors = Vec::new();
+                for samples in SAMPLES {
+                    let frame = self.render(&plan, LightMode::Path, samples)?;
+                    let all = frame
+                        .radiance
+                        .iter()
+                        .flatten()
+                        .zip(fine.radiance.iter().flatten());
+                    let squares = all.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+                    errors.push(squares / frame.radiance.len() as f64);
+                }
+                let span = f64::from(SAMPLES[3] / SAMPLES[0]);
+                let slope = (errors[3] / errors[0]).log(span);
+                let cells: Vec<_> = errors.iter().map(|e| format!("{e:.2e}")).collect();
+                let [light, ..] = light(&fine);
+                let kind = ["spread evenly", "independent"][usize::from(is_independent)];
+                rows.push(format!(
+                    "{name}, {kind} | {light:.3} | {} | {slope:.2}",
+                    cells.join(" | ")
+                ));
             }
-            let span = f64::from(SAMPLES[3] / SAMPLES[0]);
-            let slope = (errors[3] / errors[0]).log(span);
-            let cells: Vec<_> = errors.iter().map(|e| format!("{e:.2e}")).collect();
-            let [light, ..] = light(&fine);
-            rows.push(format!(
-                "{name} | {light:.3} | {} | {slope:.2}",
-                cells.join(" | ")
-            ));
         }
         let head = "mean squared error | mean light, red | 4 samples | 16 | 64 | 256 | slope";
         Ok(markdown::table(head, "lr", rows))
