@@ -39,7 +39,7 @@ const WHITE: [&str; 10] = [
 /// More bounces than can be set.
 const MORE_BOUNCES: u32 = 64;
 /// The scenes of the furnace, with their settings and limits of bounces.
-const FURNACE: [(&str, &[&str], &[u32]); 9] = [
+const FURNACE: [(&str, &[&str], &[u32]); 11] = [
     (
         "terrain",
         &["scene.normals=patches", "look.roughness=0.05"],
@@ -76,6 +76,16 @@ const FURNACE: [(&str, &[&str], &[u32]); 9] = [
     (
         "terrain",
         &["scene.normals=patches", "look.roughness=1", "look.metal=1"],
+        &[16],
+    ),
+    (
+        "terrain",
+        &["scene.normals=smooth", "look.roughness=0.05"],
+        &[16],
+    ),
+    (
+        "terrain",
+        &["scene.normals=smooth", "look.roughness=1"],
         &[16],
     ),
     ("mandelbox", &["look.trap=point"], &[0, 2, 8, 16]),

@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 
 use exr::block::BlockIndex;
 use exr::image::write::channels::{ChannelsWriter, WritableChannels};
-use exr::math::RoundingMode;
+use exr::math::{RoundingMode, Vec2};
 use exr::meta::MetaData;
 use exr::meta::attribute::{
     AttributeValue, ChannelDescription, ChannelList, LevelMode, SampleType, Text,
@@ -51,7 +51,9 @@ pub fn head(from: &mut (impl Read + Seek), attribute: &str) -> Result<Head, Stri
         return Err("is an EXR without an image".into());
     };
     if first.deep {
-        return Err("is an EXR of deep data, which has no single height in a place".into());
+        return Err(
+            "is an EXR of deep data, which has many numbers in a place; save it flat".into(),
+        );
     }
     let channels = first.channels.list.iter();
     Ok(Head {
@@ -167,11 +169,11 @@ fn utf8(text: &Text) -> Option<String> {
     String::from_utf8(text.as_slice().to_vec()).ok()
 }
 
-/// Reads red, green and blue of a file, row by row.
+/// Columns and rows of the first part that has red, green and blue, and these, row by row.
 ///
 /// # Errors
 /// In words: broken or cut short, or without them.
-pub fn light(from: impl BufRead + Seek) -> Result<Vec<[f32; 3]>, String> {
+pub fn light(from: impl BufRead + Seek) -> Result<([u32; 2], Vec<[f32; 3]>), String> {
     let read = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -180,16 +182,18 @@ pub fn light(from: impl BufRead + Seek) -> Result<Vec<[f32; 3]>, String> {
         .required("G")
         .required("B")
         .collect_pixels(
-            |size, _| (size.width(), vec![[f32::NAN; 3]; size.area()]),
-            |(width, values): &mut (usize, Vec<[f32; 3]>), at, (r, g, b): (f32, f32, f32)| {
-                values[at.y() * *width + at.x()] = [r, g, b];
+            |size, _| (size, vec![[f32::NAN; 3]; size.area()]),
+            |(size, values): &mut (Vec2<usize>, Vec<[f32; 3]>), at, (r, g, b)| {
+                values[at.y() * size.width() + at.x()] = [r, g, b];
             },
         )
         .first_valid_layer()
         .all_attributes()
         .pedantic();
     let image: Image<_> = read.from_buffered(from).map_err(|e| broken(&e))?;
-    Ok(image.layer_data.channel_data.pixels.1)
+    let (size, values) = image.layer_data.channel_data.pixels;
+    // The head of a file limits the sizes of its parts.
+    Ok(([size.width() as u32, size.height() as u32], values))
 }
 
 /// Reads all channels of a file that have f32, row by row.

@@ -15,8 +15,8 @@ use crate::raster::open::{Format, check_size, open};
 pub fn light(path: &Path) -> Result<([u32; 2], Vec<[f32; 3]>), String> {
     let mut opened = open(path)?;
     if opened.format == Format::Exr {
-        let head = exr::head(&mut opened.file, "")?;
-        return Ok((head.size, exr::light(opened.file)?));
+        exr::head(&mut opened.file, "")?;
+        return exr::light(opened.file);
     }
     let mut mark = [0; 2];
     let read = opened.file.read_exact(&mut mark);

@@ -142,6 +142,8 @@ fn a_killed_picture_goes_on_to_the_same_bytes() {
             0,
         ),
         ("--set look.sky_file=sky.exr", 3, 0),
+        // Its bands hold light, and its bytes are made at the end.
+        ("--set look.bloom=0.3", 9, 0),
     ] {
         let expected = whole(&folder, more);
         let mut child = begun(&folder, more, bands * BAND);

@@ -2,7 +2,10 @@
 
 use std::fs;
 
-use exr::prelude::{SpecificChannels, WritableImage};
+use exr::prelude::{
+    Encoding, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes, SpecificChannels,
+    WritableImage,
+};
 
 use crate::folder::Folder;
 use crate::images::pixels;
@@ -20,7 +23,27 @@ fn with_red(red: f32) -> Vec<u8> {
         (3, 1) => (red, 1.0, 1.0),
         _ => (1.0_f32, 1.0_f32, 1.0_f32),
     };
-    let image = exr::image::Image::from_channels((8, 4), SpecificChannels::rgb(light));
+    let image = Image::from_channels((8, 4), SpecificChannels::rgb(light));
+    let mut file = std::io::Cursor::new(Vec::new());
+    image.write().to_buffered(&mut file).expect("a file");
+    file.into_inner()
+}
+
+/// An OpenEXR whose first part has a channel of another kind and size.
+fn behind_a_mask() -> Vec<u8> {
+    let mask = SpecificChannels::build()
+        .with_channel("mask")
+        .with_pixel_fn(|_| (0.5_f32,));
+    let light = SpecificChannels::rgb(|_| (1.0_f32, 0.5_f32, 0.25_f32));
+    let layer = |name: &str| LayerAttributes::named(name);
+    let image = Image::empty(ImageAttributes::new(IntegerBounds::from_dimensions((8, 4))))
+        .with_layer(Layer::new((4, 2), layer("mask"), Encoding::default(), mask))
+        .with_layer(Layer::new(
+            (8, 4),
+            layer("light"),
+            Encoding::default(),
+            light,
+        ));
     let mut file = std::io::Cursor::new(Vec::new());
     image.write().to_buffered(&mut file).expect("a file");
     file.into_inner()
@@ -42,6 +65,7 @@ fn a_sky_that_cannot_be_read_is_named() {
     folder.write("dark.exr", with_red(-0.5));
     folder.write("endless.exr", with_red(f32::INFINITY));
     folder.write("nothing.exr", with_red(f32::NAN));
+    folder.write("bright.exr", with_red(3e38));
     folder.write(
         "large.hdr",
         "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 200000\n",
@@ -66,6 +90,7 @@ fn a_sky_that_cannot_be_read_is_named() {
         ("dark.exr", "-0.5|column 3, row 1"),
         ("endless.exr", "inf|column 3, row 1"),
         ("nothing.exr", "NaN|column 3, row 1"),
+        ("bright.exr", "3e38|column 3, row 1|from 0 to 1e8"),
         ("large.hdr", "8192"),
     ] {
         folder.fails(
@@ -75,6 +100,18 @@ fn a_sky_that_cannot_be_read_is_named() {
         );
         assert!(!folder.files().iter().any(|file| file.ends_with(".png")));
     }
+}
+
+#[test]
+fn a_sky_may_follow_other_parts() {
+    let folder = Folder::new();
+    folder.write("two.exr", behind_a_mask());
+    folder.write("one.hdr", even([8, 4]));
+    let shown = ["two.exr", "one.hdr"].map(|file| {
+        folder.done(&format!("{RENDER}={file} -o a.png"));
+        pixels(folder.bytes("a.png")).1
+    });
+    assert_eq!(shown[0], shown[1]);
 }
 
 #[test]

@@ -69,8 +69,8 @@ groups! {
     sizes_from_1_pixel_to_a_line: "1x1 to 1x4096 and 4096x1 pixels", hard::sizes, 0.002, 0.0075;
     limits_of_a_few_steps: "1 to 4 steps per level", hard::limits, 0.001, 0.0014, one_step_hits_nothing;
     a_lipschitz_constant_twice_its_size: "lipschitz twice as large as it should be", || hard::sloped(2.0), 0.001, 0.0105;
-    // Not a claim that the picture is good: it bounds how bad a wrong constant makes it, by an
-    // eighth more than was measured, as twice that would be everything.
+    // Not a claim that the picture is good: it bounds how bad a wrong constant makes it, by at
+    // most an eighth more than was measured, as twice that would be everything.
     a_lipschitz_constant_half_its_size: "lipschitz half as large as it should be", || hard::sloped(0.5), 0.001, 0.7, harm_is_seen;
 }
 
