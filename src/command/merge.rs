@@ -336,7 +336,7 @@ fn light_of(row: &[Part], plan: &Plan) -> Result<Frame> {
     for part in row {
         interrupt::check()?;
         let read = stream(&part.path).and_then(light);
-        let values = read.map_err(|why| part.fault(&why))?;
+        let (_, values) = read.map_err(|why| part.fault(&why))?;
         part.place(&values, &mut radiance, width, part.head.origin[1]);
         if !alpha.is_empty() {
             let read = stream(&part.path).and_then(|from| channel(from, "A"));
