@@ -114,6 +114,8 @@ fn paths_that_end_by_chance_lose_no_light() {
         bounces: 8,
         fill: 1.0,
         key: 0.0,
+        // On bright surfaces, late bounces have 2 % of the light.
+        palette: vec![DVec3::splat(0.95); 2],
         ..Look::default()
     };
     let mut renderer = adapter::open();
@@ -124,7 +126,7 @@ fn paths_that_end_by_chance_lose_no_light() {
     });
     println!("{by_chance:.5} {all:.5}");
     assert_ne!(by_chance, all);
-    assert!((by_chance / all - 1.0).abs() < 0.01, "{by_chance} {all}");
+    assert!((by_chance / all - 1.0).abs() < 0.005, "{by_chance} {all}");
 }
 
 /// On a body without hollows, a dull surface under a small sun is as bright as the formula says.
