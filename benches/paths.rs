@@ -136,13 +136,25 @@ fn more_bounces(path: &str) -> Option<String> {
     (path == "wgsl/pass/path.wgsl").then(|| text.replace("look.bounces", "(4u * look.bounces)"))
 }
 
-/// The shaders in which samples know nothing of each other.
+/// The shaders in which all rays go through the centres of pixels, and samples differ by their light alone.
+fn centred(path: &str) -> Option<String> {
+    const RAY: &str = "view_through(vec2<f32>(pixel), place)";
+    let text = include_str!("../wgsl/base/view.wgsl");
+    assert!(text.contains(RAY));
+    let centre = RAY.replace("place", "vec2<f32>(0.5)");
+    (path == "wgsl/base/view.wgsl").then(|| text.replace(RAY, &centre))
+}
+
+/// The same, and samples know nothing of each other.
 fn independent(path: &str) -> Option<String> {
     const KEY: &str = "random_hash(seed ^ (purpose * 0x9e3779b9u))";
     let text = include_str!("../wgsl/base/random.wgsl");
     assert!(text.contains(KEY));
     let key = format!("random_hash({KEY} + sample)");
-    (path == "wgsl/base/random.wgsl").then(|| text.replace(KEY, &key))
+    match path {
+        "wgsl/base/random.wgsl" => Some(text.replace(KEY, &key)),
+        _ => centred(path),
+    }
 }
 
 impl Bench {
@@ -192,8 +204,9 @@ impl Bench {
         for name in NOISE {
             eprintln!("noise, {name}");
             let plan = plan(name, &["image.reference=auto", "look.bounces=2"])?;
-            let fine = self.render(&plan, LightMode::Path, MOST_SAMPLES)?;
             for is_independent in [true, false] {
+                self.renderer.sources = is_independent.then(|| Arc::new(centred) as _);
+                let fine = self.render(&plan, LightMode::Path, MOST_SAMPLES)?;
                 self.renderer.sources = is_independent.then(|| Arc::new(independent) as _);
                 let mut errors = Vec::new();
                 for samples in SAMPLES {
@@ -210,7 +223,7 @@ impl Bench {
                 let slope = (errors[3] / errors[0]).log(span);
                 let cells: Vec<_> = errors.iter().map(|e| format!("{e:.2e}")).collect();
                 let [light, ..] = light(&fine);
-                let kind = ["spread evenly", "independent"][usize::from(is_independent)];
+                let kind = ["as they are", "independent"][usize::from(is_independent)];
                 rows.push(format!(
                     "{name}, {kind} | {light:.3} | {} | {slope:.2}",
                     cells.join(" | ")
