@@ -33,8 +33,7 @@ mod publish;
 
 const MARKS: [&str; 2] = ["<!-- shadows -->", "<!-- /shadows -->"];
 /// Views with cones, most of them with much shadow.
-const PRESETS: [&str; 7] = [
-    "mandelbox-canyon",
+const PRESETS: [&str; 6] = [
     "mandelbox-gate",
     "mandelbox-hall",
     "mandelbox-plain",

@@ -23,8 +23,8 @@ const SKY_UNIFORM: f64 = 0.05;
 const SKY_POINTS: u32 = 3;
 /// Darker light is none.
 const SKY_DARK: f32 = 1e-18;
-/// The brightest light of a texel. Times the factors of a preset, and squared in the sums of 65 536 samples,
-/// it stays far within an f32.
+/// The brightest light of a texel. Times 1e8, the largest factors of a preset, and squared in the sums of 65 536
+/// samples, it stays within an f32.
 const SKY_MOST: f32 = 1e8;
 /// The smallest exponent of a texel, as a number that is stored without a sign.
 const SKY_EXPONENT: i32 = 64;
@@ -110,7 +110,7 @@ impl Sky {
     /// The sky of linear light, row by row from the zenith down.
     ///
     /// # Errors
-    /// In words: it is not twice as wide as high, or a number is no light.
+    /// In words: it is not twice as wide as high, or a number is no light from 0 to 1e8.
     pub fn new(size: [u32; 2], light: &[[f32; 3]]) -> Result<Self, String> {
         let [w, h] = size;
         if w != 2 * h {
@@ -122,7 +122,7 @@ impl Sky {
         if let Some(at) = light.iter().position(bad) {
             let (x, y) = (at % w as usize, at / w as usize);
             return Err(format!(
-                "has {:?} in column {x}, row {y}, and light is from 0 to {SKY_MOST:e}; save it with other numbers there",
+                "has {:?} in column {x}, row {y}, and light is from 0 to {SKY_MOST:e}; save it with other numbers there, or darker with a larger look.sky_strength",
                 light[at]
             ));
         }

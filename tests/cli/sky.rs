@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use exr::math::Vec2;
 use exr::prelude::{
     Encoding, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes, SpecificChannels,
     WritableImage,
@@ -19,7 +20,7 @@ pub fn even([w, h]: [u32; 2]) -> Vec<u8> {
 
 /// An OpenEXR with one odd number.
 fn with_red(red: f32) -> Vec<u8> {
-    let light = |at: exr::math::Vec2<usize>| match (at.x(), at.y()) {
+    let light = |at: Vec2<usize>| match (at.x(), at.y()) {
         (3, 1) => (red, 1.0, 1.0),
         _ => (1.0_f32, 1.0_f32, 1.0_f32),
     };
@@ -29,12 +30,17 @@ fn with_red(red: f32) -> Vec<u8> {
     file.into_inner()
 }
 
+/// Light that differs along both axes.
+fn uneven(at: Vec2<usize>) -> (f32, f32, f32) {
+    (1.0, at.x() as f32 / 8.0, at.y() as f32 / 4.0)
+}
+
 /// An OpenEXR whose first part has a channel of another kind and size.
 fn behind_a_mask() -> Vec<u8> {
     let mask = SpecificChannels::build()
         .with_channel("mask")
         .with_pixel_fn(|_| (0.5_f32,));
-    let light = SpecificChannels::rgb(|_| (1.0_f32, 0.5_f32, 0.25_f32));
+    let light = SpecificChannels::rgb(uneven);
     let layer = |name: &str| LayerAttributes::named(name);
     let image = Image::empty(ImageAttributes::new(IntegerBounds::from_dimensions((8, 4))))
         .with_layer(Layer::new((4, 2), layer("mask"), Encoding::default(), mask))
@@ -106,8 +112,11 @@ fn a_sky_that_cannot_be_read_is_named() {
 fn a_sky_may_follow_other_parts() {
     let folder = Folder::new();
     folder.write("two.exr", behind_a_mask());
-    folder.write("one.hdr", even([8, 4]));
-    let shown = ["two.exr", "one.hdr"].map(|file| {
+    let mut file = std::io::Cursor::new(Vec::new());
+    let one = Image::from_channels((8, 4), SpecificChannels::rgb(uneven));
+    one.write().to_buffered(&mut file).expect("a file");
+    folder.write("one.exr", file.into_inner());
+    let shown = ["two.exr", "one.exr"].map(|file| {
         folder.done(&format!("{RENDER}={file} -o a.png"));
         pixels(folder.bytes("a.png")).1
     });

@@ -114,7 +114,7 @@ fn paths_that_end_by_chance_lose_no_light() {
         bounces: 8,
         fill: 1.0,
         key: 0.0,
-        // On bright surfaces, late bounces have 2 % of the light.
+        // On surfaces as bright as this, 2 % of the light is lost if those that go on do not stand for the others.
         palette: vec![DVec3::splat(0.95); 2],
         ..Look::default()
     };
