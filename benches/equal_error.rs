@@ -30,7 +30,7 @@ mod markdown;
 mod publish;
 
 const MARKS: [&str; 2] = ["<!-- equal-error -->", "<!-- /equal-error -->"];
-/// Views of different kinds, and those in which cones save most of march and trace.
+/// Views of different kinds, and some in which cones save much of march and trace.
 const SETS: [[&str; 5]; 2] = [
     [
         "mandelbox",
