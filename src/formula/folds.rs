@@ -42,12 +42,12 @@ pub struct FoldsUniform {
     pub classic_offset: f32,
     /// |s|^(1 - iterations), of the classic estimate.
     pub classic_skin: f32,
-    /// 1 if the Jacobian is followed.
-    pub followed: u32,
     /// Unused.
     pub pad0: u32,
     /// Unused.
     pub pad1: u32,
+    /// Unused.
+    pub pad2: u32,
 }
 
 /// The numbers of a Mandelbox, resolved.
@@ -165,7 +165,6 @@ impl Folds {
             k_at_zero: self.k_at_zero as f32,
             classic_offset: (self.scale - 1.0).abs() as f32,
             classic_skin: self.classic_skin(iterations) as f32,
-            followed: u32::from(self.scale > 0.0),
             ..FoldsUniform::zeroed()
         }
     }

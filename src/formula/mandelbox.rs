@@ -124,9 +124,13 @@ impl DistanceEstimate for Mandelbox {
     }
 
     fn modules(&self) -> Vec<Module> {
-        let julia = f64::from(u8::from(self.julia));
+        let switch = |on: bool| f64::from(u8::from(on));
         let mut all = vec![
-            wgsl!("formula/folds.wgsl", "FOLDS_JULIA" = julia),
+            wgsl!(
+                "formula/folds.wgsl",
+                "FOLDS_JULIA" = switch(self.julia),
+                "FOLDS_FOLLOWED" = switch(self.scale > 0.0)
+            ),
             Rotation::module(self.rotated().as_ref()),
         ];
         all.extend(match (self.estimate, self.julia) {
@@ -136,7 +140,7 @@ impl DistanceEstimate for Mandelbox {
             ],
             (Estimate::Tight, true) => vec![wgsl!("formula/julia.wgsl")],
             (other, _) => {
-                let classic = f64::from(u8::from(other == Estimate::Classic));
+                let classic = switch(other == Estimate::Classic);
                 vec![
                     wgsl!("formula/scalar.wgsl", "SCALAR_CLASSIC" = classic),
                     wgsl!("formula/plain.wgsl"),

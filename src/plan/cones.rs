@@ -46,8 +46,8 @@ impl Rule {
 /// Over a formula. Price and shares are fitted to the times of all built-in presets, with one sample and
 /// with 16 (`bench formula_cones`).
 const DISTANCE: Rule = Rule {
-    price: 2.3,
-    shares: [0.74, 0.85],
+    price: 1.8,
+    shares: [0.72, 0.85],
 };
 /// In mode `proven`, where rays go by balls as cones do (`bench formula_cones -- march.mode=proven`).
 const PROVEN: Rule = Rule {

@@ -62,12 +62,12 @@ pub struct DistanceUniform {
     pub iterations: u32,
     /// 1 to start rays where they enter the bounds.
     pub clip: u32,
+    /// The first ball that cones from the eye try.
+    pub first_trial: f32,
     /// Unused.
     pub pad0: u32,
     /// Unused.
     pub pad1: u32,
-    /// Unused.
-    pub pad2: u32,
 }
 
 /// A formula seen from an eye, with all settings resolved to numbers.
@@ -83,6 +83,8 @@ pub struct Distance {
     /// How steps are taken.
     pub stepping: Stepping,
     pub(super) bounds: Bounds,
+    /// The first ball that cones from the eye try: the estimate there.
+    pub(super) first_trial: f64,
     lipschitz: f64,
     far: f64,
 }
@@ -91,14 +93,16 @@ impl Distance {
     /// A formula seen from an eye.
     pub fn new(formula: Formula, iterations: u32, eye: DVec3, stepping: Stepping) -> Self {
         let bounds = formula.bounds();
+        let evaluator = formula.evaluator();
         Self {
             iterations,
             eye,
             stepping,
             bounds,
+            first_trial: evaluator.value(eye, iterations).0.max(0.0),
             lipschitz: formula.lipschitz(),
             far: bounds.farthest(eye),
-            evaluator: formula.evaluator(),
+            evaluator,
             formula,
         }
     }
@@ -257,6 +261,7 @@ impl Twin for Distance {
             stride: self.stepping.stride as f32,
             iterations: self.iterations,
             clip: u32::from(self.stepping.clip),
+            first_trial: self.first_trial as f32,
             ..Zeroable::zeroed()
         };
         let mut all = vec![("distance_parameters", bytes_of(&scene).to_vec())];

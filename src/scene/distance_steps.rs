@@ -88,8 +88,7 @@ impl Distance {
             } else if t > 0.0 {
                 4.0 * wide
             } else {
-                let (value, _) = self.evaluator.value(self.eye + q, self.iterations);
-                value.max(0.0)
+                self.first_trial
             };
             trial + 2.0 * eps + cone.r0
         });

@@ -168,15 +168,17 @@ fn what_a_slider_moves_compiles_nothing_new() {
         "look.occlusion=0.3",
         "look.palette=[[1, 1, 1], [1, 1, 1], [1, 1, 1]]",
         "image.size=[33, 17]",
-        "scene.scale=-1.7",
+        "scene.scale=2.7",
         "scene.min_radius=0.3",
         "scene.julia_constant=[1, 0, 0]",
     ];
     let mut moved = preset("mandelbox", &sliders);
     assert_eq!(programs(&still), programs(&moved));
-    // But a feature does.
+    // But a feature does, and a scale of the other sign: the Jacobian is not followed there.
     moved.look.shadow = !moved.look.shadow;
     assert_ne!(programs(&still), programs(&moved));
+    let negative = preset("mandelbox", &["scene.scale=-1.7"]);
+    assert_ne!(programs(&still), programs(&negative));
 }
 
 #[test]
@@ -205,7 +207,7 @@ fn the_mandelbox_is_explained() {
         wgsl/base/real.wgsl
         wgsl/base/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
         wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
-        wgsl/formula/folds.wgsl  FOLDS_JULIA=0
+        wgsl/formula/folds.wgsl  FOLDS_JULIA=0  FOLDS_FOLLOWED=1
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
         wgsl/formula/four_folds.wgsl
@@ -222,7 +224,7 @@ fn the_mandelbox_is_explained() {
         wgsl/base/real.wgsl
         wgsl/base/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
         wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
-        wgsl/formula/folds.wgsl  FOLDS_JULIA=0
+        wgsl/formula/folds.wgsl  FOLDS_JULIA=0  FOLDS_FOLLOWED=1
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
         wgsl/formula/four_folds.wgsl
@@ -239,7 +241,7 @@ fn the_mandelbox_is_explained() {
         wgsl/base/real.wgsl
         wgsl/base/cone.wgsl  CONE_TRUST=0.9999990463256836  CONE_ROUND_DOWN=0.9999997615814209
         wgsl/scene/distance.wgsl  DISTANCE_ENOUGH=0.8  DISTANCE_TRIAL=1.5  DISTANCE_LEAST=0.1  DISTANCE_PROVEN=0  DISTANCE_SMOOTHING=0.3  DISTANCE_MOST_RELAXED=3  DISTANCE_WITHIN=0.99  HIT_CARRIES_MARK=0
-        wgsl/formula/folds.wgsl  FOLDS_JULIA=0
+        wgsl/formula/folds.wgsl  FOLDS_JULIA=0  FOLDS_FOLLOWED=1
         wgsl/formula/orbit.wgsl  ORBIT_ROTATED_SLOPE=1.25
         wgsl/formula/jacobian_diagonal.wgsl
         wgsl/formula/four_folds.wgsl

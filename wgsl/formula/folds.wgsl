@@ -27,13 +27,14 @@ struct FoldsUniform {
     /// |s - 1| and |s|^(1 - iterations), of the classic estimate.
     classic_offset: f32,
     classic_skin: f32,
-    /// 1 if the Jacobian is followed.
-    followed: u32,
     pad0: u32,
     pad1: u32,
+    pad2: u32,
 }
 
 override FOLDS_JULIA: bool;
+/// Whether the Jacobian is followed. At negative scales it has next to no slack.
+override FOLDS_FOLLOWED: bool;
 
 @group(0) @binding(1) var<storage, read> folds_parameters: FoldsUniform;
 var<private> folds: FoldsUniform;

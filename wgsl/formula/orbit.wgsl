@@ -3,7 +3,9 @@
 
 override ORBIT_ROTATED_SLOPE: f32;
 
-/// Iterations in which the Jacobian is followed.
+/// Iterations in which the Jacobian is followed. They have loops of their own with a fixed number of
+/// rounds, which drivers unroll. In one loop with the others, a device that runs both sides of every
+/// branch would compute a Jacobian in every iteration.
 const ORBIT_PREFIX = 3u;
 
 /// Factors and radii stay below this, as products of two could overflow. The estimate is zero in
@@ -66,11 +68,11 @@ fn orbit_inverts(f: Fold) -> bool {
     return f.square > real(folds.min2) && f.square < real(folds.fixed2);
 }
 
-/// The estimates at the end of an orbit. At negative scales the Jacobian has next to no slack.
+/// The estimates at the end of an orbit.
 fn orbit_estimates(past: real, grown: Growth) -> Estimates {
     let tail = grown.sum + real(folds.tail);
     let scalar = past / (grown.product * grown.scalar + tail);
-    if folds.followed == 0u {
+    if !FOLDS_FOLLOWED {
         return Estimates(scalar, scalar);
     }
     return Estimates(past / (grown.product * grown.norm + tail), scalar);
@@ -96,17 +98,20 @@ fn estimate_step(p: real3, most: u32, clear: real) -> real2 {
     // The growth factor with the norm after the first iteration, and the radius in which that is linear.
     var middle = real(1.0);
     var free = grown.free;
-    // Where the Jacobian is not used, it is not followed.
-    while n < min(most, ORBIT_PREFIX * folds.followed) && !fold_ended(z, exit) {
-        let f = fold(z);
-        if orbit_inverts(f) {
-            break;
+    var follows = true;
+    for (var i = 0u; FOLDS_FOLLOWED && i < ORBIT_PREFIX; i++) {
+        follows = follows && n < most && !fold_ended(z, exit);
+        if follows {
+            let f = fold(z);
+            follows = !orbit_inverts(f);
+            if follows {
+                growth_follows(&grown, z, f);
+                middle = select(abs(f.factor) * middle + real(1.0), grown.norm, i == 0u);
+                free = select(free, grown.free, i == 0u);
+                z = fold_next(f, p);
+                n += 1u;
+            }
         }
-        growth_follows(&grown, z, f);
-        middle = select(abs(f.factor) * middle + real(1.0), grown.norm, n == 0u);
-        free = select(free, grown.free, n == 0u);
-        z = fold_next(f, p);
-        n += 1u;
     }
     while n < most && !fold_ended(z, exit) {
         let f = fold(z);
@@ -122,7 +127,7 @@ fn estimate_step(p: real3, most: u32, clear: real) -> real2 {
     let long = (all.sharp - clear) / lipschitz;
     let short = (all.scalar - clear) / lipschitz;
     var step = max(short, min(long, grown.free));
-    if folds.followed != 0u {
+    if FOLDS_FOLLOWED {
         let between = past / (grown.product * middle + grown.sum + real(folds.tail));
         step = max(step, min((between - clear) / lipschitz, free));
     }
@@ -133,6 +138,24 @@ fn estimate(p: real3, most: u32) -> real {
     return estimate_step(p, most, real(0.0)).x;
 }
 
+/// A trial ball along an orbit.
+struct Trial {
+    /// The radius that it has spread to.
+    radius: real,
+    /// By so much the place where orbits escape differs within it.
+    shift: real,
+    /// The largest part of it that has escaped.
+    share: real,
+}
+
+/// A radius that was cut off proves nothing.
+fn trial_escapes(trial: ptr<function, Trial>, z: real3, p: real3) {
+    if (*trial).radius < real(ORBIT_MOST) {
+        let share = fold_top(z, p) / ((*trial).radius + (*trial).shift);
+        (*trial).share = max((*trial).share, share);
+    }
+}
+
 /// The estimate, and the radius of an empty ball, at most `trial`: the largest part of a trial
 /// ball for which some iteration shows that all of it escapes.
 fn estimate_ball(p: real3, most: u32, trial: real) -> real2 {
@@ -140,36 +163,41 @@ fn estimate_ball(p: real3, most: u32, trial: real) -> real2 {
     var z = p;
     var n = 0u;
     var grown = growth_start();
-    var follows = true;
-    var radius = trial;
-    // By so much the place where orbits escape differs within the trial ball.
     let shift = select(abs(real(folds.kappa)), real(folds.tail), ROTATES) * trial;
-    var share = fold_top(z, p) / (radius + shift);
+    var ball = Trial(trial, shift, fold_top(z, p) / (trial + shift));
+    var follows = true;
+    for (var i = 0u; i < ORBIT_PREFIX; i++) {
+        if n < most && !fold_ended(z, exit) {
+            let f = fold(z);
+            follows = follows && !orbit_inverts(f);
+            if follows {
+                growth_follows(&grown, z, f);
+            } else {
+                growth_goes_on(&grown, fold_growth(f));
+            }
+            // As long as the trial ball meets no fold, its image is an ellipsoid.
+            if follows && grown.free >= trial {
+                ball.radius = grown.norm * trial * real(ORBIT_ROUND_UP);
+            } else {
+                ball.radius = orbit_spread(f, ball.radius, trial);
+            }
+            z = fold_next(f, p);
+            n += 1u;
+            trial_escapes(&ball, z, p);
+        }
+    }
     while n < most && !fold_ended(z, exit) {
         let f = fold(z);
-        follows = follows && n < ORBIT_PREFIX && !orbit_inverts(f);
-        if follows {
-            growth_follows(&grown, z, f);
-        } else {
-            growth_goes_on(&grown, fold_growth(f));
-        }
-        // As long as the trial ball meets no fold, its image is an ellipsoid.
-        if follows && grown.free >= trial {
-            radius = grown.norm * trial * real(ORBIT_ROUND_UP);
-        } else {
-            radius = orbit_spread(f, radius, trial);
-        }
+        growth_goes_on(&grown, fold_growth(f));
+        ball.radius = orbit_spread(f, ball.radius, trial);
         z = fold_next(f, p);
         n += 1u;
-        // A radius that was cut off proves nothing.
-        if radius < real(ORBIT_MOST) {
-            share = max(share, fold_top(z, p) / (radius + shift));
-        }
+        trial_escapes(&ball, z, p);
     }
     count_evaluation();
     count_iterations(n);
     let all = orbit_estimates(fold_top(z, p), grown);
-    return real2(all.sharp, trial * min(share, real(1.0)));
+    return real2(all.sharp, trial * min(ball.share, real(1.0)));
 }
 
 /// The estimate, and the radius of a ball for cones, at most `trial`. With a rotation the proven

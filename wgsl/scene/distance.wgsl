@@ -23,9 +23,10 @@ struct DistanceUniform {
     iterations: u32,
     /// 1 to start rays where they enter the bounds, 0 at their front.
     clip: u32,
+    /// The first ball that cones from the eye try.
+    first_trial: f32,
     pad0: u32,
     pad1: u32,
-    pad2: u32,
 }
 
 /// The state of a ray between two steps: the last accepted point, the radius of the empty ball
@@ -173,11 +174,8 @@ fn advance(cone: Beam, at: Advance) -> Advance {
     if d <= 2.0 * wide {
         let p = scene_point(q);
         let most = distance_scene.iterations;
-        var trial = select(4.0 * wide, DISTANCE_TRIAL * at.radius, at.radius > 0.0);
-        if t == 0.0 {
-            trial = max(f32(estimate(p, most)), 0.0);
-        }
-        trial += 2.0 * eps + cone.r0;
+        var trial = select(4.0 * wide, distance_scene.first_trial, t == 0.0);
+        trial = select(trial, DISTANCE_TRIAL * at.radius, at.radius > 0.0) + 2.0 * eps + cone.r0;
         var ball = 0.0;
         if DISTANCE_PROVEN {
             ball = f32(estimate_ball(p, most, real(trial)).y);
