@@ -103,8 +103,8 @@ fn given(text: &str) -> String {
 
 /// Whether a word needs no quotes: a field with its numbers, or a path.
 fn bare(text: &str) -> bool {
-    let first = |c: char| c.is_alphabetic() || matches!(c, '.' | '/');
-    let rest = |c: char| c.is_alphanumeric() || "_.:,=/+-".contains(c);
+    let first = |c: char| c.is_alphanumeric() || matches!(c, '.' | '/');
+    let rest = |c: char| c.is_alphanumeric() || "_.:,=/+-#".contains(c);
     text.starts_with(first) && text.chars().all(rest)
 }
 

@@ -169,6 +169,30 @@ fn utf8(text: &Text) -> Option<String> {
     String::from_utf8(text.as_slice().to_vec()).ok()
 }
 
+/// Checks that the first part with red, green and blue holds the whole picture, and puts the reader back
+/// to its start.
+///
+/// # Errors
+/// In words: broken, without them, or with a part of the picture alone.
+pub fn whole(from: &mut (impl Read + Seek)) -> Result<(), String> {
+    let meta = MetaData::read_from_buffered(&mut *from, false).map_err(|e| broken(&e))?;
+    from.rewind().map_err(|e| format!("cannot be read: {e}"))?;
+    let has = |header: &Header, name: &str| header.channels.list.iter().any(|c| c.name == *name);
+    let mut headers = meta.headers.iter();
+    let Some(header) = headers.find(|h| ["R", "G", "B"].iter().all(|name| has(h, name))) else {
+        return Err("is an EXR without channels R, G and B; save it with these".into());
+    };
+    let whole = header.shared_attributes.display_window;
+    if (header.own_attributes.layer_position, header.layer_size) != (whole.position, whole.size) {
+        let [own, all] = [header.layer_size, whole.size].map(|s| (s.width(), s.height()));
+        return Err(format!(
+            "is an EXR with {} x {} pixels of a picture of {} x {}; save the whole picture",
+            own.0, own.1, all.0, all.1
+        ));
+    }
+    Ok(())
+}
+
 /// Columns and rows of the first part that has red, green and blue, and these, row by row.
 ///
 /// # Errors

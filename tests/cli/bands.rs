@@ -5,7 +5,7 @@ use std::process::{Child, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::folder::{Folder, holds, output, said};
+use crate::folder::{Folder, holds, said};
 use crate::sky::even;
 
 /// A picture of ten bands, 64 rows each but the last.
@@ -17,20 +17,30 @@ const PART: &str = "a.png.part";
 
 /// The picture made at once.
 fn whole(folder: &Folder, more: &str) -> Vec<u8> {
-    folder.done(&format!("{PICTURE} -o whole.png {more}"));
-    let bytes = folder.bytes("whole.png");
-    fs::remove_file(folder.0.join("whole.png")).expect("written above");
+    made_at_once(folder, &format!("{PICTURE} {more}"), "png")
+}
+
+fn made_at_once(folder: &Folder, line: &str, format: &str) -> Vec<u8> {
+    let name = format!("whole.{format}");
+    folder.done(&format!("{line} -o {name}"));
+    let bytes = folder.bytes(&name);
+    fs::remove_file(folder.0.join(name)).expect("written above");
     bytes
 }
 
 /// Starts the picture, and waits until some bands are kept.
 fn begun(folder: &Folder, more: &str, bytes: u64) -> Child {
-    let mut command = folder.command(&format!("{PICTURE} -o a.png --resume {more}"));
+    begun_as(folder, &format!("{PICTURE} {more}"), "a.png", bytes)
+}
+
+fn begun_as(folder: &Folder, line: &str, name: &str, bytes: u64) -> Child {
+    let mut command = folder.command(&format!("{line} -o {name} --resume"));
     command.env("RAYON_NUM_THREADS", "1");
     let command = command.stdout(Stdio::null()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("the program starts");
     let start = Instant::now();
-    let length = || fs::metadata(folder.0.join(PART)).map_or(0, |m| m.len());
+    let part = folder.0.join(format!("{name}.part"));
+    let length = || fs::metadata(&part).map_or(0, |m| m.len());
     while length() < bytes {
         let end = child.try_wait().expect("a state");
         assert!(end.is_none(), "ended too soon, {end:?}");
@@ -42,6 +52,8 @@ fn begun(folder: &Folder, more: &str, bytes: u64) -> Child {
 
 /// Bytes of a band in the file: its rows, its tally and its hash.
 const BAND: u64 = 64 * 90 * 3 + 36 + 32;
+/// Those of an EXR, whose pixels have 14 numbers.
+const EXR_BAND: u64 = 64 * 90 * 14 * 4 + 36 + 32;
 
 #[test]
 fn bands_give_the_bytes_of_the_picture_made_at_once() {
@@ -130,36 +142,40 @@ fn a_killed_picture_goes_on_to_the_same_bytes() {
     folder.done(&format!(
         "render valley-mist --size 32x16 --samples 1 {view} -o sky.exr"
     ));
+    // Bands of light, from which the bytes are made at the end.
+    let light = BAND + 64 * 90 * 9;
+    let until = "--samples 16 --until 0.05 --set camera.fov=120 --set look.occlusion=0";
     // Some moments: after one band, within one, and shortly before the end; each kill is real. Also
-    // where tiles have their own numbers of samples, and under a sky from a file.
-    for (more, bands, wait, band) in [
-        ("", 1, 0, BAND),
-        ("", 4, 30, BAND),
-        ("", 8, 0, BAND),
-        (
-            "--samples 16 --until 0.05 --set camera.fov=120 --set look.occlusion=0",
-            2,
-            0,
-            BAND,
-        ),
-        ("--set look.sky_file=sky.exr", 3, 0, BAND),
-        // Its bands hold light, and its bytes are made at the end.
-        ("--set look.bloom=0.3", 8, 0, BAND + 64 * 90 * 9),
+    // where tiles have their own numbers of samples, under a sky from a file, and on a device.
+    for (device, format, more, bands, wait, band) in [
+        ("cpu", "png", "", 1, 0, BAND),
+        ("cpu", "png", "", 4, 30, BAND),
+        ("cpu", "png", "", 8, 0, BAND),
+        ("cpu", "png", until, 2, 0, BAND),
+        ("cpu", "png", "--set look.sky_file=sky.exr", 3, 0, BAND),
+        ("cpu", "png", "--set look.bloom=0.3", 8, 0, light),
+        ("cpu", "exr", "", 5, 10, EXR_BAND),
+        ("cpu", "exr", "--set look.bloom=0.3", 8, 0, EXR_BAND),
+        ("auto", "png", "--samples 256", 3, 0, BAND),
+        ("auto", "exr", "--samples 256", 5, 0, EXR_BAND),
     ] {
-        let expected = whole(&folder, more);
-        let mut child = begun(&folder, more, bands * band);
+        let line = PICTURE.replace("--device cpu", &format!("--device {device} {more}"));
+        let name = format!("a.{format}");
+        let expected = made_at_once(&folder, &line, format);
+        let mut child = begun_as(&folder, &line, &name, bands * band);
         sleep(Duration::from_millis(wait));
         child.kill().expect("it runs");
         child.wait().expect("an end");
-        assert!(!folder.files().contains(&"a.png".into()));
-        let kept = fs::metadata(folder.0.join(PART)).expect("kept").len();
-        let again = said(&folder.done(&format!("{PICTURE} -o a.png --resume {more}")));
+        assert!(!folder.files().contains(&name));
+        let part = folder.0.join(format!("{name}.part"));
+        let kept = fs::metadata(part).expect("kept").len();
+        let again = said(&folder.done(&format!("{line} -o {name} --resume")));
         assert!(
-            folder.bytes("a.png") == expected,
-            "{more} after {bands} bands: {again}"
+            folder.bytes(&name) == expected,
+            "{line} as {name} after {bands} bands: {again}"
         );
         assert!(kept >= bands * band, "{kept}");
-        fs::remove_file(folder.0.join("a.png")).expect("made");
+        fs::remove_file(folder.0.join(name)).expect("made");
         // The killed process leaves its temporary file.
         for name in folder.files().iter().filter(|name| *name != "sky.exr") {
             assert!(name.ends_with(".tmp"), "{name}");
@@ -338,26 +354,24 @@ fn bands_under_another_sky_of_the_same_name_are_refused() {
 #[cfg(unix)]
 #[test]
 fn a_full_disk_loses_nothing() {
-    let folder = Folder::new();
-    let expected = whole(&folder, "");
-    // So many blocks of 512 bytes may a file have: nine bands and a little more.
-    let limit = (9 * BAND + BAND / 8) / 512;
-    let shell = format!(
-        "trap '' XFSZ; ulimit -f {limit}; exec {} {PICTURE} -o a.png --resume",
-        env!("CARGO_BIN_EXE_conemarch")
-    );
-    let mut command = std::process::Command::new("sh");
-    let ended = output(command.args(["-c", &shell]).current_dir(&folder.0));
-    let told = said(&ended);
-    assert_eq!(ended.status.code(), Some(1), "{told}");
-    let error = told.lines().last().unwrap_or_default();
-    let keeps = "error: `a.png.part` keeps 9 of 10 bands";
-    holds(
-        error,
-        &[keeps, "--resume", "cannot be written", "free some space"],
-    );
-    assert_eq!(folder.files(), [PART], "{told}");
-    folder.done(&format!("{PICTURE} -o a.png --resume"));
-    assert!(folder.bytes("a.png") == expected);
-    assert_eq!(folder.files(), ["a.png"]);
+    for (format, band) in [("png", BAND), ("exr", EXR_BAND)] {
+        let folder = Folder::new();
+        let name = format!("a.{format}");
+        let expected = made_at_once(&folder, PICTURE, format);
+        // Nine bands and a little more.
+        let limit = 9 * band + band / 8;
+        let ended = folder.limited(&format!("{PICTURE} -o {name} --resume"), limit);
+        let told = said(&ended);
+        assert_eq!(ended.status.code(), Some(1), "{told}");
+        let error = told.lines().last().unwrap_or_default();
+        let keeps = format!("error: `{name}.part` keeps 9 of 10 bands");
+        holds(
+            error,
+            &[&keeps, "--resume", "cannot be written", "free some space"],
+        );
+        assert_eq!(folder.files(), [format!("{name}.part")], "{told}");
+        folder.done(&format!("{PICTURE} -o {name} --resume"));
+        assert!(folder.bytes(&name) == expected);
+        assert_eq!(folder.files(), [name]);
+    }
 }

@@ -52,6 +52,29 @@ fn joined_parts_have_the_bytes_of_the_whole_picture() {
     assert!(piped.stdout == folder.bytes("whole.png"));
 }
 
+/// The disk is full while a part, or the joined picture, is written: no half of it is left.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_no_half_of_a_part_or_a_joined_picture() {
+    let folder = Folder::new();
+    let line = format!("render {PICTURE} --tile 0,0/1x1 -o p00.exr");
+    let told = said(&folder.limited(&line, 64 * 1024));
+    holds(
+        &told,
+        &["error: p00.exr: cannot be written", "free some space"],
+    );
+    assert!(folder.files().is_empty(), "{:?}", folder.files());
+    let names = parts(&folder, PICTURE, [2, 1]);
+    for file in ["png", "exr", "jpg", "webp"] {
+        let line = format!("merge {} -o a.{file}", names.join(" "));
+        let told = said(&folder.limited(&line, 4 * 1024));
+        let error = format!("error: a.{file}: cannot be written");
+        holds(&told, &[&error, "free some space"]);
+        assert_eq!(folder.files(), names);
+    }
+    folder.done(&format!("merge {} -o a.png", names.join(" ")));
+}
+
 /// Different devices may share a picture.
 #[test]
 fn the_devices_of_all_parts_are_told() {

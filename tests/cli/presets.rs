@@ -295,17 +295,11 @@ fn fields_and_paths_need_no_quotes() {
         let plan = set.and_then(|set| Ok(Preset::read(text, "p.toml", &[set])?.plan));
         plan.map_err(|e| e.to_string().replace('"', ""))
     };
-    let bare = "fbm fbm:64x64,seed=3 ridges:12x7,power=1.5 d8.png true.png inf/nan.exr ./maps/rock-2_b.png ../a+b.exr /tmp/x.raw";
+    let bare = "fbm fbm:64x64,seed=3 ridges:12x7,power=1.5 d8.png true.png inf/nan.exr ./maps/rock-2_b.png ../a+b.exr /tmp/x.raw 2k.exr 8k/sky.hdr 1979-05-27.png a#1.png";
     for word in bare.split(' ') {
         assert_eq!(set(word), set(&format!("\"{word}\"")));
     }
-    for word in [
-        "1979-05-27.png",
-        "-inf.png",
-        "a b.png",
-        "~/a.png",
-        "fbm:4x4;",
-    ] {
+    for word in ["-inf.png", "a b.png", "~/a.png", "fbm:4x4;"] {
         let why = set(word).expect_err(word);
         assert!(why.contains("the value is not TOML"), "{why}");
     }

@@ -18,6 +18,46 @@ pub fn even([w, h]: [u32; 2]) -> Vec<u8> {
     [head.into_bytes(), texels].concat()
 }
 
+/// The same with more lines in its head.
+fn exposed([w, h]: [u32; 2], lines: &str) -> Vec<u8> {
+    let more = format!("RADIANCE\n{lines}\n");
+    swapped(&even([w, h]), "RADIANCE\n", &more)
+}
+
+/// Bytes with a word in place of another one.
+fn swapped(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
+    let mut places = bytes.windows(from.len());
+    let at = places.position(|w| w == from.as_bytes()).expect("the word");
+    [&bytes[..at], to.as_bytes(), &bytes[at + from.len()..]].concat()
+}
+
+/// An OpenEXR that holds a quarter of its picture.
+fn cropped() -> Vec<u8> {
+    let light = SpecificChannels::rgb(uneven);
+    let layer = Layer::new(
+        (8, 4),
+        LayerAttributes::named("light"),
+        Encoding::default(),
+        light,
+    );
+    let whole = IntegerBounds::from_dimensions((16, 8));
+    let image = Image::empty(ImageAttributes::new(whole)).with_layer(layer);
+    let mut file = std::io::Cursor::new(Vec::new());
+    image.write().to_buffered(&mut file).expect("a file");
+    file.into_inner()
+}
+
+/// An OpenEXR with luminance alone.
+fn grey() -> Vec<u8> {
+    let light = SpecificChannels::build()
+        .with_channel("Y")
+        .with_pixel_fn(|_| (0.5_f32,));
+    let image = Image::from_channels((8, 4), light);
+    let mut file = std::io::Cursor::new(Vec::new());
+    image.write().to_buffered(&mut file).expect("a file");
+    file.into_inner()
+}
+
 /// An OpenEXR with one odd number.
 fn with_red(red: f32) -> Vec<u8> {
     let light = |at: Vec2<usize>| match (at.x(), at.y()) {
@@ -72,6 +112,12 @@ fn a_sky_that_cannot_be_read_is_named() {
     folder.write("endless.exr", with_red(f32::INFINITY));
     folder.write("nothing.exr", with_red(f32::NAN));
     folder.write("bright.exr", with_red(3e38));
+    folder.write("part.exr", cropped());
+    folder.write("grey.exr", grey());
+    folder.write("unexposed.hdr", exposed([16, 8], "EXPOSURE=0"));
+    folder.write("odd.hdr", exposed([16, 8], "COLORCORR=1 nan 1"));
+    folder.write("xyz.hdr", swapped(&even([16, 8]), "rgbe", "xyze"));
+    folder.write("turned.hdr", swapped(&even([16, 8]), "-Y", "+Y"));
     folder.write(
         "large.hdr",
         "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 200000\n",
@@ -98,6 +144,18 @@ fn a_sky_that_cannot_be_read_is_named() {
         ("nothing.exr", "NaN|column 3, row 1"),
         ("bright.exr", "3e38|column 3, row 1|from 0 to 1e8"),
         ("large.hdr", "8192"),
+        (
+            "part.exr",
+            "with 8 x 4 pixels of a picture of 16 x 8|save the whole",
+        ),
+        ("grey.exr", "without channels R, G and B"),
+        ("unexposed.hdr", "EXPOSURE|come to 0;|above 0"),
+        ("odd.hdr", "COLORCORR|come to NaN;"),
+        ("xyz.hdr", "is an HDR that cannot be read|save it as RGB"),
+        (
+            "turned.hdr",
+            "is an HDR that cannot be read|from the upper left",
+        ),
     ] {
         folder.fails(
             &format!("{RENDER}={name}"),
@@ -106,6 +164,24 @@ fn a_sky_that_cannot_be_read_is_named() {
         );
         assert!(!folder.files().iter().any(|file| file.ends_with(".png")));
     }
+}
+
+/// Exposures tell what the pixels were multiplied by, and each line counts.
+#[test]
+fn the_light_of_an_hdr_is_divided_by_its_exposures() {
+    let folder = Folder::new();
+    folder.write("a.hdr", even([16, 8]));
+    folder.write(
+        "b.hdr",
+        exposed([16, 8], "EXPOSURE=8\nEXPOSURE=0.5\nCOLORCORR=0.5 0.5 0.5"),
+    );
+    let shown = ["a.hdr", "b.hdr"].map(|file| {
+        let strength = if file == "b.hdr" { 2 } else { 1 };
+        let line = format!("{RENDER}={file} --set look.sky_strength={strength} -o a.png");
+        folder.done(&line);
+        pixels(folder.bytes("a.png")).1
+    });
+    assert!(shown[0] == shown[1]);
 }
 
 #[test]

@@ -35,6 +35,19 @@ impl Folder {
         output
     }
 
+    /// Runs a command line as if the disk were full: no file may be longer than so many bytes.
+    #[cfg(unix)]
+    #[allow(dead_code, reason = "not every test program fills a disk")]
+    pub fn limited(&self, line: &str, bytes: u64) -> Output {
+        let shell = format!(
+            "trap '' XFSZ; ulimit -f {}; exec {} {line}",
+            // Blocks.
+            bytes / 512,
+            env!("CARGO_BIN_EXE_conemarch")
+        );
+        output(Command::new("sh").args(["-c", &shell]).current_dir(&self.0))
+    }
+
     /// Runs a command line that must fail with a code and one sentence that holds some
     /// parts, with `|` between them, and must leave no new file.
     pub fn fails(&self, line: &str, code: i32, parts: &str) {
