@@ -1,6 +1,7 @@
 //! Every preset on a hardware GPU:
 //! `cargo bench --bench hardware [-- [--software] [--write] [--size WxH] [PRESET...]]`. With `--software`
-//! it has a table of its own, at a smaller size.
+//! it has a table of its own, at a smaller size. With `--software --rival` it compares nothing but the rival
+//! and `safe`, in more runs and at the usual size, for differences of a few per cent.
 //!
 //! The rival (mode `ray-relaxed` with `clip` on), the method that the program chooses and `safe` with
 //! cones render in turns, forwards and backwards. The times are the device's own, medians of warm runs, with one sample per
@@ -30,6 +31,7 @@ const SOFTWARE_SIZE: [u32; 2] = [1280, 720];
 /// Warm runs that a median is taken of, and runs before. A GPU takes some runs to reach its clock.
 const RUNS: [usize; 2] = [31, 10];
 const SOFTWARE_RUNS: [usize; 2] = [5, 1];
+const RIVAL_RUNS: [usize; 2] = [11, 1];
 /// What is compared, and the changes of the preset.
 const PLANS: [&[&str]; 4] = [
     &["march.mode=ray-relaxed", "march.clip=on"],
@@ -64,19 +66,62 @@ fn on_device(frame: &Frame, marches: bool) -> Result<f64> {
     sum.context("the device has no timestamps")
 }
 
+/// A preset with the first changes of [`PLANS`].
+fn plans(name: &str, size: [u32; 2], count: usize) -> Result<Vec<Plan>> {
+    let plan = |changes: &&[&str]| {
+        let changes: Result<Vec<_>, _> = changes.iter().map(|c| Override::read(c)).collect();
+        let mut plan = preset::load(name, &changes?)?.plan.one_sample();
+        plan.size = size;
+        Ok(plan)
+    };
+    PLANS[..count].iter().map(plan).collect()
+}
+
+/// The first two plans in turns. Ratios are of runs that follow each other.
+fn rival_row(executors: &mut [Executor], name: &str, size: [u32; 2]) -> Result<String> {
+    let [runs, warm] = RIVAL_RUNS;
+    let extras = Extras {
+        time: true,
+        unread: true,
+        depth_only: true,
+        ..Extras::default()
+    };
+    let assets = Assets::default();
+    let plans = plans(name, size, 2)?;
+    let (mut times, mut ratios) = ([vec![], vec![]], vec![]);
+    let mut levels = 0;
+    for run in 0..warm + runs {
+        let mut now = [0.0; 2];
+        let order = if run % 2 == 0 { [0, 1] } else { [1, 0] };
+        for nth in order {
+            let executor = &mut executors[nth];
+            let frame = executor.render(&plans[nth], &assets, extras, &mut |_: &_| true)?;
+            now[nth] = on_device(&frame, true)?;
+            if nth == CHOSEN {
+                levels = frame.passes.iter().filter(|p| p.pass.marches()).count() - 1;
+            }
+        }
+        if run >= warm {
+            times[0].push(now[0]);
+            times[1].push(now[1]);
+            ratios.push(now[0] / now[1]);
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    let [low, middle, high] = [runs / 4, runs / 2, runs - 1 - runs / 4].map(|at| ratios[at]);
+    let [rival, safe] = times.map(median);
+    Ok(format!(
+        "{name} | {rival:.1} | {safe:.1} | {middle:.3} | {low:.3} to {high:.3} | {levels}"
+    ))
+}
+
 /// In software each plan has an executor of its own, which keeps its buffers.
 fn row(executors: &mut [Executor], name: &str, size: [u32; 2], in_software: bool) -> Result<Row> {
     let (count, [runs, warm]) = match in_software {
         true => (4, SOFTWARE_RUNS),
         false => (3, RUNS),
     };
-    let mut plans: Vec<Plan> = Vec::new();
-    for changes in &PLANS[..count] {
-        let changes: Result<Vec<_>, _> = changes.iter().map(|c| Override::read(c)).collect();
-        let mut plan = preset::load(name, &changes?)?.plan.one_sample();
-        plan.size = size;
-        plans.push(plan);
-    }
+    let plans = plans(name, size, count)?;
     let extras = Extras {
         time: true,
         unread: true,
@@ -92,22 +137,30 @@ fn row(executors: &mut [Executor], name: &str, size: [u32; 2], in_software: bool
             turns.reverse();
         }
         for (nth, (plan, marched)) in turns {
-            let begun = Instant::now();
             let executor = &mut executors[if in_software { nth } else { 0 }];
-            let extras = Extras {
-                depth_only: in_software && nth != CHOSEN,
-                ..extras
+            let mut render = |depth_only: bool| {
+                let extras = Extras {
+                    depth_only,
+                    ..extras
+                };
+                executor.render(plan, &assets, extras, &mut |_: &_| true)
             };
-            let frame = executor.render(plan, &assets, extras, &mut |_: &_| true)?;
-            if run < warm {
-                continue;
-            }
+            let begun = Instant::now();
+            let mut frame = render(in_software && nth != CHOSEN)?;
             if nth == CHOSEN {
                 levels = frame.passes.iter().filter(|p| p.pass.marches()).count() - 1;
-                colored.push(on_device(&frame, false)?);
-                frames.push(begun.elapsed().as_secs_f64() * 1e3);
+                if run >= warm {
+                    colored.push(on_device(&frame, false)?);
+                    frames.push(begun.elapsed().as_secs_f64() * 1e3);
+                }
+                // All plans are alike: what runs before a pass changes its time.
+                if in_software {
+                    frame = render(true)?;
+                }
             }
-            marched.push(on_device(&frame, true)?);
+            if run >= warm {
+                marched.push(on_device(&frame, true)?);
+            }
         }
     }
     Ok(Row {
@@ -141,7 +194,11 @@ fn table(rows: &[Row]) -> String {
 
 fn main() -> Result<()> {
     let in_software = std::env::args().any(|a| a == "--software");
-    let usual = if in_software { SOFTWARE_SIZE } else { SIZE };
+    let of_rival = std::env::args().any(|a| a == "--rival");
+    let usual = match in_software && !of_rival {
+        true => SOFTWARE_SIZE,
+        false => SIZE,
+    };
     let mut size = usual;
     let mut names = Vec::new();
     let mut args = std::env::args().skip(1).filter(|a| a != "--bench");
@@ -152,7 +209,7 @@ fn main() -> Result<()> {
                 let (w, h) = text.split_once('x').context("--size needs WxH")?;
                 size = [w.parse()?, h.parse()?];
             }
-            "--write" | "--software" => {}
+            "--write" | "--software" | "--rival" => {}
             _ if arg.starts_with('-') => bail!("unknown option {arg}"),
             _ => names.push(arg),
         }
@@ -176,8 +233,23 @@ fn main() -> Result<()> {
     };
     let (executor, who) = Executor::open(&device)?;
     let mut executors = vec![executor];
-    for _ in 1..if in_software { PLANS.len() } else { 1 } {
+    for _ in 1..if in_software || of_rival {
+        PLANS.len()
+    } else {
+        1
+    } {
         executors.push(Executor::open(&device)?.0);
+    }
+    if of_rival {
+        let mut rows = Vec::new();
+        for name in &names {
+            eprintln!("{name}");
+            rows.push(rival_row(&mut executors, name, size)?);
+        }
+        let head = "preset | rival, ms | safe, ms | rival / safe | middle half of the ratios | levels of cones";
+        println!("{} x {} on {who}:\n", size[0], size[1]);
+        let marks = ["<!-- pairs -->", "<!-- /pairs -->"];
+        return publish::publish("benchmarks.md", marks, &markdown::table(head, "lr", rows));
     }
     let mut rows = Vec::new();
     for name in &names {

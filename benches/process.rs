@@ -34,6 +34,8 @@ const PRESETS: [(&str, &str); 5] = [
     ("terrain", "scene.tracer=walk"),
 ];
 const SIZE: [u32; 2] = [640, 360];
+/// The details are those of the picture's own size.
+const REFERENCE: &str = "image.reference=auto";
 /// What is timed of a run.
 const PARTS: usize = 7;
 /// Processes of each kind, of which the median is taken, after one that warms the driver's cache.
@@ -96,7 +98,7 @@ fn whole(name: &str, set: &str) -> Result<f64> {
     let [width, height] = SIZE;
     let done = Command::new(env!("CARGO_BIN_EXE_conemarch"))
         .args(["render", name, "--samples", "1"])
-        .args(["--set", "image.reference=auto"])
+        .args(["--set", REFERENCE])
         .args(
             [set]
                 .iter()
@@ -113,7 +115,7 @@ fn whole(name: &str, set: &str) -> Result<f64> {
 
 /// Milliseconds of the parts of one render in this process.
 fn parts(name: &str, set: &str) -> Result<[f64; PARTS]> {
-    let set = [set].into_iter().filter(|set| !set.is_empty());
+    let set = [REFERENCE, set].into_iter().filter(|set| !set.is_empty());
     let set: Result<Vec<_>, _> = set.map(Override::read).collect();
     let mut plan = preset::load(name, &set?)?.plan.one_sample();
     plan.size = SIZE;

@@ -1,8 +1,9 @@
-//! Whether a small picture is the large one made small: `cargo bench --bench reference`. With
-//! `-- --write` it writes its table into docs/accuracy.md, and with `-- PRESET...` it prints these
-//! presets alone. All of them take less than a minute on a large GPU, and most of an hour in software.
+//! Whether a small picture is the large one made small:
+//! `cargo bench --bench reference [-- [--write] [--samples N] [PRESET...]]`. With `--write` it writes its
+//! table into docs/accuracy.md. With presets it prints these alone. All of them take less than a minute on a
+//! large GPU, and most of an hour in software. `--samples` gives the large picture more samples.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use conemarch::gpu::adapters::{Adapters, Choice};
 use conemarch::gpu::device::Device;
 use conemarch::gpu::render::Renderer;
@@ -33,10 +34,19 @@ fn main() -> Result<()> {
     let (adapter, _) = chosen.context("there is no adapter")?;
     let mut renderer = Renderer::new(Device::open(adapter)?);
     let mut rows = Vec::new();
-    let named: Vec<String> = std::env::args()
-        .skip(1)
-        .filter(|word| !word.starts_with("--"))
-        .collect();
+    let (mut named, mut samples) = (Vec::new(), LARGE.1);
+    let mut args = std::env::args().skip(1);
+    while let Some(word) = args.next() {
+        match word.as_str() {
+            "--samples" => samples = args.next().context("--samples needs a number")?.parse()?,
+            _ if word.starts_with("--") => {}
+            _ => named.push(word),
+        }
+    }
+    ensure!(
+        !named.is_empty() || samples == LARGE.1,
+        "--samples needs presets"
+    );
     for (name, _) in BUILTIN {
         if !named.is_empty() && !named.iter().any(|one| one == name) {
             continue;
@@ -47,7 +57,7 @@ fn main() -> Result<()> {
             continue;
         }
         eprintln!("{name}");
-        let [large, small] = [LARGE, SMALL].map(|(size, samples)| {
+        let [large, small] = [(LARGE.0, samples), SMALL].map(|(size, samples)| {
             let mut plan = plan.clone();
             (plan.size, plan.samples, plan.until) = (size, samples, 0.0);
             renderer.render(&plan, &Assets::default(), Extras::default(), &mut |_| true)

@@ -182,7 +182,7 @@ fn main() -> Result<()> {
         "March and trace at {w} x {h}, in milliseconds, and in shares of the time of `safe`:\n"
     );
     println!("{}", times(&all));
-    println!("Iterations per pixel if groups of 32 rays run in lockstep:\n");
+    println!("Iterations per pixel if each of 32 rays takes as many as the longest of them:\n");
     println!("{}", iterations(&all));
     println!("Compared with the set, each with its `detail`:\n");
     println!("{}", errors(&all));

@@ -40,7 +40,7 @@ const STEPS: (&str, &str) = (
 /// What is changed: a word, its file, the constant, its value, and other values.
 const TRIALS: [(&str, (&str, &str), &str, &str, &[&str]); 6] = [
     (
-        "iterations that are followed by the matrix",
+        "iterations that are followed by the Jacobian",
         ORBIT,
         "ORBIT_PREFIX",
         "3u",

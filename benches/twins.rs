@@ -1,5 +1,7 @@
-//! How far the GPU's pictures are from those of the CPU executor: `cargo bench --bench twins`. With
-//! `-- --write` it writes its table into docs/accuracy.md. It takes a minute with a large GPU and 16 cores.
+//! How far the GPU's pictures are from those of the CPU executor:
+//! `cargo bench --bench twins [-- [--software] [--write]]`. With `--write` it writes its table into
+//! docs/accuracy.md. It takes a minute with a large GPU and 16 cores. `--software` has a table of its own,
+//! in which both executors choose the same march: half an hour on two cores.
 
 use anyhow::{Context, Result};
 use conemarch::base::srgb::LUMA;
@@ -23,6 +25,7 @@ mod markdown;
 mod publish;
 
 const MARKS: [&str; 2] = ["<!-- twins -->", "<!-- /twins -->"];
+const SOFTWARE_MARKS: [&str; 2] = ["<!-- twins-software -->", "<!-- /twins-software -->"];
 /// Sizes of quick light and of light by paths, and the samples of paths.
 const QUICK: [u32; 2] = [480, 270];
 const PATHS: ([u32; 2], u32) = ([96, 54], 16);
@@ -32,7 +35,12 @@ const CONES: [u32; 2] = [1, 16];
 
 fn main() -> Result<()> {
     let adapters = Adapters::find();
-    let chosen = adapters.choose(&Choice::Auto)?;
+    let in_software = std::env::args().any(|a| a == "--software");
+    let device = match in_software {
+        true => Choice::Software,
+        false => Choice::Auto,
+    };
+    let chosen = adapters.choose(&device)?;
     let (adapter, _) = chosen.context("there is no adapter")?;
     let on = adapter.get_info().name;
     let mut renderer = Renderer::new(Device::open(adapter)?);
@@ -53,7 +61,8 @@ fn main() -> Result<()> {
         let looks =
             |gpu: &Frame, cpu: &Frame| flip(QUICK, &shown(&quick, cpu), &shown(&quick, gpu));
         let mut cells = vec![name.to_string()];
-        for coarsest in CONES {
+        let coarsest = if in_software { &[][..] } else { &CONES };
+        for &coarsest in coarsest {
             let mut plan = quick.clone();
             plan.march.coarsest = Some(coarsest);
             cells.push(format!("{:.4}", looks(&on_gpu(&plan)?, &on_cpu(&plan)?)));
@@ -73,12 +82,18 @@ fn main() -> Result<()> {
         cells.extend([0, 1, 2].map(|channel| format!("{:.2}", apart(&frames, channel))));
         rows.push(cells.join(" | "));
     }
-    let table = markdown::table(
-        "preset | FLIP, rays alone | with cones | as chosen | as chosen, 16 samples | paths, standard errors of the means | of the difference: red | green | blue",
-        "lr",
-        rows,
+    let (flips, marks) = match in_software {
+        true => ("FLIP | 16 samples", SOFTWARE_MARKS),
+        false => (
+            "FLIP, rays alone | with cones | as chosen | as chosen, 16 samples",
+            MARKS,
+        ),
+    };
+    let head = format!(
+        "preset | {flips} | paths, standard errors of the means | of the difference: red | green | blue"
     );
-    publish("accuracy.md", MARKS, &format!("Made on {on}.\n\n{table}"))
+    let table = markdown::table(&head, "lr", rows);
+    publish("accuracy.md", marks, &format!("Made on {on}.\n\n{table}"))
 }
 
 /// The pixels of a file.
