@@ -234,11 +234,12 @@ fn main() -> Result<()> {
     };
     let (executor, who) = Executor::open(&device)?;
     let mut executors = vec![executor];
-    for _ in 1..if in_software || of_rival {
-        PLANS.len()
-    } else {
-        1
-    } {
+    let count = match (of_rival, in_software) {
+        (true, _) => 2,
+        (_, true) => PLANS.len(),
+        _ => 1,
+    };
+    for _ in 1..count {
         executors.push(Executor::open(&device)?.0);
     }
     if of_rival {
