@@ -10,7 +10,7 @@ fn answer(q: Numbers) -> Numbers {
     for (var i = 0u; i < u32(q.c.w) && s == STATE_MOVING; i++) {
         s = walk_step(beam, &walk);
     }
-    let hit = walk_hit(walk);
+    let hit = walk_hit(beam, walk);
     let at = beam.origin + q.a.w * beam.axis;
     return Numbers(
         vec4<f32>(next.front, f32(next.going), clearance(at), bounds_far()),

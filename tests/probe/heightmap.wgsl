@@ -11,7 +11,7 @@ fn answer(q: Numbers) -> Numbers {
     for (; steps < u32(q.c.x) && s == STATE_MOVING; steps++) {
         s = trace_step(q.a.xyz, q.b.xyz, &trace);
     }
-    let hit = trace_hit(trace);
+    let hit = trace_hit(q.a.xyz, q.b.xyz, trace);
     return Numbers(
         vec4<f32>(hit.t, f32(s), f32(hit.id & 0xffffu), f32(hit.id >> 16u)),
         vec4<f32>(hit.uv, f32(steps), 0.0),

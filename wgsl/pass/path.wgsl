@@ -29,7 +29,7 @@ fn path_sight(ray: Beam, reach: f32, opened: Opening, left: ptr<function, u32>) 
             break;
         }
     }
-    return Sight(s, walk_hit(walk));
+    return Sight(s, walk_hit(ray, walk));
 }
 
 /// The purpose of the random numbers of a light, where the sun is the first and lamps follow. Each

@@ -60,7 +60,7 @@ fn pick() {
         walks[0] = walk;
         pick_answer.state = state;
         pick_answer.begun = 1u;
-        at = ray.origin + walk_hit(walk).t * ray.axis;
+        at = ray.origin + walk_hit(ray, walk).t * ray.axis;
     }
     pick_answer.point = at;
     pick_answer.distance = length(at);

@@ -48,7 +48,7 @@ fn trace(
         }
     }
     // Written in every dispatch: an unconverged pixel shows how far its ray came.
-    let hit = walk_hit(walk);
+    let hit = walk_hit(ray, walk);
     cell_store(index, hit.t, s);
     if HIT_CARRIES_MARK {
         cell_store_mark(index, Mark(hit.id, hit.uv.x, hit.uv.y));

@@ -295,7 +295,7 @@ fn steps_opened(walk: Walk) -> u32 {
 }
 
 /// Where the ray is.
-fn walk_hit(walk: Walk) -> Hit {
+fn walk_hit(ray: Beam, walk: Walk) -> Hit {
     return Hit(walk.t, 0u, vec2<f32>(0.0));
 }
 

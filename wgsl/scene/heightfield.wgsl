@@ -106,12 +106,12 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     let origin = heightfield.eye + to_local(ray.origin);
     let s = trace_step(origin, to_local(ray.axis), &trace);
     (*walk).trace = trace;
-    (*walk).t = trace_hit(trace).t;
+    (*walk).t = trace.s;
     return s;
 }
 
-fn walk_hit(walk: Walk) -> Hit {
-    return trace_hit(walk.trace);
+fn walk_hit(ray: Beam, walk: Walk) -> Hit {
+    return trace_hit(heightfield.eye + to_local(ray.origin), to_local(ray.axis), walk.trace);
 }
 
 /// The free room about the ray's current place, for soft shadows.

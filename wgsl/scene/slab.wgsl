@@ -117,7 +117,7 @@ fn walk_step(ray: Beam, walk: ptr<function, Walk>) -> u32 {
     return STATE_HIT;
 }
 
-fn walk_hit(walk: Walk) -> Hit {
+fn walk_hit(ray: Beam, walk: Walk) -> Hit {
     return Hit(walk.t, walk.face, vec2<f32>(walk.u, walk.v));
 }
 

@@ -81,7 +81,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     let z = o.z + s * d.z;
     // Only the first step can begin under the surface.
     if refine_over(o, d, s) <= 0.0 {
-        grid_hit(o, d, trace, s);
+        grid_hit(trace, s);
         return STATE_HIT;
     }
     if CONES_SOLVE && min(z, o.z + to * d.z) - heightmap_apex(cell) <= 0.0 {

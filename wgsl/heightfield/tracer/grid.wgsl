@@ -16,12 +16,11 @@ struct Trace {
     cell: vec2<i32>,
     /// Steps left, for a tracer that counts its own.
     left: u32,
-    /// 1 if the end is the bottom, reached from above.
+    /// 1 if the end is the bottom, reached from above; 2 once the ray has met it.
     falls: u32,
     state: u32,
-    id: u32,
-    u: f32,
-    v: f32,
+    /// The face that is met, once there is a hit.
+    face: u32,
 }
 
 /// A parameter beyond every other. Slopes below GRID_FLAT count as none, so that no quotient by
@@ -32,8 +31,9 @@ const GRID_FLAT = 1e-20;
 /// roundings.
 const GRID_ON_FACE = 5e-7;
 
-/// Faces of a hit, above the low 28 bits of its id; 0 is the surface.
+/// Faces of a hit, above the low 28 bits of its id.
 const FACE_BITS = 28u;
+const FACE_SURFACE = 0u;
 const FACE_WALL_X = 1u;
 const FACE_WALL_Y = 3u;
 const FACE_BASE = 5u;
@@ -68,7 +68,7 @@ fn grid_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     let face = max(near.x, max(near.y, near.z));
     let start = max(front, face);
     let side = min(min(far.x, far.y), to);
-    var trace = Trace(start, min(side, far.z), start, 0u, vec2<i32>(0), 0u, 0u, STATE_MOVING, 0u, 0.0, 0.0);
+    var trace = Trace(start, min(side, far.z), start, 0u, vec2<i32>(0), 0u, 0u, STATE_MOVING, FACE_SURFACE);
     if !(start <= trace.end && trace.end < GRID_FAR) {
         trace.s = front;
         trace.state = STATE_SKY;
@@ -86,20 +86,18 @@ fn grid_begin(o: vec3<f32>, d: vec3<f32>, front: f32, to: f32) -> Trace {
     }
     let under = z <= heightmap_height(trace.cell, at);
     if face == near.z && d.z > 0.0 {
-        grid_mark(&trace, FACE_BASE, at);
+        grid_mark(&trace, FACE_BASE);
     } else if face == near.x && under {
-        grid_mark(&trace, FACE_WALL_X + u32(d.x < 0.0), vec2<f32>(at.y, z));
+        grid_mark(&trace, FACE_WALL_X + u32(d.x < 0.0));
     } else if face == near.y && under {
-        grid_mark(&trace, FACE_WALL_Y + u32(d.y < 0.0), vec2<f32>(at.x, z));
+        grid_mark(&trace, FACE_WALL_Y + u32(d.y < 0.0));
     }
     return trace;
 }
 
-fn grid_mark(trace: ptr<function, Trace>, face: u32, at: vec2<f32>) {
+fn grid_mark(trace: ptr<function, Trace>, face: u32) {
     (*trace).state = STATE_HIT;
-    (*trace).id = heightmap_number((*trace).cell) | (face << FACE_BITS);
-    (*trace).u = at.x;
-    (*trace).v = at.y;
+    (*trace).face = face;
 }
 
 /// One of two values for each axis: the first where the ray goes back, the second where it goes
@@ -187,24 +185,24 @@ fn grid_solve(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, to: f32) 
     let p = vec3<f32>(o.xy - vec2<f32>(cell), o.z);
     let s = patch_hit(heightmap_corners(cell), p, d, (*trace).enter, to);
     if s < PATCH_NONE {
-        grid_hit(o, d, trace, s);
+        grid_hit(trace, s);
     }
     return s < PATCH_NONE;
 }
 
 /// Marks a hit of the surface at s, in the trace's cell.
-fn grid_hit(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, s: f32) {
+fn grid_hit(trace: ptr<function, Trace>, s: f32) {
     (*trace).s = s;
-    grid_mark(trace, 0u, grid_uv(o, d, (*trace).cell, s));
+    grid_mark(trace, FACE_SURFACE);
 }
 
 /// Ends a trace that has met nothing before: with a hit of the ground, or with none.
-fn grid_end(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
+fn grid_end(trace: ptr<function, Trace>) -> u32 {
+    (*trace).s = (*trace).end;
     if (*trace).falls == 1u {
-        grid_land(o, d, trace, (*trace).end);
-        grid_hit(o, d, trace, (*trace).end);
+        (*trace).falls = 2u;
+        grid_mark(trace, FACE_SURFACE);
     } else {
-        (*trace).s = (*trace).end;
         (*trace).state = STATE_SKY;
     }
     return (*trace).state;
@@ -223,7 +221,7 @@ fn grid_leave(
     next: f32,
 ) -> u32 {
     if max(next, exit.x) >= (*trace).end {
-        return grid_end(o, d, trace);
+        return grid_end(trace);
     }
     if next > exit.x {
         grid_land(o, d, trace, next);
@@ -235,7 +233,20 @@ fn grid_leave(
     return STATE_MOVING;
 }
 
-/// The hit, once there is one.
-fn trace_hit(trace: Trace) -> Hit {
-    return Hit(trace.s, trace.id, vec2<f32>(trace.u, trace.v));
+/// The hit, once there is one; the place of the ray before that. Steps leave cell and place of a
+/// hit to this function: a device that runs both sides of branches would find them in every step.
+fn trace_hit(o: vec3<f32>, d: vec3<f32>, trace: Trace) -> Hit {
+    if trace.state != STATE_HIT {
+        return Hit(trace.s, 0u, vec2<f32>(0.0));
+    }
+    var ended = trace;
+    if trace.falls == 2u {
+        grid_land(o, d, &ended, trace.s);
+    }
+    var at = grid_uv(o, d, ended.cell, trace.s);
+    // Walls have the height as their second coordinate.
+    if trace.face != FACE_SURFACE && trace.face != FACE_BASE {
+        at = vec2<f32>(select(at.x, at.y, trace.face < FACE_WALL_Y), o.z + trace.s * d.z);
+    }
+    return Hit(trace.s, heightmap_number(ended.cell) | (trace.face << FACE_BITS), at);
 }

@@ -19,7 +19,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
     // Only the first step can begin under the surface.
     if left == heightmap.steps {
         if refine_over(o, d, s) <= 0.0 {
-            grid_hit(o, d, trace, s);
+            grid_hit(trace, s);
             return STATE_HIT;
         }
     }
@@ -34,7 +34,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
         return STATE_HIT;
     }
     if left <= 1u {
-        return grid_end(o, d, trace);
+        return grid_end(trace);
     }
     (*trace).left = left - 1u;
     grid_land(o, d, trace, next);

@@ -46,7 +46,7 @@ fn trace_step(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>) -> u32 {
         }
     }
     if exit.x >= (*trace).end {
-        return grid_end(o, d, trace);
+        return grid_end(trace);
     }
     let lines = grid_lines(d, low, high);
     grid_pass(o, d, trace, exit, lines);

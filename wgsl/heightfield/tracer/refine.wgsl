@@ -18,7 +18,7 @@ fn refine_over(o: vec3<f32>, d: vec3<f32>, s: f32) -> f32 {
 /// Marks a hit at s, in the cell there.
 fn refine_mark(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, s: f32) {
     (*trace).cell = grid_cell(o, d, s);
-    grid_hit(o, d, trace, s);
+    grid_hit(trace, s);
 }
 
 /// Bisections; the hit is the middle of the bracket that is left.

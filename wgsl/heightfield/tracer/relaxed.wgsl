@@ -14,7 +14,7 @@ fn relaxed_rise(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, z: f32)
     // The only node of the last level.
     let top = maxima[maxima_place(heightmap.levels - 1u, vec2<u32>(0u))];
     if z > top {
-        return grid_end(o, d, trace);
+        return grid_end(trace);
     }
     var node = maxima_node((*trace).cell, 0u);
     var level = 0u;

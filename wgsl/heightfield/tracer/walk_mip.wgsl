@@ -35,7 +35,7 @@ fn walk_mip_meet(o: vec3<f32>, d: vec3<f32>, trace: ptr<function, Trace>, node: 
         // The line by which the ray leaves the node belongs to the node.
         (*trace).cell = clamp((*trace).cell, node.low, node.high - 1);
     }
-    grid_hit(o, d, trace, s);
+    grid_hit(trace, s);
 }
 
 /// One node or cell: its hit if the ray comes down to it, else the larger of its exit and the
