@@ -18,8 +18,8 @@ use crate::command::{failure::usage, interrupt};
 use crate::pass::progress::Progress;
 use crate::picture::frame::Frame;
 use crate::picture::{
-    BitDepth, Bloom, Layer, Place, PngHead, Shades, SummedLight, exr_row_bytes, exr_rows,
-    write_exr_rows, write_png_rows,
+    BitDepth, Bloom, Layer, Place, PngHead, Shades, SummedLight, exr_names, exr_row_bytes,
+    exr_rows, write_exr_rows, write_png_rows,
 };
 use crate::plan::pyramid::Block;
 use crate::plan::{Extras, Plan, WINDOW_STEP};
@@ -130,7 +130,7 @@ impl<'a> BigPicture<'a> {
             picture: fingerprint(plan, assets, &more),
         };
         let row = match format {
-            Format::Exr => exr_row_bytes(plan, extras),
+            Format::Exr => exr_row_bytes(plan, exr_names(plan, extras).len()),
             _ if keeps_light(plan, args.layer) => plan.size[0] as usize * light_bytes(plan),
             _ => head((plan, args.layer, depth), &preset).row_bytes(),
         };
@@ -208,7 +208,8 @@ impl<'a> BigPicture<'a> {
     fn write_exr(&mut self, place: &mut Place) -> Result<()> {
         let mut progress = Reporter::start("writing the picture");
         let (all, height) = (self.bands.count(), self.bands.rows as usize);
-        let row = exr_row_bytes(self.plan, self.extras);
+        let names = exr_names(self.plan, self.extras);
+        let row = exr_row_bytes(self.plan, names.len());
         let (kept, mut read) = (&mut self.kept, (all, Vec::new()));
         let rows = |first: usize, count: usize| {
             let band = first / height;
@@ -221,7 +222,7 @@ impl<'a> BigPicture<'a> {
             let begin = (first - band * height) * row;
             Ok(read.1[begin..begin + count * row].to_vec())
         };
-        let of = (self.plan, self.extras);
+        let of = (self.plan, names);
         place.write(|to| write_exr_rows(to, of, &self.preset, rows))
     }
 

@@ -16,7 +16,8 @@ use crate::command::sink::{Results, Sink, shown, spared};
 use crate::command::tile::Note;
 use crate::picture::frame::Frame;
 use crate::picture::{
-    Layer, Named, PngHead, Shades, SummedLight, write_exr_channels, write_png_rows,
+    Layer, Named, PngHead, Shades, SummedLight, exr_row_bytes, exr_rows_of, write_exr_rows,
+    write_png_rows,
 };
 use crate::plan::Plan;
 use crate::preset::{self, PNG_KEYWORD};
@@ -73,21 +74,22 @@ pub fn run(args: &Merge) -> Result<()> {
     }
     let count = parts.len();
     let rows = in_rows(parts, plan.size)?;
-    let most = match format {
-        // Of a row of the grid: light, numbers and bytes, and the part that is read.
-        Format::Png => rows.iter().map(|row| row[0].head.size[1]).max(),
-        _ => Some(plan.size[1]),
-    };
-    let bytes = if format == Format::Exr { 135 } else { 40 };
-    let bytes = bytes + if Layer::Color.has_alpha(&plan) { 8 } else { 0 };
-    let (what, helps) = match format {
-        Format::Png => ("a row of parts", FINER),
+    let row = rows.iter().map(|row| row[0].head.size[1]).max();
+    let (row, all) = (row.unwrap_or(1), plan.size[1]);
+    // Bytes per pixel of what is held at a time: light or channels, their bytes, and the part that is
+    // read.
+    let (what, height, bytes, helps) = match format {
+        Format::Png => ("a row of parts", row, 40, FINER),
+        Format::Exr => ("a row of parts", row, 280, FINER),
         _ => (
             "a picture",
-            "join them to a .png, which takes a row of parts at a time",
+            all,
+            40,
+            "join them to a .png or .exr, which takes a row of parts at a time",
         ),
     };
-    memory::check_pixels(what, [plan.size[0], most.unwrap_or(1)], bytes, helps)?;
+    let bytes = bytes + if Layer::Color.has_alpha(&plan) { 8 } else { 0 };
+    memory::check_pixels(what, [plan.size[0], height], bytes, helps)?;
     let mut sink = Sink::prepare(&args.output)?;
     let mut progress = Reporter::start("joining the parts");
     let all = rows.len();
@@ -133,12 +135,24 @@ pub fn run(args: &Merge) -> Result<()> {
             }
         }
         (Format::Exr, Sink::File(place)) => {
-            let mut list = Named::new();
-            for (nth, part) in rows.iter().flatten().enumerate() {
-                tell(nth * all / count)?;
-                part.join(&mut list, plan.size)?;
-            }
-            place.write(|to| write_exr_channels(to, (plan.size, list), &plan, &text))?;
+            let names = rows[0][0].head.channels.clone();
+            let bytes = exr_row_bytes(&plan, names.len());
+            let mut held = (usize::MAX, Vec::new());
+            let lines = |first: usize, count: usize| -> Result<Vec<u8>> {
+                let begin = |nth: usize| rows[nth][0].head.origin[1] as usize;
+                let nth = (0..all).rfind(|nth| begin(*nth) <= first).unwrap_or(0);
+                if held.0 != nth {
+                    tell(nth)?;
+                    // Rows are large: the one before goes first.
+                    drop(std::mem::take(&mut held.1));
+                    held = (nth, channels_of(&rows[nth], plan.size[0])?);
+                }
+                let at = (first - begin(nth)) * bytes;
+                let lines = held.1.get(at..at + count * bytes);
+                let fault = "its height is no multiple of 32; render it again";
+                Ok(lines.ok_or_else(|| rows[nth][0].fault(fault))?.to_vec())
+            };
+            place.write(|to| write_exr_rows(to, (&plan, names), &text, lines))?;
         }
         (_, sink) => {
             let mut whole = Frame {
@@ -204,8 +218,8 @@ impl Part {
         anyhow!("{}: {why}", self.shown())
     }
 
-    /// Puts values of the part into those of a row of the picture, or of all of it, so many pixels
-    /// wide, from a row on.
+    /// Puts values of the part into those of a row of parts, so many pixels wide, from a row of the
+    /// picture on.
     fn place<T: Copy>(&self, values: &[T], to: &mut [T], width: u32, first: u32) {
         let [x, y] = self.head.origin;
         let own = self.head.size[0] as usize;
@@ -213,23 +227,6 @@ impl Part {
             let at = row as usize * width as usize + x as usize;
             to[at..at + own].copy_from_slice(values);
         }
-    }
-
-    /// Joins all channels to those of the whole picture.
-    fn join(&self, list: &mut Named, size: [u32; 2]) -> Result<()> {
-        let read = stream(&self.path).and_then(all_channels);
-        let own = read.map_err(|why| self.fault(&why))?;
-        let pixels = size[0] as usize * size[1] as usize;
-        if list.is_empty() {
-            list.extend(
-                own.iter()
-                    .map(|(name, _)| (name.clone(), vec![0.0; pixels])),
-            );
-        }
-        for ((_, whole), (_, values)) in list.iter_mut().zip(&own) {
-            self.place(values, whole, size[0], 0);
-        }
-        Ok(())
     }
 }
 
@@ -319,6 +316,26 @@ fn hole([x, y]: [u32; 2]) -> anyhow::Error {
     usage(format!(
         "no part begins at column {x}, row {y} of the picture; give all parts of one --tile grid"
     ))
+}
+
+/// All channels of a row of parts, in a picture of so many columns.
+fn channels_of(row: &[Part], width: u32) -> Result<Vec<u8>> {
+    let mut list = Named::new();
+    for part in row {
+        interrupt::check()?;
+        let read = stream(&part.path).and_then(all_channels);
+        let own = read.map_err(|why| part.fault(&why))?;
+        let ([_, first], [_, height]) = (part.head.origin, part.head.size);
+        let pixels = width as usize * height as usize;
+        if list.is_empty() {
+            let empty = |(name, _): &(String, _)| (name.clone(), vec![0.0; pixels]);
+            list.extend(own.iter().map(empty));
+        }
+        for ((_, all), (_, values)) in list.iter_mut().zip(&own) {
+            part.place(values, all, width, first);
+        }
+    }
+    Ok(exr_rows_of(&list, width))
 }
 
 /// The light of a row of parts, and its alpha if there is any.

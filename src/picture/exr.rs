@@ -47,24 +47,12 @@ pub fn write_exr(
     plan: &Plan,
     preset: &str,
 ) -> Result<(), OutputError> {
-    write_exr_channels(to, (plan.size, channels(frame, plan)), plan, preset)
-}
-
-/// Writes the channels of [`write_exr`], however they were made, of so many pixels.
-///
-/// # Errors
-/// The disk is full.
-pub fn write_exr_channels(
-    to: &mut (impl Write + Seek),
-    (size, list): ([u32; 2], Named),
-    plan: &Plan,
-    preset: &str,
-) -> Result<(), OutputError> {
-    encode(to, &described(size, file::channels(list), plan, preset))
+    let list = file::channels(channels(frame, plan));
+    encode(to, &described(plan.size, list, plan, preset))
 }
 
 /// The names of the channels of [`write_exr`], sorted.
-fn names(plan: &Plan, extras: Extras) -> Vec<String> {
+pub fn exr_names(plan: &Plan, extras: Extras) -> Vec<String> {
     let always = [
         "A",
         "B",
@@ -94,41 +82,48 @@ fn names(plan: &Plan, extras: Extras) -> Vec<String> {
     names.into_iter().map(String::from).collect()
 }
 
-/// Bytes of a row in [`exr_rows`].
-pub fn exr_row_bytes(plan: &Plan, extras: Extras) -> usize {
-    4 * plan.size[0] as usize * names(plan, extras).len()
+/// Bytes of a row of so many channels in [`exr_rows`].
+pub fn exr_row_bytes(plan: &Plan, channels: usize) -> usize {
+    4 * plan.size[0] as usize * channels
 }
 
 /// The rows of a frame that is a part of the picture, as wide as it, for [`write_exr_rows`].
 pub fn exr_rows(frame: &Frame, plan: &Plan) -> Vec<u8> {
     let mut list = channels(frame, plan);
     list.sort_by(|(a, _), (b, _)| a.cmp(b));
-    let width = frame.size[0] as usize;
-    let mut rows = Vec::with_capacity(4 * list.len() * frame.depth.len());
-    for y in 0..frame.size[1] as usize {
-        for (_, values) in &list {
-            let row = &values[y * width..(y + 1) * width];
+    exr_rows_of(&list, frame.size[0])
+}
+
+/// The same of channels in the order of their names, of a picture of so many columns.
+pub fn exr_rows_of(list: &Named, width: u32) -> Vec<u8> {
+    let width = width as usize;
+    let pixels = list.first().map_or(0, |(_, values)| values.len());
+    let mut rows = Vec::with_capacity(4 * list.len() * pixels);
+    for first in (0..pixels).step_by(width) {
+        for (_, values) in list {
+            let row = &values[first..first + width];
             rows.extend(row.iter().flat_map(|value| value.to_le_bytes()));
         }
     }
     rows
 }
 
-/// Writes the file of [`write_exr`] from parts of its rows. `read` is told the first row and how many,
-/// in ascending order, and returns what [`exr_rows`] makes of them.
+/// Writes the file of [`write_exr`] from parts of its rows, of channels of these names. `read` is told
+/// the first row and how many, in ascending order, and returns what [`exr_rows`] makes of them. The parts
+/// are 32 rows high and begin at multiples of that.
 ///
 /// # Errors
 /// `read` fails, or the disk is full.
 pub fn write_exr_rows<E: From<OutputError> + Send>(
     to: &mut (impl Write + Seek),
-    (plan, extras): (&Plan, Extras),
+    (plan, names): (&Plan, Vec<String>),
     preset: &str,
     mut read: impl FnMut(usize, usize) -> Result<Vec<u8>, E> + Send,
 ) -> Result<(), E> {
     let mut failed = None;
-    let row = exr_row_bytes(plan, extras);
+    let row = exr_row_bytes(plan, names.len());
     // The encoder takes no error. What is written after one is nothing.
-    let rows = Rows::new(names(plan, extras), |first, count| {
+    let rows = Rows::new(names, |first, count| {
         let zeros = || vec![0; count * row];
         if failed.is_some() {
             return zeros();
@@ -279,7 +274,7 @@ mod tests {
             let list = channels(&frame, &plan).into_iter();
             let mut there: Vec<String> = list.map(|(name, _)| name).collect();
             there.sort();
-            assert_eq!(there, names(&plan, extras));
+            assert_eq!(there, exr_names(&plan, extras));
         }
     }
 }

@@ -26,7 +26,7 @@ pub use error::OutputError;
 #[cfg(feature = "cli")]
 pub use error::is_full;
 pub use exr::{
-    FAR, Named, exr_row_bytes, exr_rows, write_exr, write_exr_channels, write_exr_part,
+    FAR, Named, exr_names, exr_row_bytes, exr_rows, exr_rows_of, write_exr, write_exr_part,
     write_exr_rows,
 };
 #[cfg(feature = "cli")]
