@@ -383,7 +383,7 @@ mod tests {
     #[test]
     fn a_render_is_cancelled_within_a_pass() {
         let mut plan = Plan::new(Formula::Balls(Balls::default()));
-        plan.size = [2 * BAND_CELLS as u32, 96];
+        (plan.size, plan.samples) = ([2 * BAND_CELLS as u32, 96], 1);
         plan.march.coarsest = Some(2);
         let mut told = Vec::new();
         let watch = &mut |p: &Progress| {

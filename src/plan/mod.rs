@@ -67,6 +67,9 @@ named_enum! {
     }
 }
 
+/// Samples of a pixel unless a preset says otherwise: edges are smooth, and a picture takes seconds.
+const SAMPLES: u32 = 16;
+
 /// Everything that decides a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -118,7 +121,7 @@ impl Plan {
             march: Marching::default(),
             look,
             size: [1280, 720],
-            samples: 1,
+            samples: SAMPLES,
             until: 0.0,
             reference: Some(REFERENCE),
             background: Background::Sky,

@@ -46,7 +46,7 @@ fn twice(name: &str, change: impl FnOnce(&mut Mandelbox)) -> [Case; 2] {
 
 /// A Mandelbox seen from one point towards another, with cones.
 pub fn from(m: Mandelbox, eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Plan {
-    let mut plan = Plan::new(boxed(m, None));
+    let mut plan = Plan::new(boxed(m, None)).one_sample();
     // The details of its own pixels.
     plan.reference = None;
     plan.camera = camera(eye, target);

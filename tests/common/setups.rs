@@ -26,7 +26,7 @@ pub fn four(v: DVec3, w: f64) -> [f32; 4] {
 
 /// A plan that looks at a scene from an eye.
 pub fn seen_from(eye: impl Into<DVec3>, scene: Scene) -> Plan {
-    let mut plan = Plan::new(scene);
+    let mut plan = Plan::new(scene).one_sample();
     // The details of its own pixels.
     plan.reference = None;
     plan.camera.eye = eye.into();

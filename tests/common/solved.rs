@@ -28,7 +28,7 @@ pub fn balls(rod_radius: f64, camera: &Camera, size: [u32; 2]) -> Plan {
         rod_radius,
         ..Balls::default()
     });
-    let mut plan = Plan::new(distance(formula, None));
+    let mut plan = Plan::new(distance(formula, None)).one_sample();
     // The details of its own pixels.
     plan.reference = None;
     plan.camera = camera.clone();

@@ -42,7 +42,7 @@ fn plan(scene: &str) -> Plan {
     let text = format!("[scene]\nkind = 'heightfield'\n{scene}");
     let mut plan = preset::read(&text, "test").unwrap_or_else(|e| panic!("{text}: {e}"));
     plan.camera = camera([5.0, -9.0, 7.0], [0.0, 0.3, 0.5], 40.0);
-    plan.size = [120, 80];
+    (plan.size, plan.samples) = ([120, 80], 1);
     plan
 }
 

@@ -33,7 +33,7 @@ fn a_spot_on_a_plane_has_its_closed_form() {
     const EYE: DVec3 = DVec3::new(0.0, 0.0, 5.0);
     let spot = DVec3::new(1.0, -0.5, 2.5);
     let toward = DVec3::new(0.3, 0.2, 0.5);
-    let mut plan = Plan::new(scene("kind = 'slab'"));
+    let mut plan = Plan::new(scene("kind = 'slab'")).one_sample();
     (plan.camera.eye, plan.camera.target) = (EYE, DVec3::ZERO);
     (plan.camera.up, plan.size) = (DVec3::Y, [64, 36]);
     // Rays to light start as near the ground as those of a large picture.

@@ -28,6 +28,7 @@ fn shaded() -> Plan {
     let mut plan = Plan::new(scene(
         "kind = 'slab'\nnormal = [0, 0, 1]\nhalf = 0.3\nradius = 4",
     ));
+    plan.samples = 1;
     (plan.camera.eye, plan.camera.target) = (DVec3::new(0.5, -9.0, -2.0), DVec3::NEG_Z);
     (plan.size, plan.camera.fov) = ([160, 100], 70.0);
     let look = &mut plan.look;

@@ -44,6 +44,7 @@ fn under(mut plan: Plan, path: &Path) -> Plan {
 fn disc(radius: u32) -> Plan {
     let slab = format!("kind = 'slab'\nnormal = [0, 0, 1]\nhalf = 0.3\nradius = {radius}");
     let mut plan = Plan::new(scene(&slab));
+    plan.samples = 1;
     (plan.camera.eye, plan.camera.target) = (DVec3::new(0.5, -6.0, 4.0), DVec3::ZERO);
     plan.size = [48, 27];
     let look = &mut plan.look;

@@ -115,7 +115,7 @@ fn a_lost_device_is_opened_again_and_nothing_is_lost() {
 fn a_hidden_window_notices_a_lost_device() {
     let (desktop, folder) = (Desktop::new(), Folder::new());
     // The still takes long enough to hide the window in the middle.
-    let film = FILM.replace("size = [320, 180]", "size = [1280, 720]\nsamples = 64");
+    let film = FILM.replace("[320, 180]\nsamples = 1", "[1280, 720]\nsamples = 64");
     folder.write("film.toml", film);
     let view = open(&desktop, &folder, &format!("film.toml {SIZE}"));
     view.key("F12");

@@ -48,6 +48,7 @@ formula = "mandelbox"
 eye = [12, -14, 3]
 [image]
 size = [320, 180]
+samples = 1
 [time]
 length = 2
 fps = 10
