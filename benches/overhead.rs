@@ -196,7 +196,7 @@ fn large(args: &[String], presets: &Path) -> Result<String> {
         // Heightfields have no estimate.
         let has_formula = std::fs::read_to_string(&file)?.contains("formula");
         let same = scalar.get(..if has_formula { 2 } else { 0 });
-        let before = || detail_before(&file, [640, 360], &[]);
+        let before = || detail_before(&file, [1280, 720], &[]);
         let detail = has_formula.then(before).transpose()?;
         let detail = detail.map(|d| format!("march.detail={d:.3}"));
         let as_sharp = detail.as_ref().map(|d| ["--set", d]);

@@ -103,6 +103,8 @@ const FURNACE: [(&str, &[&str], &[u32]); 11] = [
 /// Scenes whose noise is measured, at so many samples.
 const NOISE: [&str; 4] = ["mandelbox", "mandelbox-gate", "mandelbox-canyon", "terrain"];
 const SAMPLES: [u32; 4] = [4, 16, 64, 256];
+/// Pictures of independent samples, whose mean error is taken: rare bright paths make single errors vary.
+const PICTURES: u32 = 16;
 const MOST_SAMPLES: u32 = 4096;
 const SIZE: [u32; 2] = [64, 36];
 
@@ -145,12 +147,12 @@ fn centred(path: &str) -> Option<String> {
     (path == "wgsl/base/view.wgsl").then(|| text.replace(RAY, &centre))
 }
 
-/// The same, and samples know nothing of each other.
-fn independent(path: &str) -> Option<String> {
+/// The same, and samples know nothing of each other, nor of those of another picture.
+fn independent(path: &str, picture: u32) -> Option<String> {
     const KEY: &str = "random_hash(seed ^ (purpose * 0x9e3779b9u))";
     let text = include_str!("../wgsl/base/random.wgsl");
     assert!(text.contains(KEY));
-    let key = format!("random_hash({KEY} + sample)");
+    let key = format!("random_hash({KEY} + sample + {}u)", picture * MOST_SAMPLES);
     match path {
         "wgsl/base/random.wgsl" => Some(text.replace(KEY, &key)),
         _ => centred(path),
@@ -207,17 +209,19 @@ impl Bench {
             for is_independent in [true, false] {
                 self.renderer.sources = is_independent.then(|| Arc::new(centred) as _);
                 let fine = self.render(&plan, LightMode::Path, MOST_SAMPLES)?;
-                self.renderer.sources = is_independent.then(|| Arc::new(independent) as _);
-                let mut errors = Vec::new();
-                for samples in SAMPLES {
-                    let frame = self.render(&plan, LightMode::Path, samples)?;
-                    let all = frame
-                        .radiance
-                        .iter()
-                        .flatten()
-                        .zip(fine.radiance.iter().flatten());
-                    let squares = all.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
-                    errors.push(squares / frame.radiance.len() as f64);
+                let pictures = if is_independent { PICTURES } else { 1 };
+                let mut errors = [0.0; SAMPLES.len()];
+                for picture in 0..pictures {
+                    let changed = move |path: &str| independent(path, picture + 1);
+                    self.renderer.sources = is_independent.then(|| Arc::new(changed) as _);
+                    for (error, samples) in errors.iter_mut().zip(SAMPLES) {
+                        let frame = self.render(&plan, LightMode::Path, samples)?;
+                        let all = frame.radiance.iter().zip(&fine.radiance);
+                        let squares =
+                            all.flat_map(|(a, b)| [0, 1, 2].map(|i| f64::from(a[i] - b[i])));
+                        let sum = squares.map(|off| off * off).sum::<f64>();
+                        *error += sum / (frame.radiance.len() as f64 * f64::from(pictures));
+                    }
                 }
                 let span = f64::from(SAMPLES[3] / SAMPLES[0]);
                 let slope = (errors[3] / errors[0]).log(span);

@@ -1,6 +1,6 @@
 //! How far the GPU's pictures are from those of the CPU executor:
-//! `cargo bench --bench twins [-- [--software] [--write]]`. With `--write` it writes its table into
-//! docs/accuracy.md. It takes a minute with a large GPU and 16 cores. `--software` has a table of its own,
+//! `cargo bench --bench twins [-- [--software] [--write] [PRESET...]]`. With `--write` it writes its table
+//! into docs/accuracy.md. With presets it prints these alone. It takes a minute with a large GPU and 16 cores. `--software` has a table of its own,
 //! in which both executors choose the same march: half an hour on two cores.
 
 use anyhow::{Context, Result};
@@ -51,8 +51,15 @@ fn main() -> Result<()> {
     };
     let mut on_gpu = |plan: &Plan| renderer.render(plan, &assets, extras, &mut |_| true);
     let on_cpu = |plan: &Plan| cpu::render(plan, &assets, extras, &mut |_| true);
+    let named: Vec<_> = std::env::args()
+        .skip(1)
+        .filter(|a| !a.starts_with("--"))
+        .collect();
     let mut rows = Vec::new();
     for (name, _) in BUILTIN {
+        if !named.is_empty() && !named.iter().any(|one| one == name) {
+            continue;
+        }
         eprintln!("{name}");
         let own = preset::load(name, &[])?.plan;
         let mut quick = own.clone();
@@ -93,6 +100,10 @@ fn main() -> Result<()> {
         "preset | {flips} | paths, standard errors of the means | of the difference: red | green | blue"
     );
     let table = markdown::table(&head, "lr", rows);
+    if !named.is_empty() {
+        println!("{table}");
+        return Ok(());
+    }
     publish("accuracy.md", marks, &format!("Made on {on}.\n\n{table}"))
 }
 
