@@ -4,12 +4,12 @@
 //! The space between the eye and what it sees is empty. So a shadow ray that starts in front of the
 //! surface is free until it passes behind something in the picture. Depths of pixels prove nothing, as
 //! thin parts can lie between their rays. The fronts of cones are proven. Both take a look-up for each
-//! pixel or cell on the way, and prove nothing about the penumbra beside the ray. *Balls* take fewer
-//! look-ups: each lies within the cones of four cells of a level, and holds a piece of the ray with its
-//! penumbra.
+//! pixel or cell on the way, and prove only the ray to the middle of the sun. *Balls* take fewer
+//! look-ups: each lies within the cones of four cells of a level, and holds a piece of the rays to all
+//! points of the sun.
 //!
 //! With a *shared cone*, the rays of a block of pixels go apart for a while, then a cone of parallel
-//! rays goes on for all of them, and they go on from its end. It holds no penumbra either.
+//! rays goes on for all of them, and they go on from its end. It holds the rays to one point of the sun alone.
 
 use anyhow::Result;
 use conemarch::base::outcome::Counts;
@@ -310,7 +310,7 @@ fn free_by(
     }
 }
 
-/// How far balls about a ray and its penumbra lie within the cones of a picture. Adds to the balls.
+/// How far balls about the rays to all points of a light lie within the cones of a picture. Adds to the balls.
 fn free_by_balls(
     view: &View,
     ray: &Beam,

@@ -266,10 +266,7 @@ impl<S: Solid> Run<'_, S> {
                     starts.push(Start { ray, front, far });
                 }
             }
-            for (i, end) in going
-                .into_iter()
-                .zip(follow_all(solid, &starts, limit, |_, _| {}))
-            {
+            for (i, end) in going.into_iter().zip(follow_all(solid, &starts, limit)) {
                 all[i] = Some((end.hit, trace::state(&end), end.work));
             }
             all

@@ -80,13 +80,14 @@ pub fn colors<S: Solid>(
     let hits: Vec<(Beam, Hit)> = met.iter().map(|s| (s.ray, s.hit)).collect();
     let surfaces = hits.chunks(LANES).flat_map(|part| solid.surfaces(part));
     let spot = |(surface, sight): (Surface, &&Sight)| Spot {
+        pixel: sight.pixel,
         ray: sight.ray,
         t: sight.hit.t,
         surface,
     };
     let spots: Vec<Spot> = surfaces.zip(&met).map(spot).collect();
     let lit = match light.look.mode {
-        LightMode::Quick => quick::shade(solid, light, &spots),
+        LightMode::Quick => quick::shade((solid, light), before, &spots),
         LightMode::Path => {
             let one = |(spot, sight): (&Spot, &&Sight)| {
                 let sample = (sight.pixel, before);

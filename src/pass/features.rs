@@ -97,7 +97,11 @@ pub fn modules(look: &Look) -> Vec<Module> {
         |f: &&LookFeature| f.mode() != Some(LightMode::Quick) || look.mode == LightMode::Quick;
     let features = LookFeature::ALL.iter().filter(is_called);
     let mut all: Vec<Module> = features.map(|f| f.module(f.is_on(look))).collect();
-    all.push(wgsl!("pass/material.wgsl"));
+    all.extend([
+        wgsl!("pass/material.wgsl"),
+        wgsl!("base/random.wgsl"),
+        wgsl!("pass/aim.wgsl"),
+    ]);
     match look.mode {
         // The loop alone would take time to compile where there is no lamp.
         LightMode::Quick => all.extend([
@@ -107,7 +111,7 @@ pub fn modules(look: &Look) -> Vec<Module> {
             },
             wgsl!("pass/quick.wgsl"),
         ]),
-        LightMode::Path => all.extend([wgsl!("base/random.wgsl"), wgsl!("pass/path.wgsl")]),
+        LightMode::Path => all.push(wgsl!("pass/path.wgsl")),
     }
     all
 }

@@ -28,14 +28,8 @@ pub struct End {
     pub work: Counts,
 }
 
-/// Follows a ray by at most `limit` steps. `passed` sees the ray after each step that was not its
-/// last one.
-pub fn follow<S: Solid>(
-    solid: &S,
-    start: &Start,
-    limit: u32,
-    mut passed: impl FnMut(&S::Walk),
-) -> End {
+/// Follows a ray by at most `limit` steps.
+pub fn follow<S: Solid>(solid: &S, start: &Start, limit: u32) -> End {
     let mut end = End::default();
     let mut walk = solid.begin(&start.ray, start.front, start.far, &mut end.work);
     for _ in 0..limit {
@@ -43,23 +37,17 @@ pub fn follow<S: Solid>(
         if end.step != Step::Moving {
             break;
         }
-        passed(&walk);
     }
     end.hit = solid.walk_hit(&walk);
     end
 }
 
-/// [`follow`] for many rays. `passed` also has the number of the ray.
-pub fn follow_all<S: Solid>(
-    solid: &S,
-    starts: &[Start],
-    limit: u32,
-    mut passed: impl FnMut(usize, &S::Walk),
-) -> Vec<End> {
+/// [`follow`] for many rays.
+pub fn follow_all<S: Solid>(solid: &S, starts: &[Start], limit: u32) -> Vec<End> {
     let mut waiting = starts.iter().enumerate();
     if starts.len() < 2 || limit == 0 || !solid.has_lanes() {
-        let one = |(i, start): (usize, &Start)| follow(solid, start, limit, |walk| passed(i, walk));
-        return waiting.map(one).collect();
+        let one = |start| follow(solid, start, limit);
+        return starts.iter().map(one).collect();
     }
     let mut ends = vec![End::default(); starts.len()];
     let Start { ray, front, far } = starts[0];
@@ -88,11 +76,8 @@ pub fn follow_all<S: Solid>(
                 continue;
             };
             left[lane] -= 1;
-            if steps[lane] == Step::Moving {
-                passed(i, &walks[lane]);
-                if left[lane] > 0 {
-                    continue;
-                }
+            if steps[lane] == Step::Moving && left[lane] > 0 {
+                continue;
             }
             ends[i] = End {
                 hit: solid.walk_hit(&walks[lane]),

@@ -45,8 +45,8 @@ pub struct LookUniform {
     pub fog: f32,
     /// Sky below.
     pub sky_low: Vec3,
-    /// Unused.
-    pub pad: f32,
+    /// 1 if shadow rays of mode quick go to points of a light's disc, 0 if they go to its middle.
+    pub discs: u32,
     /// Unit vector up.
     pub world_up: Vec3,
     /// Tangent of the light's angular radius.
@@ -115,6 +115,9 @@ pub struct Light {
     pub look: Look,
     /// Tangent of the light's angular radius.
     pub softness: f64,
+    /// Whether shadow rays of mode quick go to points of a light's disc. A single sample has no mean, so
+    /// its rays go to the middle.
+    pub discs: bool,
     /// Step limit of a shadow ray.
     pub shadow_steps: u32,
     /// The most steps of a path of light.
@@ -187,6 +190,7 @@ impl Light {
         };
         Self {
             softness: look.light_size.to_radians().tan(),
+            discs: plan.samples > 1,
             shadow_steps,
             // Over a heightfield the rays' own limits are enough: few steps have many rounds.
             path_steps: match solid.twin().most_steps() {
@@ -235,7 +239,7 @@ impl Light {
             sky_high: look.sky_high.as_vec3(),
             fog: look.fog as f32,
             sky_low: look.sky_low.as_vec3(),
-            pad: 0.0,
+            discs: u32::from(self.discs),
             world_up: self.world_up.as_vec3(),
             softness: self.softness as f32,
             occlusion_reach: look.occlusion_reach as f32,

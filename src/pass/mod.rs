@@ -16,6 +16,7 @@
 //! Each pass declares its program in its own file, and its bindings in WGSL, where kernels read them.
 //! [`layout`] says which cells a stage visits, and where its results are.
 
+pub mod aim;
 pub mod color;
 pub mod emission;
 mod explain;

@@ -4,40 +4,25 @@
 
 use std::f64::consts::PI;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::base::outcome::Counts;
 use crate::base::random::{random_pair, random_seed};
 use crate::base::view::{Beam, footprint};
+use crate::pass::aim::{aim, aim_purpose};
 use crate::pass::color::albedo_of;
 use crate::pass::emission::emission;
-use crate::pass::lamp::{Lamp, lamp_from, lamp_light};
+use crate::pass::lamp::{lamp_from, lamp_light};
 use crate::pass::look::Light;
-use crate::pass::material::{material_frame, material_turn, material_view};
+use crate::pass::material::{material_frame, material_view};
 use crate::scene::{Hit, Solid, Step, Surface};
 
 /// Bounces after which a path may end by chance.
 const PATH_SURE: u32 = 2;
 
-/// The purpose of the random numbers of a light, where the sun is the first and lamps follow. Each
-/// bounce has four, for the sun, the first lamp and the material. Further lamps have those behind:
-/// 68 and more, as there are at most 16 bounces.
-fn path_purpose(bounce: u32, nth: u32) -> u32 {
-    match nth {
-        0 | 1 => 4 * bounce + nth,
-        _ => 66 + 2 * bounce + nth,
-    }
-}
-
 /// The first purpose of the random numbers of a sky that is sampled. Each bounce has two. Those of
 /// shafts are before it.
 const PATH_SKY: u32 = 130;
-
-/// A direction to a point of a light, uniform over a disc across it.
-pub(super) fn path_toward(lamp: &Lamp, pair: DVec2) -> DVec3 {
-    let across = lamp.softness * pair.y.sqrt() * material_turn(pair.x);
-    (material_frame(lamp.axis) * across.extend(1.0)).normalize()
-}
 
 /// Follows a ray for `reach`. It is neither a hit nor out if it reached a step limit. The path has so many
 /// steps left.
@@ -103,8 +88,8 @@ pub fn shade<S: Solid>(
             (lamp, lamp_light(light, nth, &lamp))
         });
         for (nth, (lamp, strength)) in (0..).zip([sun].into_iter().chain(lamps)) {
-            let pair = random_pair(seed, before, path_purpose(bounce, nth));
-            let toward = path_toward(&lamp, pair);
+            let pair = random_pair(seed, before, aim_purpose(bounce, nth));
+            let toward = aim(&lamp, pair);
             let l = frame.transpose() * toward;
             if l.z <= 0.0 || strength == DVec3::ZERO {
                 continue;
@@ -179,7 +164,7 @@ mod tests {
         let lights = 0..=MOST_LAMPS as u32;
         let lit = bounces
             .clone()
-            .flat_map(|b| lights.clone().map(move |n| path_purpose(b, n)));
+            .flat_map(|b| lights.clone().map(move |n| aim_purpose(b, n)));
         let all: Vec<u32> = bounces
             .clone()
             .flat_map(|b| [4 * b + 2, 4 * b + 3, PATH_SKY + 2 * b, PATH_SKY + 2 * b + 1])

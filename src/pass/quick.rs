@@ -1,11 +1,13 @@
-//! Light by formulas: the sun and lamps with soft shadows, and light from the sky and from the
+//! Light by formulas: the sun and lamps with a shadow ray each, and light from the sky and from the
 //! ground with occlusion. Twins: `wgsl/pass/quick.wgsl`, `quick_lamps.wgsl`, `quick_lamps_off.wgsl`.
 
 use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
+use crate::base::random::{random_pair, random_seed};
 use crate::base::view::{Beam, footprint};
+use crate::pass::aim::{aim, aim_purpose};
 use crate::pass::color::albedo_of;
 use crate::pass::emission::emission;
 use crate::pass::lamp::{Lamp, lamp_from, lamp_light};
@@ -18,6 +20,8 @@ use crate::scene::{Solid, Surface};
 /// A surface that a ray met.
 #[derive(Clone, Copy, Debug)]
 pub struct Spot {
+    /// The pixel of the ray.
+    pub pixel: [u32; 2],
     /// The ray.
     pub ray: Beam,
     /// The distance along it.
@@ -71,14 +75,19 @@ impl Skin {
 }
 
 /// Radiance that leaves surfaces towards the eye, and whether the shadow rays reached their ends.
-pub fn shade<S: Solid>(solid: &S, light: &Light, spots: &[Spot]) -> Vec<(DVec3, bool)> {
+/// `before` is the number of the pixels' samples before this one.
+pub fn shade<S: Solid>(
+    (solid, light): (&S, &Light),
+    before: u32,
+    spots: &[Spot],
+) -> Vec<(DVec3, bool)> {
     let look = &light.look;
     let places: Vec<Place> = spots.iter().map(Spot::place).collect();
     // A surface that faces away is dark: it needs no shadow ray.
     let sun = light.sun(solid.bounds_far());
     let facing = |place: &Place| place.normal.dot(look.light);
-    let keys = shadows_of((solid, light), &places, |_, place| {
-        (facing(place) > 0.0).then_some(sun)
+    let keys = shadows_of((solid, light), &places, |i, place| {
+        (facing(place) > 0.0).then(|| quick_lamp(light, &sun, 0, &spots[i], before))
     });
     let opens = occlusions(solid, light, &places);
     let skins: Vec<Skin> = spots
@@ -104,13 +113,22 @@ pub fn shade<S: Solid>(solid: &S, light: &Light, spots: &[Spot]) -> Vec<(DVec3, 
     let mut all: Vec<(DVec3, bool)> = (0..spots.len()).map(unlit).collect();
     for nth in 0..light.lamps.len() {
         let lit = |place: &Place| {
-            let lamp = lamp_from(light, nth, place.q);
+            let start = place.q + solid.shadow_lift(place.grain) * place.normal;
+            let lamp = lamp_from(light, nth, start);
             let strength = lamp_light(light, nth, &lamp);
             let lit = place.normal.dot(lamp.axis) > 0.0 && strength != DVec3::ZERO;
             lit.then_some((lamp, strength))
         };
         let lit: Vec<_> = places.iter().map(lit).collect();
-        let near = shadows_of((solid, light), &places, |i, _| Some(lit[i]?.0));
+        let near = shadows_of((solid, light), &places, |i, _| {
+            Some(quick_lamp(
+                light,
+                &lit[i]?.0,
+                1 + nth as u32,
+                &spots[i],
+                before,
+            ))
+        });
         for (i, (c, decided)) in all.iter_mut().enumerate() {
             if let Some((lamp, strength)) = lit[i] {
                 *c +=
@@ -123,6 +141,20 @@ pub fn shade<S: Solid>(solid: &S, light: &Light, spots: &[Spot]) -> Vec<(DVec3, 
         *c += emission(solid, light, &spot.surface);
     }
     all
+}
+
+/// A light as a sample sees it: a point of its disc, the same as at the first hit of a path.
+fn quick_lamp(light: &Light, lamp: &Lamp, nth: u32, spot: &Spot, before: u32) -> Lamp {
+    match light.discs {
+        true => {
+            let pair = random_pair(random_seed(spot.pixel), before, aim_purpose(0, nth));
+            Lamp {
+                axis: aim(lamp, pair),
+                ..*lamp
+            }
+        }
+        false => *lamp,
+    }
 }
 
 /// The shadows of points that have a lamp. The others have none.

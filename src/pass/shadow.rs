@@ -1,18 +1,17 @@
-//! The soft shadow of a light. A ray goes from the point to the light: a hit is full
-//! shadow, and the narrowest empty ball on the way gives the penumbra.
+//! The shadow of a light: whether a ray from the point to the light meets a surface.
 //! Twins: `wgsl/pass/shadow.wgsl`, `shadow_off.wgsl`.
 
 use crate::base::view::Beam;
 use crate::pass::LookFeature;
-use crate::pass::follow::{End, Start, follow_all};
+use crate::pass::follow::{Start, follow_all};
 use crate::pass::lamp::Lamp;
-use crate::pass::look::{Light, Place, smoothstep};
+use crate::pass::look::{Light, Place};
 use crate::scene::{Solid, Step};
 
 /// What a shadow ray found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shadow {
-    /// Share of the light that arrives, as far as the ray came.
+    /// Share of the light that arrives: 0 or 1.
     pub open: f64,
     /// Whether the ray reached its end before its step limit.
     pub decided: bool,
@@ -49,17 +48,10 @@ pub fn shadows<S: Solid>((solid, light): (&S, &Light), all: &[(Place, Lamp)]) ->
         far: lamp.far,
     };
     let starts: Vec<Start> = all.iter().map(start).collect();
-    let mut open = vec![1.0_f64; all.len()];
-    let ends = follow_all(solid, &starts, light.shadow_steps, |i, walk| {
-        let (t, (place, lamp)) = (solid.walk_hit(walk).t, &all[i]);
-        if t > 4.0 * place.grain {
-            let room = solid.walk_radius(&starts[i].ray, walk);
-            open[i] = open[i].min(room / (lamp.softness * t));
-        }
-    });
-    let shadow = |(end, open): (&End, f64)| Shadow {
-        open: smoothstep(0.0, 1.0, if end.step == Step::Hit { 0.0 } else { open }),
-        decided: matches!(end.step, Step::Hit | Step::Out),
+    let ends = follow_all(solid, &starts, light.shadow_steps);
+    let shadow = |step: Step| Shadow {
+        open: f64::from(u8::from(step != Step::Hit)),
+        decided: matches!(step, Step::Hit | Step::Out),
     };
-    ends.iter().zip(open).map(shadow).collect()
+    ends.iter().map(|end| shadow(end.step)).collect()
 }

@@ -15,9 +15,10 @@ use glam::{DVec3, Vec3};
 use crate::base::random::{random_pair, random_seed};
 use crate::base::view::{Beam, footprint};
 use crate::pass::LookFeature;
+use crate::pass::aim::aim;
 use crate::pass::fog_height::fog_depth;
 use crate::pass::look::Light;
-use crate::pass::path::{path_sight, path_toward};
+use crate::pass::path::path_sight;
 use crate::plan::look::Look;
 use crate::scene::{Solid, Step};
 
@@ -86,7 +87,7 @@ pub fn shafts<S: Solid>(
     let seed = random_seed(pixel);
     let at = random_pair(seed, before, SHAFTS_PURPOSE);
     let t = shafts_way(light, ray, end, -(1.0 - at.x * share).ln());
-    let toward = path_toward(
+    let toward = aim(
         &light.sun(solid.bounds_far()),
         random_pair(seed, before, SHAFTS_PURPOSE + 1),
     );

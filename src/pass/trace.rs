@@ -33,7 +33,7 @@ pub fn trace<S: Solid>(
         front,
         far: solid.bounds_far(),
     };
-    let end = follow(solid, &start, limit, |_| {});
+    let end = follow(solid, &start, limit);
     work.evaluations += end.work.evaluations;
     work.iterations += end.work.iterations;
     (end.hit, state(&end))

@@ -91,7 +91,7 @@ settings! {
         lamp: f64 = 0.0, number(0.0, 1e6), "strength of a lamp in the scene, 0 for none: a white wall that faces it at the distance from eye to target has this radiance, and at a tenth of it a hundred times more" => Program;
         lamp_at: Option<DVec3> = None, auto_triple(-1e9, 1e9), "position of the lamp; auto is the eye";
         lamp_color: DVec3 = DVec3::new(1.0, 0.72, 0.42), triple(0.0, 1.0), "colour of the lamp, sRGB";
-        lamp_size: f64 = 0.005, number(1e-4, 1.0), "radius of the lamp as a share of the distance from eye to target; a larger one makes softer shadows";
+        lamp_size: f64 = 0.005, number(1e-4, 1.0), "radius of the lamp as a share of the distance from eye to target; a larger one makes softer shadows, if there are several samples";
         lamp_cone: Option<f64> = None, auto_number(1.0, 360.0), "full angle in degrees of the cone in which the lamp shines, with a soft edge within; auto or 360 is everywhere";
         lamp_toward: Option<DVec3> = None, auto_triple(-1e9, 1e9), "the point in the middle of the cone; auto is the target; a lamp at that point shines down";
         emission: f64 = 0.0, number(0.0, 1e4), "light that the surface itself sends out where its trap is near, 0 for none" => Program;
@@ -100,7 +100,7 @@ settings! {
         emission_color: DVec3 = DVec3::new(1.0, 0.35, 0.08), triple(0.0, 1.0), "colour of the glow, sRGB";
         ground: f64 = 0.45, number(0.0, 1.0), "share of the light of the lower sky that reaches surfaces: the ground absorbs the rest";
         shadow: bool = true, switch(), "in mode quick, whether the light casts shadows" => Program;
-        light_size: f64 = 2.0, number(0.05, 45.0), "angular radius of the light in degrees; a larger one makes softer shadows";
+        light_size: f64 = 2.0, number(0.05, 45.0), "angular radius of the light in degrees; a larger one makes softer shadows, if there are several samples";
         shadow_steps: Option<u32> = None, auto_count(1, MOST_SHADOW_STEPS),
             "step limit of a ray from a hit to the light, in mode path also of one to another surface; auto is 96 for a formula, or 512 in mode path, and over a heightfield as many as a ray can need, up to 2048; a formula allows at most 512";
         occlusion: f64 = 1.0, number(0.0, 2.0), "in mode quick, strength of ambient occlusion, which darkens hollows; 0 for none" => Program;

@@ -73,9 +73,6 @@ pub trait Solid: Sync {
     /// Where the ray is; its hit, once it has one.
     fn walk_hit(&self, walk: &Self::Walk) -> Hit;
 
-    /// The free room about the ray's current place, for soft shadows. It may be a guess.
-    fn walk_radius(&self, ray: &Beam, walk: &Self::Walk) -> f64;
-
     /// How far from the surface shadow rays start, along the normal. `grain` is half a pixel's
     /// width at the point.
     fn shadow_lift(&self, grain: f64) -> f64 {

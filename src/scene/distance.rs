@@ -346,10 +346,6 @@ impl Solid for Distance {
         }
     }
 
-    fn walk_radius(&self, _ray: &Beam, walk: &Walk) -> f64 {
-        walk.room
-    }
-
     fn clearance(&self, q: DVec3) -> f64 {
         let step = self.evaluator.step(self.eye + q, self.iterations, 0.0);
         self.read(q, step, 0.0, &mut Counts::default()).1.max(0.0)

@@ -313,10 +313,6 @@ impl Solid for Heightfield {
         Hit { t, id, uv }
     }
 
-    fn walk_radius(&self, _: &Beam, walk: &Walk) -> f64 {
-        self.surface_gap(walk.ray.at(walk.trace.hit().s))
-    }
-
     fn shadow_lift(&self, grain: f64) -> f64 {
         if self.is_exact() {
             return self.lift;

@@ -226,10 +226,6 @@ impl Solid for Slab {
         }
     }
 
-    fn walk_radius(&self, _ray: &Beam, _walk: &Walk) -> f64 {
-        0.0
-    }
-
     fn clearance(&self, q: DVec3) -> f64 {
         self.slab_distance(q).max(0.0)
     }

@@ -14,7 +14,7 @@ fn answer(q: Numbers) -> Numbers {
     let at = beam.origin + q.a.w * beam.axis;
     return Numbers(
         vec4<f32>(next.front, f32(next.going), clearance(at), bounds_far()),
-        vec4<f32>(hit.t, f32(s), f32(hit.id), walk_radius(beam, walk)),
+        vec4<f32>(hit.t, f32(s), f32(hit.id), 0.0),
         vec4<f32>(hit.uv, 0.0, 0.0),
     );
 }

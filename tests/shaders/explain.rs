@@ -258,6 +258,8 @@ fn the_mandelbox_is_explained() {
         wgsl/pass/occlusion.wgsl
         wgsl/pass/fog.wgsl
         wgsl/pass/material.wgsl
+        wgsl/base/random.wgsl
+        wgsl/pass/aim.wgsl
         wgsl/pass/quick.wgsl
         wgsl/pass/color.wgsl  COLOR_KEEPS_NORMALS=0  COLOR_KEEPS_VARIANCE=0  COLOR_IS_PIGMENT=0
     ");

@@ -376,3 +376,21 @@ fn cones_need_far_fewer_evaluations_than_rays() {
     let [ray, relaxed] = logs.map(|sum: f64| (sum / count).exp());
     assert!(ray > 2.5 && relaxed > 2.0, "{ray} {relaxed}");
 }
+
+/// Presets as they are shipped, whose plan decides about cones, against the strongest rays alone.
+#[test]
+fn no_preset_needs_more_work_than_the_strongest_rays() {
+    let mut logs = Vec::new();
+    for name in BUILTIN.iter().map(|(name, _)| name) {
+        let mut plan = preset(name, &["march.coarsest=auto", "image.size=[320, 180]"]);
+        let own = render(&plan, COUNTED).work_per_pixel().unwrap().0;
+        (plan.march.mode, plan.march.clip) = (Mode::RayRelaxed, Some(true));
+        let rays = render(&plan, COUNTED).work_per_pixel().unwrap().0;
+        let ratio = own / rays;
+        println!("{name}: {ratio:.3}");
+        assert!(ratio < 1.02, "{name}: {own} {rays}");
+        logs.push(ratio.ln());
+    }
+    let mean = (logs.iter().sum::<f64>() / logs.len() as f64).exp();
+    assert!(mean < 0.8, "{mean}");
+}

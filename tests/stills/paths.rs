@@ -284,3 +284,33 @@ fn shared_first_steps_change_no_bit() {
     }
     assert!(differs > 0);
 }
+
+/// Rays to the sun and to lamps go to the same points in both modes. In the folds of this view most rays to a
+/// light pass near some surface.
+#[test]
+fn shadows_of_quick_light_are_those_of_paths() {
+    for lamp in [0.0, 1.0] {
+        let mut plan = followed(sized("mandelbox-temple", [96, 54]), 16);
+        let look = &mut plan.look;
+        // One light, on matte surfaces.
+        (look.fill, look.fog, look.bounces, look.roughness) = (0.0, 0.0, 0, 1.0);
+        (look.lamp, look.lamp_at) = (lamp, Some(plan.camera.eye + DVec3::splat(0.05)));
+        look.key *= 1.0 - lamp;
+        (look.light_size, look.lamp_size) = (4.0, 0.1);
+        let path = render(&plan, Extras::default());
+        plan.look.mode = LightMode::Quick;
+        let vector = |c: &[f32; 3]| DVec3::from(c.map(f64::from));
+        let light: f64 = path.radiance.iter().map(|c| vector(c).length()).sum();
+        let off = |plan: &Plan| {
+            let quick = render(plan, Extras::default());
+            let pixels = quick.radiance.iter().zip(&path.radiance);
+            let off = pixels.map(|(a, b)| (vector(a) - vector(b)).length());
+            off.sum::<f64>() / light
+        };
+        let discs = off(&plan);
+        (plan.look.light_size, plan.look.lamp_size) = (0.05, 1e-4);
+        let middle = off(&plan);
+        println!("lamp {lamp}: {discs:.4}, with rays to the middle {middle:.4}");
+        assert!(discs < 0.04 && middle > 2.0 * discs, "{lamp}: {discs} {middle}");
+    }
+}

@@ -8,8 +8,10 @@ use glam::DVec3;
 use super::common::plans::preset;
 use crate::adapter::{EVERYTHING, on_cpu, render};
 
+/// Without shadows: those of a single sample are hard.
 fn plan(samples: u32) -> Plan {
-    let mut plan = preset("mandelbox", &["image.size=[96, 64]", "march.mode=ray"]);
+    let changes = ["image.size=[96, 64]", "march.mode=ray", "look.shadow=false"];
+    let mut plan = preset("mandelbox", &changes);
     plan.samples = samples;
     plan
 }

@@ -86,7 +86,6 @@ fn pair<S: Solid>(solid: &S, pairs: &mut Pairs, q: &Numbers, a: &Numbers) {
     };
     let hit = solid.walk_hit(&walk);
     pairs.add("walk", a[1][0], hit.t);
-    pairs.add("walk", a[1][3], solid.walk_radius(&ray, &walk));
     pairs.add("step", a[1][1], state);
     pairs.add("mark", a[1][2], f64::from(hit.id));
     pairs.add("mark", a[2][0], hit.uv[0]);
@@ -108,7 +107,8 @@ fn beams_in_a_distance_scene_agree() {
         for steps in [1.0, 4.0, 9.0] {
             let plan = &of(1.0, 0.9, relaxation);
             let moved = [
-                ("advance clearance walk", of(MOVED, 0.9, relaxation)),
+                ("advance clearance", of(MOVED, 0.9, relaxation)),
+                ("walk", of(MOVED, 0.9, relaxation)),
                 ("walk", of(1.0, 0.9 * MOVED, relaxation)),
             ];
             solid(plan).run(Beams {
@@ -119,7 +119,7 @@ fn beams_in_a_distance_scene_agree() {
                     ("advance clearance walk", 0.1, Allowed(1e-6, 1e-5)),
                     ("going step", 0.1, DECIDED),
                 ],
-                // The stride is seen in the second step.
+                // After one step, a ray is where it began.
                 moved: match steps > 1.0 {
                     true => &moved,
                     false => &moved[..1],

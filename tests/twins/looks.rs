@@ -3,7 +3,8 @@
 use bytemuck::bytes_of;
 use conemarch::base::random::{random_pair, random_seed};
 use conemarch::base::view::{Beam, footprint};
-use conemarch::pass::lamp::{lamp_from, lamp_light};
+use conemarch::pass::aim::aim;
+use conemarch::pass::lamp::{Lamp, lamp_from, lamp_light};
 use conemarch::pass::look::Place;
 use conemarch::pass::material::{Substance, material_frame};
 use conemarch::pass::{LookFeature, fog, occlusion, shadow};
@@ -16,7 +17,7 @@ use super::beams::beam;
 use super::common::plans::{distance, distance_solid, light, scene};
 use super::common::probe::{Probe, probe};
 use super::common::setups::{four, probe_of, seen_from};
-use super::compare::{Allowed, MOVED, Twins, questions};
+use super::compare::{Allowed, DECIDED, MOVED, Twins, questions};
 use super::{balls, three};
 
 /// Adds the look of a plan to what a probe binds.
@@ -131,6 +132,44 @@ fn materials_agree() {
 }
 
 #[test]
+fn rays_go_to_the_same_points_of_lights() {
+    let plan = seen_from([4.0, -9.0, 6.0], scene("kind = 'slab'"));
+    let asked = questions(13, |random| {
+        let pair = DVec3::new(random.unit(), random.unit(), 0.0);
+        let softness = random.between(1e-3, 1.0);
+        [
+            four(random.direction(), softness),
+            four(pair, 0.0),
+            [0.0; 4],
+        ]
+    });
+    let quantities = [("aim", 0.01, Allowed(1e-6, 1e-5))];
+    let twins = Twins::new(&asked, &quantities, |pairs, q, a| {
+        let lamp = Lamp {
+            axis: three(q[0]),
+            far: 0.0,
+            softness: f64::from(q[0][3]),
+        };
+        pairs.add_vector("aim", a[0], aim(&lamp, three(q[1]).truncate()));
+    });
+    let modules = [
+        conemarch::wgsl!("pass/material.wgsl"),
+        conemarch::wgsl!("pass/aim.wgsl"),
+        probe!("aim"),
+    ];
+    let bare = Probe {
+        modules: modules.to_vec(),
+        ..Probe::default()
+    };
+    let mut uneven = bare.clone();
+    let source = &mut uneven.modules[1].source;
+    *source = source.replace("sqrt(pair.y)", "pair.y").into();
+    let moved = [("aim", with_look(uneven, &plan))];
+    let bare = with_look(bare, &plan);
+    twins.assert_agree("aim", &bare, &moved);
+}
+
+#[test]
 fn lamps_agree() {
     let mut plan = seen_from([4.0, -9.0, 6.0], scene("kind = 'slab'"));
     let spots = [[1.0, 2.0, 3.0], [-2.0, 0.5, 3.0], [0.0, -1.0, 2.0]].map(DVec3::from_array);
@@ -197,7 +236,6 @@ fn surfaces_agree(fog_height: f64) {
     plan.look.lamp = 1.0;
     plan.look.fog_height = fog_height;
     plan.look.fog_level = -0.1;
-    plan.look.light_size = 20.0;
     plan.look.occlusion_reach = 0.3;
     let asked = questions(8, |random| {
         // Points on the sphere about the largest ball, seen from the eye.
@@ -210,7 +248,7 @@ fn surfaces_agree(fog_height: f64) {
     let quantities = [
         ("normal", 0.1, Allowed(5e-5, 5e-4)),
         ("pigment", 0.1, Allowed(2e-6, 3e-5)),
-        ("shadow", 0.1, Allowed(1e-6, 5e-5)),
+        ("shadow", 0.1, DECIDED),
         ("occlusion", 0.1, Allowed(1e-5, 1e-4)),
         ("fog", 0.1, Allowed(1e-6, 1e-5)),
         ("lamp", 0.01, Allowed(1e-6, 1e-5)),
@@ -265,7 +303,7 @@ fn surfaces_agree(fog_height: f64) {
             "normal pigment",
             probe(|p| p.camera.eye += DVec3::splat(0.05)),
         ),
-        ("shadow", probe(|p| p.look.light_size *= MOVED)),
+        ("shadow", probe(|p| p.look.light.z += 0.3)),
         ("occlusion", probe(|p| p.look.occlusion *= MOVED)),
         ("fog", probe(|p| p.look.fog *= MOVED)),
         ("lamp", probe(|p| p.look.lamp_size *= MOVED)),

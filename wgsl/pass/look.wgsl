@@ -10,7 +10,8 @@ struct LookUniform {
     /// Extinction per unit of length.
     fog: f32,
     sky_low: vec3<f32>,
-    pad: f32,
+    /// 1 if shadow rays of mode quick go to points of a light's disc, 0 if they go to its middle.
+    discs: u32,
     world_up: vec3<f32>,
     /// Tangent of the sun's angular radius.
     softness: f32,

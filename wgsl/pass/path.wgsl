@@ -32,22 +32,9 @@ fn path_sight(ray: Beam, reach: f32, opened: Opening, left: ptr<function, u32>) 
     return Sight(s, walk_hit(ray, walk));
 }
 
-/// The purpose of the random numbers of a light, where the sun is the first and lamps follow. Each
-/// bounce has four, for the sun, the first lamp and the material. Further lamps have those behind:
-/// 68 and more, as there are at most 16 bounces.
-fn path_purpose(bounce: u32, nth: u32) -> u32 {
-    return select(4u * bounce + nth, 66u + 2u * bounce + nth, nth > 1u);
-}
-
 /// The first purpose of the random numbers of a sky that is sampled. Each bounce has two. Those of
 /// shafts are before it.
 const PATH_SKY = 130u;
-
-/// A direction to a point of a light, uniform over a disc across it.
-fn path_toward(lamp: Lamp, pair: vec2<f32>) -> vec3<f32> {
-    let across = lamp.softness * sqrt(pair.y) * material_turn(pair.x);
-    return normalize(material_frame(lamp.axis) * vec3<f32>(across, 1.0));
-}
 
 /// Rays find what is near a hit by themselves.
 fn shade_nearest(grain: f32) -> f32 {
@@ -87,8 +74,8 @@ fn shade(ray: Beam, q: vec3<f32>, seen: Surroundings, grain: f32, pixel: vec2<u3
             if all(strength == vec3<f32>(0.0)) {
                 continue;
             }
-            let pair = random_pair(seed, turn.stage.before, path_purpose(bounce, nth));
-            let toward = path_toward(lamp, pair);
+            let pair = random_pair(seed, turn.stage.before, aim_purpose(bounce, nth));
+            let toward = aim(lamp, pair);
             let l = toward * frame;
             if l.z <= 0.0 {
                 continue;

@@ -1,4 +1,4 @@
-// Light by formulas: the sun and lamps with soft shadows, and light from the sky and from the ground
+// Light by formulas: the sun and lamps with a shadow ray each, and light from the sky and from the ground
 // with occlusion. `path.wgsl` takes its place where light is followed by rays.
 
 /// Whether pixels are flagged whose rays of light reached their step limit.
@@ -7,6 +7,15 @@ const LIGHT_IS_FLAGGED = true;
 /// The distance from which on the free room about a hit is asked for.
 fn shade_nearest(grain: f32) -> f32 {
     return occlusion_nearest(grain);
+}
+
+/// A light as a sample sees it: a point of its disc, the same as at the first hit of a path.
+fn quick_lamp(lamp: Lamp, nth: u32, pixel: vec2<u32>) -> Lamp {
+    if look.discs == 0u {
+        return lamp;
+    }
+    let pair = random_pair(random_seed(pixel), turn.stage.before, aim_purpose(0u, nth));
+    return Lamp(aim(lamp, pair), lamp.far, lamp.softness);
 }
 
 /// Radiance that leaves a hit towards the eye, and 0 if the shadow ray reached its step limit,
@@ -22,7 +31,8 @@ fn shade(ray: Beam, q: vec3<f32>, at: Surroundings, grain: f32, pixel: vec2<u32>
     var decided = true;
     // A surface that faces away is dark: it needs no shadow ray.
     if sun.z > 0.0 {
-        let light = shadow(q, n, grain, Lamp(look.light, 2.0 * bounds_far(), look.softness));
+        let disc = Lamp(look.light, 2.0 * bounds_far(), look.softness);
+        let light = shadow(q, n, grain, quick_lamp(disc, 0u, pixel));
         c += material_reflects(material, v, sun, look.softness).rgb * (PI * look.key * light.open * look.light_color);
         decided = light.decided;
     }
@@ -35,5 +45,5 @@ fn shade(ray: Beam, q: vec3<f32>, at: Surroundings, grain: f32, pixel: vec2<u32>
     let mirrored = sky_ambient(reflect(ray.axis, n));
     let coated = open * open * open * open * min(1.0, 2.0 * v.z);
     c += material.coat * mirrored * coated;
-    return quick_lamps(vec4<f32>(c, select(0.0, 1.0, decided)), material, v, frame, q, n, grain);
+    return quick_lamps(vec4<f32>(c, select(0.0, 1.0, decided)), material, v, frame, q, n, grain, pixel);
 }

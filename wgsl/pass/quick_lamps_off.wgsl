@@ -8,6 +8,7 @@ fn quick_lamps(
     q: vec3<f32>,
     n: vec3<f32>,
     grain: f32,
+    pixel: vec2<u32>,
 ) -> vec4<f32> {
     return lit;
 }

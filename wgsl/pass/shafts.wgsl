@@ -46,7 +46,7 @@ fn shafts(color: vec3<f32>, ray: Beam, end: f32, pixel: vec2<u32>) -> vec4<f32> 
     let at = random_pair(seed, turn.stage.before, SHAFTS_PURPOSE);
     let t = shafts_way(ray, end, -log(1.0 - at.x * share));
     let sun = Lamp(look.light, 2.0 * bounds_far(), look.softness);
-    let toward = path_toward(sun, random_pair(seed, turn.stage.before, SHAFTS_PURPOSE + 1u));
+    let toward = aim(sun, random_pair(seed, turn.stage.before, SHAFTS_PURPOSE + 1u));
     let start = ray.origin + t * ray.axis;
     var left = look.path_steps / SHAFTS_STEPS;
     let grain = footprint(ray, t);

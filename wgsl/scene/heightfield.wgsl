@@ -114,11 +114,6 @@ fn walk_hit(ray: Beam, walk: Walk) -> Hit {
     return trace_hit(heightfield.eye + to_local(ray.origin), to_local(ray.axis), walk.trace);
 }
 
-/// The free room about the ray's current place, for soft shadows.
-fn walk_radius(ray: Beam, walk: Walk) -> f32 {
-    return surface_gap(heightfield.eye + to_local(ray.origin + walk.t * ray.axis));
-}
-
 /// How far from the surface shadow rays start.
 fn shadow_lift(grain: f32) -> f32 {
     // Another hit may be below the surface.

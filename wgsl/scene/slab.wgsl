@@ -121,11 +121,6 @@ fn walk_hit(ray: Beam, walk: Walk) -> Hit {
     return Hit(walk.t, walk.face, vec2<f32>(walk.u, walk.v));
 }
 
-/// The free room about the ray's current place, for soft shadows.
-fn walk_radius(ray: Beam, walk: Walk) -> f32 {
-    return walk.radius;
-}
-
 /// How far from the surface shadow rays start: beyond the threshold that would end them at once.
 fn shadow_lift(grain: f32) -> f32 {
     return 4.0 * grain;
