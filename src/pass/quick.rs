@@ -113,21 +113,18 @@ pub fn shade<S: Solid>(
     let mut all: Vec<(DVec3, bool)> = (0..spots.len()).map(unlit).collect();
     for nth in 0..light.lamps.len() {
         let lit = |place: &Place| {
-            let start = place.q + solid.shadow_lift(place.grain) * place.normal;
-            let lamp = lamp_from(light, nth, start);
+            let lamp = lamp_from(light, nth, place.q);
             let strength = lamp_light(light, nth, &lamp);
             let lit = place.normal.dot(lamp.axis) > 0.0 && strength != DVec3::ZERO;
             lit.then_some((lamp, strength))
         };
         let lit: Vec<_> = places.iter().map(lit).collect();
-        let near = shadows_of((solid, light), &places, |i, _| {
-            Some(quick_lamp(
-                light,
-                &lit[i]?.0,
-                1 + nth as u32,
-                &spots[i],
-                before,
-            ))
+        let near = shadows_of((solid, light), &places, |i, place| {
+            lit[i]?;
+            // From where shadow rays start.
+            let start = place.q + solid.shadow_lift(place.grain) * place.normal;
+            let lamp = lamp_from(light, nth, start);
+            Some(quick_lamp(light, &lamp, 1 + nth as u32, &spots[i], before))
         });
         for (i, (c, decided)) in all.iter_mut().enumerate() {
             if let Some((lamp, strength)) = lit[i] {

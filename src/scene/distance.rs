@@ -139,14 +139,14 @@ impl Distance {
     }
 
     /// The value of the field.
-    fn value(&self, q: DVec3) -> f64 {
+    fn value(&self, q: DVec3, work: &mut Counts) -> f64 {
         let (value, iterations) = self.evaluator.value(self.eye + q, self.iterations);
         let reading = Reading {
             value,
             radius: 0.0,
             iterations,
         };
-        self.read(q, reading, 0.0, &mut Counts::default()).0
+        self.read(q, reading, 0.0, work).0
     }
 
     /// The size of the tetrahedron that a normal is taken from: half a pixel.
@@ -351,8 +351,8 @@ impl Solid for Distance {
         self.read(q, step, 0.0, &mut Counts::default()).1.max(0.0)
     }
 
-    fn room(&self, q: DVec3, _enough: f64, _work: &mut Counts) -> f64 {
-        self.value(q).max(0.0)
+    fn room(&self, q: DVec3, _enough: f64, work: &mut Counts) -> f64 {
+        self.value(q, work).max(0.0)
     }
 
     fn rooms_lanes(
@@ -366,7 +366,7 @@ impl Solid for Distance {
 
     fn surface(&self, ray: &Beam, hit: &Hit) -> Surface {
         let (q, h) = (ray.at(hit.t), self.tap(ray, hit));
-        let values = CORNERS.map(|c| self.value(q + h * c));
+        let values = CORNERS.map(|c| self.value(q + h * c, &mut Counts::default()));
         let pigment = self.evaluator.trap(self.eye + q, self.iterations);
         Self::surface_of(ray, values, pigment)
     }

@@ -311,6 +311,9 @@ fn shadows_of_quick_light_are_those_of_paths() {
         (plan.look.light_size, plan.look.lamp_size) = (0.05, 1e-4);
         let middle = off(&plan);
         println!("lamp {lamp}: {discs:.4}, with rays to the middle {middle:.4}");
-        assert!(discs < 0.04 && middle > 2.0 * discs, "{lamp}: {discs} {middle}");
+        assert!(
+            discs < 0.06 && middle > 2.0 * discs,
+            "{lamp}: {discs} {middle}"
+        );
     }
 }

@@ -12,15 +12,16 @@ fn quick_lamps(
     pixel: vec2<u32>,
 ) -> vec4<f32> {
     var c = lit;
+    // Where shadow rays start.
     let start = q + shadow_lift(grain) * n;
     for (var nth = 0u; nth < lamp_count(); nth++) {
-        let lamp = lamp_from(nth, start);
+        let lamp = lamp_from(nth, q);
         let to_lamp = lamp.axis * frame;
         let strength = lamp_light(nth, lamp);
         if to_lamp.z <= 0.0 || all(strength == vec3<f32>(0.0)) {
             continue;
         }
-        let near = shadow(q, n, grain, quick_lamp(lamp, nth + 1u, pixel));
+        let near = shadow(q, n, grain, quick_lamp(lamp_from(nth, start), nth + 1u, pixel));
         let light = material_reflects(material, v, to_lamp, lamp.softness).rgb * (PI * near.open * strength);
         c = vec4<f32>(c.rgb + light, select(0.0, c.w, near.decided));
     }
