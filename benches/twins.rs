@@ -1,8 +1,8 @@
 //! How far the GPU's pictures are from those of the CPU executor:
 //! `cargo bench --bench twins [-- [--software] [--write] [PRESET...]]`. With `--write` it writes its table
 //! into docs/accuracy.md. With presets it prints these alone. It takes a minute with a large GPU and 16
-//! cores. `--software` has a table of its own,
-//! in which both executors choose the same march: half an hour on two cores.
+//! cores. `--software` has a table of its own, in which both executors choose the same march: half an hour
+//! on two cores.
 
 use anyhow::{Context, Result};
 use conemarch::base::srgb::LUMA;

@@ -115,8 +115,8 @@ pub struct Light {
     pub look: Look,
     /// Tangent of the light's angular radius.
     pub softness: f64,
-    /// Whether shadow rays of mode quick go to points of a light's disc. A single sample has no mean, so
-    /// its rays go to the middle.
+    /// Whether there are shadow rays of mode quick that go to points of a light's disc. A single sample has
+    /// no mean, so its rays go to the middle.
     pub discs: bool,
     /// Step limit of a shadow ray.
     pub shadow_steps: u32,
@@ -190,7 +190,7 @@ impl Light {
         };
         Self {
             softness: look.light_size.to_radians().tan(),
-            discs: plan.samples > 1,
+            discs: plan.samples > 1 && LookFeature::Shadow.is_on(&look),
             shadow_steps,
             // Over a heightfield the rays' own limits are enough: few steps have many rounds.
             path_steps: match solid.twin().most_steps() {

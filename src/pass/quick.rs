@@ -121,7 +121,8 @@ pub fn shade<S: Solid>(
         let lit: Vec<_> = places.iter().map(lit).collect();
         let near = shadows_of((solid, light), &places, |i, place| {
             lit[i]?;
-            // From where shadow rays start.
+            // Shadow rays start here. The strength is that of the point itself, whatever the size of
+            // a pixel.
             let start = place.q + solid.shadow_lift(place.grain) * place.normal;
             let lamp = lamp_from(light, nth, start);
             Some(quick_lamp(light, &lamp, 1 + nth as u32, &spots[i], before))

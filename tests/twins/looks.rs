@@ -152,13 +152,12 @@ fn rays_go_to_the_same_points_of_lights() {
         };
         pairs.add_vector("aim", a[0], aim(&lamp, three(q[1]).truncate()));
     });
-    let modules = [
-        conemarch::wgsl!("pass/material.wgsl"),
-        conemarch::wgsl!("pass/aim.wgsl"),
-        probe!("aim"),
-    ];
     let bare = Probe {
-        modules: modules.to_vec(),
+        modules: vec![
+            conemarch::wgsl!("pass/material.wgsl"),
+            conemarch::wgsl!("pass/aim.wgsl"),
+            probe!("aim"),
+        ],
         ..Probe::default()
     };
     let mut uneven = bare.clone();

@@ -12,7 +12,7 @@ fn quick_lamps(
     pixel: vec2<u32>,
 ) -> vec4<f32> {
     var c = lit;
-    // Where shadow rays start.
+    // Shadow rays start here. The strength is that of the point itself, whatever the size of a pixel.
     let start = q + shadow_lift(grain) * n;
     for (var nth = 0u; nth < lamp_count(); nth++) {
         let lamp = lamp_from(nth, q);
