@@ -159,8 +159,8 @@ impl Plan {
             "image" => keys![
                 "size" = size(&mut self.size, MOST_PIXELS), "width and height in pixels";
                 "samples" = count(&mut self.samples, 1, MOST_PIXEL_SAMPLES), "rays through each pixel, whose colours are averaged: 1 is quick and has jagged edges, 16 is smooth, 64 is for print" => Program;
-                "until" = number(&mut self.until, 0.0, 1.0), "error of the shown picture, from black 0 to white 1, below which a tile of 64 x 64 pixels gets no more samples: 0 for all samples everywhere, 0.004 for one level of 8 bits" => Program;
-                "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower picture shows the same details, averaged by its samples; auto is the picture's own height" => March;
+                "until" = number(&mut self.until, 0.0, 1.0), "error of the shown picture, from black 0 to white 1, below which a tile of 64 x 64 pixels gets no more samples, judged after 8, 16, 32 and so on: 0 for all samples everywhere, 0.004 for one level of 8 bits" => Program;
+                "reference" = auto_count(&mut self.reference, 1, MOST_PIXELS), "height in pixels of the picture whose details are shown: a lower picture shows the same details, averaged by its samples, and a higher one those of its own pixels; auto is the picture's own height" => March;
                 "background" = word(&mut self.background, &Background::WORDS), "what files have behind the hits: sky, or transparent for alpha, the share of a pixel's samples that hit, in PNG, WebP and EXR; fog still fades toward the sky's colour, and the window shows the sky" => Program;
                 "ppi" = auto_count(&mut self.ppi, 1, 10_000), "pixels per inch on paper, which PNG, JPEG, WebP and EXR tell printers; auto tells none" => Nothing;
             ],

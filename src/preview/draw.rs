@@ -9,6 +9,7 @@ use crate::base::projection::Projection;
 use crate::base::shader::Module;
 use crate::base::view::View;
 use crate::gpu::device::Device;
+use crate::plan::pyramid::Block;
 use crate::wgsl;
 
 /// The format of pictures and of the panel: bytes as files hold them.
@@ -59,6 +60,33 @@ pub fn texture(device: &Device, name: &str, size: [u32; 2], usage: TextureUsages
         usage: usage | TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     })
+}
+
+/// Copies blocks of a picture to the same places of another one.
+pub fn copy_blocks(device: &Device, from: &wgpu::Texture, to: &wgpu::Texture, blocks: &[Block]) {
+    if blocks.is_empty() {
+        return;
+    }
+    let mut encoder = device.device.create_command_encoder(&Default::default());
+    for block in blocks {
+        let at = |texture| wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d {
+                x: block.origin[0],
+                y: block.origin[1],
+                z: 0,
+            },
+            aspect: wgpu::TextureAspect::All,
+        };
+        let size = wgpu::Extent3d {
+            width: block.size[0],
+            height: block.size[1],
+            depth_or_array_layers: 1,
+        };
+        encoder.copy_texture_to_texture(at(from), at(to), size);
+    }
+    device.submit(encoder);
 }
 
 /// All of a texture.

@@ -11,9 +11,11 @@ use crate::base::key::Redo;
 use crate::gpu::RenderError;
 use crate::gpu::device::Device;
 use crate::gpu::render::Renderer;
+use crate::gpu::work::Work;
 use crate::pass::progress::Progress;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::{Extras, Plan};
+use crate::preview::draw::copy_blocks;
 use crate::preview::picture::{Picture, redo};
 use crate::scene::Assets;
 
@@ -33,7 +35,6 @@ const DIVISORS: [u32; 5] = [1, 2, 4, 6, 8];
 const AT_ONCE_MS: f64 = 14.0;
 /// The same of a picture with another look, at rest: it keeps the rays.
 const LOOK_AT_ONCE_MS: f64 = 700.0;
-
 /// The fine picture is shown whenever so much more of it is done.
 const FINER: f64 = 0.125;
 
@@ -77,6 +78,8 @@ pub struct Pictures {
     fine: Picture,
     /// How much of the fine picture of what is wanted is shown.
     refined: f64,
+    /// How many of its blocks are in the full picture, if it has several.
+    refined_blocks: usize,
 }
 
 impl Pictures {
@@ -98,6 +101,7 @@ impl Pictures {
             full: Picture::default(),
             fine: Picture::default(),
             refined: 0.0,
+            refined_blocks: 0,
         }
     }
 
@@ -290,25 +294,41 @@ impl Pictures {
             return Ok(false);
         }
         if self.fine.under_way.is_none() {
-            self.refined = 0.0;
+            (self.refined, self.refined_blocks) = (0.0, 0);
             let fine = (self.wish, plan.clone());
             let assets = &self.assets;
             self.fine
                 .begin(&mut self.renderer, assets, self.extras, fine)?;
         }
         let finished = self.fine.advance(FULL_SLICE_MS)?;
-        let done = self.fine.work.as_ref().map_or(0.0, |w| w.progress().done);
-        // A first sample off the centre is no better than the full picture. Of several blocks, the
-        // others would have no sample yet.
-        let pixels = u64::from(plan.size[0]) * u64::from(plan.size[1]);
-        let is_one_block = pixels <= u64::from(self.renderer.cutting.block).pow(2);
-        let is_finer = done >= self.refined + FINER && done * f64::from(plan.samples) > 2.0;
         // What the host reads, it reads at the end.
-        let more = finished || (self.extras.unread && is_one_block && is_finer);
-        if more {
+        if finished || !self.extras.unread {
+            return Ok(finished);
+        }
+        let edge = u64::from(self.renderer.cutting.block);
+        if u64::from(plan.size[0]) * u64::from(plan.size[1]) > edge * edge {
+            return Ok(self.take_blocks());
+        }
+        let done = self.fine.work.as_ref().map_or(0.0, |w| w.progress().done);
+        // A first sample off the centre is no better than the full picture.
+        let is_finer = done >= self.refined + FINER && done * f64::from(plan.samples) > 2.0;
+        if is_finer {
             self.refined = done;
         }
-        Ok(more)
+        Ok(is_finer)
+    }
+
+    /// Puts more finished blocks of the fine picture into the full one. Returns whether there were any.
+    fn take_blocks(&mut self) -> bool {
+        let picture = |of: &Picture| of.work.as_ref()?.picture().cloned();
+        let work = self.fine.work.as_ref();
+        let blocks = work.map_or(Vec::new(), Work::finished_blocks);
+        let more = blocks.get(self.refined_blocks..).unwrap_or_default();
+        if let (Some(fine), Some(full)) = (picture(&self.fine), picture(&self.full)) {
+            copy_blocks(&self.renderer.device, &fine, &full, more);
+        }
+        self.refined_blocks += more.len();
+        !more.is_empty()
     }
 
     /// Chooses the size of small pictures by the middle of the last times. Other sizes need other
@@ -337,10 +357,9 @@ impl Pictures {
         let (wish, plan) = picture.made.as_ref()?;
         let under_way = matches!(self.fine.under_way, Some((of, _)) if of == self.wish);
         let is_finer = (under_way && self.refined > 0.0) || self.fine.is_made(self.wish);
-        let shown = if is_full && is_finer {
-            &self.fine
-        } else {
-            picture
+        let shown = match is_full && is_finer {
+            true => &self.fine,
+            false => picture,
         };
         Some(Finished {
             wish: *wish,

@@ -7,6 +7,7 @@ use conemarch::picture::frame::Frame;
 use conemarch::plan::layers::Trap;
 use conemarch::plan::look::{LightMode, Look};
 use conemarch::plan::{Extras, Plan};
+use conemarch::preset::{BUILTIN, load};
 use conemarch::scene::Assets;
 use glam::DVec3;
 
@@ -177,18 +178,11 @@ fn noise_falls_with_the_samples() {
 
 #[test]
 fn both_executors_find_the_same_light() {
-    // Some have light from the surface, fog by the height, or lamps, and one gets a layer of colour.
-    for name in [
-        "mandelbox",
-        "mandelbox-hall",
-        "mandelbox-ember",
-        "mandelbox-lantern",
-        "mandelbox-stage",
-        "mandelbox-gold",
-        "valley-mist",
-        "terrain",
-        "stones",
-    ] {
+    // All that have this light, and some others. One gets a layer of colour.
+    let own = |name: &&str| load(name, &[]).unwrap().plan.look.mode == LightMode::Path;
+    let names = BUILTIN.iter().map(|(name, _)| *name).filter(own);
+    let others = ["mandelbox", "mandelbox-hall", "terrain"];
+    for name in names.chain(others) {
         let mut plan = followed(sized(name, [48, 27]), 8);
         if name == "mandelbox-gold" {
             let layers = &mut plan.look.layers;

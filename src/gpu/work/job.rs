@@ -12,7 +12,7 @@ use crate::heightfield::assets::Preparation;
 use crate::pass::layout::Layout;
 use crate::pass::turn::{FIRST_PICTURE, Stage, StageKind};
 use crate::pass::until::{bound, is_judged};
-use crate::plan::pyramid::Level;
+use crate::plan::pyramid::{Block, Level};
 use crate::plan::{Extras, Pass};
 
 /// What a frame is made of, as far as that may stay when the look changes. The scene's arrays,
@@ -130,6 +130,13 @@ impl Job {
         self.sampled(visit)
             .filter(|(_, before)| *before == last)
             .map(|(block, _)| block)
+    }
+
+    /// The blocks that have all their samples before a visit.
+    pub(super) fn finished(&self, visit: usize) -> Vec<Block> {
+        let ended = visit.saturating_sub(self.firsts) / self.visits as usize;
+        let visits = self.made.blocks[self.firsts..].chunks(self.visits as usize);
+        visits.take(ended).map(|of| of[0].block).collect()
     }
 
     /// Whether a stage of a visit is left out.

@@ -40,6 +40,7 @@ use crate::pass::progress::Watch;
 use crate::pass::tone_map::Tone;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::Extras;
+use crate::plan::pyramid::Block;
 pub(super) use inputs::{FrameInputs, FrameRequest, marched, most_steps};
 use job::Reusable;
 use run::Run;
@@ -202,6 +203,14 @@ impl Work {
     /// larger than a texture can be. Its bytes are those of sRGB, as files hold them.
     pub fn picture(&self) -> Option<&wgpu::Texture> {
         self.run.as_ref()?.picture()
+    }
+
+    /// The blocks of the picture that have all their samples, row by row.
+    pub fn finished_blocks(&self) -> Vec<Block> {
+        match &self.run {
+            Some(run) if !self.is_preparing() => run.job.finished(run.place(run.reached).0),
+            _ => Vec::new(),
+        }
     }
 
     /// Waits for the device and reads the picture, row by row, four bytes to a pixel.
