@@ -1,15 +1,19 @@
 //! Pictures of many samples.
 
 use conemarch::base::srgb::srgb;
+#[cfg(feature = "preview")]
+use conemarch::gpu::wait::read_picture;
 use conemarch::pass::look::tone;
 use conemarch::picture::frame::Frame;
 use conemarch::plan::{Extras, Plan};
+#[cfg(feature = "preview")]
+use conemarch::preview::pictures::Pictures;
 use glam::DVec3;
 
 use super::common::filtered::apart;
 use super::common::plans::{preset, sized};
-use super::work::bits;
-use crate::adapter::{EVERYTHING, on_cpu, render};
+use super::work::{bits, bytes};
+use crate::adapter::{self, EVERYTHING, on_cpu, render};
 
 #[test]
 fn samples_come_near_to_the_filtered_picture() {
@@ -178,4 +182,36 @@ fn depths_alone_take_one_sample() {
     };
     let one = sampled(&plan, 1, 8);
     assert!(bits(&render(&plan, depths)) == bits(&render(&one, depths)));
+}
+
+/// A window of several blocks shows each one that has all its samples, while the others have one.
+#[cfg(feature = "preview")]
+#[test]
+fn a_large_window_is_refined_block_by_block() {
+    let mut plan = sized("mandelbox", [96, 80]);
+    let one = bytes(&plan, &render(&plan, Extras::default()));
+    plan.samples = 5;
+    let all = bytes(&plan, &render(&plan, Extras::default()));
+    let mut pictures = Pictures::new(adapter::open().device);
+    pictures.renderer.cutting.block = 32;
+    let unread = Extras {
+        unread: true,
+        ..Extras::default()
+    };
+    pictures.keep(unread, true);
+    pictures.want(&plan);
+    let mut seen = Vec::new();
+    while pictures.is_busy() {
+        if pictures.advance().unwrap() && pictures.is_full() {
+            let shown = pictures.finished().unwrap().texture.unwrap();
+            seen.push(read_picture(&pictures.renderer.device, shown).unwrap());
+        }
+    }
+    assert!(seen[0] == one && *seen.last().unwrap() == all);
+    // The first row of blocks, and the rest.
+    let row = 32 * 96 * 4;
+    let half = seen
+        .iter()
+        .any(|shown| shown[..row] == all[..row] && shown[2 * row..] == one[2 * row..]);
+    assert!(half, "{} pictures", seen.len());
 }

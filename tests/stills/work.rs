@@ -227,7 +227,7 @@ fn a_change_of_the_look_keeps_the_rays_and_one_of_the_exposure_the_colours() {
 }
 
 /// Radiance in a byte of each channel, as a PNG of 8 bits holds it.
-fn bytes(plan: &Plan, frame: &Frame) -> Vec<u8> {
+pub fn bytes(plan: &Plan, frame: &Frame) -> Vec<u8> {
     let shades = Shades::new(Layer::Color, frame, plan).bytes();
     let pixel = |rgb: &[u8]| [rgb[0], rgb[1], rgb[2], 255];
     shades.chunks(3).flat_map(pixel).collect()
