@@ -1,5 +1,5 @@
 //! Big pictures: rendered in bands of rows, kept beside the picture, and joined at the end. Memory
-//! does not grow with the height.
+//! hardly grows with the height.
 
 use std::path::Path;
 

@@ -76,10 +76,8 @@ pub struct Pictures {
     small: Picture,
     full: Picture,
     fine: Picture,
-    /// How much of the fine picture of what is wanted is shown.
-    refined: f64,
-    /// How many of its blocks are in the full picture, if it has several.
-    refined_blocks: usize,
+    /// How much of the fine picture of what is wanted is shown: a share, or blocks if it has several.
+    refined: (f64, usize),
 }
 
 impl Pictures {
@@ -100,8 +98,7 @@ impl Pictures {
             small: Picture::default(),
             full: Picture::default(),
             fine: Picture::default(),
-            refined: 0.0,
-            refined_blocks: 0,
+            refined: (0.0, 0),
         }
     }
 
@@ -164,6 +161,8 @@ impl Pictures {
         self.small.under_way = None;
         self.full.under_way = None;
         self.fine.under_way = None;
+        // A full picture with some blocks of the fine one is neither.
+        self.full.made.take_if(|_| self.refined.1 > 0);
         self.failed = Some(self.wish);
     }
 
@@ -294,7 +293,7 @@ impl Pictures {
             return Ok(false);
         }
         if self.fine.under_way.is_none() {
-            (self.refined, self.refined_blocks) = (0.0, 0);
+            self.refined = (0.0, 0);
             let fine = (self.wish, plan.clone());
             let assets = &self.assets;
             self.fine
@@ -307,28 +306,26 @@ impl Pictures {
         }
         let edge = u64::from(self.renderer.cutting.block);
         if u64::from(plan.size[0]) * u64::from(plan.size[1]) > edge * edge {
-            return Ok(self.take_blocks());
+            return Ok(self.take_blocks().unwrap_or(false));
         }
         let done = self.fine.work.as_ref().map_or(0.0, |w| w.progress().done);
         // A first sample off the centre is no better than the full picture.
-        let is_finer = done >= self.refined + FINER && done * f64::from(plan.samples) > 2.0;
+        let is_finer = done >= self.refined.0 + FINER && done * f64::from(plan.samples) > 2.0;
         if is_finer {
-            self.refined = done;
+            self.refined.0 = done;
         }
         Ok(is_finer)
     }
 
     /// Puts more finished blocks of the fine picture into the full one. Returns whether there were any.
-    fn take_blocks(&mut self) -> bool {
-        let picture = |of: &Picture| of.work.as_ref()?.picture().cloned();
-        let work = self.fine.work.as_ref();
-        let blocks = work.map_or(Vec::new(), Work::finished_blocks);
-        let more = blocks.get(self.refined_blocks..).unwrap_or_default();
-        if let (Some(fine), Some(full)) = (picture(&self.fine), picture(&self.full)) {
-            copy_blocks(&self.renderer.device, &fine, &full, more);
-        }
-        self.refined_blocks += more.len();
-        !more.is_empty()
+    fn take_blocks(&mut self) -> Option<bool> {
+        let (fine, full) = (self.fine.work.as_ref()?, self.full.work.as_ref()?);
+        let (from, to) = (fine.picture()?, full.picture()?);
+        let blocks = fine.finished_blocks();
+        let more = blocks.get(self.refined.1..)?;
+        copy_blocks(&self.renderer.device, from, to, more);
+        self.refined.1 += more.len();
+        Some(!more.is_empty())
     }
 
     /// Chooses the size of small pictures by the middle of the last times. Other sizes need other
@@ -356,7 +353,7 @@ impl Pictures {
         let picture = if is_full { &self.full } else { &self.small };
         let (wish, plan) = picture.made.as_ref()?;
         let under_way = matches!(self.fine.under_way, Some((of, _)) if of == self.wish);
-        let is_finer = (under_way && self.refined > 0.0) || self.fine.is_made(self.wish);
+        let is_finer = (under_way && self.refined.0 > 0.0) || self.fine.is_made(self.wish);
         let shown = match is_full && is_finer {
             true => &self.fine,
             false => picture,

@@ -180,9 +180,10 @@ fn noise_falls_with_the_samples() {
 fn both_executors_find_the_same_light() {
     // All that have this light, and some others. One gets a layer of colour.
     let own = |name: &&str| load(name, &[]).unwrap().plan.look.mode == LightMode::Path;
-    let names = BUILTIN.iter().map(|(name, _)| *name).filter(own);
-    let others = ["mandelbox", "mandelbox-hall", "terrain"];
-    for name in names.chain(others) {
+    let mut names: Vec<_> = BUILTIN.iter().map(|(name, _)| *name).filter(own).collect();
+    assert!(names.contains(&"mandelbox-gold"));
+    names.extend(["mandelbox", "mandelbox-hall", "terrain"]);
+    for name in names {
         let mut plan = followed(sized(name, [48, 27]), 8);
         if name == "mandelbox-gold" {
             let layers = &mut plan.look.layers;
