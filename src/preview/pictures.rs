@@ -11,7 +11,6 @@ use crate::base::key::Redo;
 use crate::gpu::RenderError;
 use crate::gpu::device::Device;
 use crate::gpu::render::Renderer;
-use crate::gpu::work::Work;
 use crate::pass::progress::Progress;
 use crate::picture::frame::{Frame, Traffic};
 use crate::plan::{Extras, Plan};
