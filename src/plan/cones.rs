@@ -22,12 +22,14 @@ const STRIDE: u32 = 89;
 /// alone need.
 const SURE: f64 = 0.2;
 
-/// When cones pay: if `price` times the evaluations of the cones, divided by the samples, and those of the
-/// rays after them are together less than a share of the evaluations of rays alone. The share is less
-/// than 1, as rays after cones wait longer for each other.
+/// When cones pay: if `price` times the evaluations of the cones and `passes`, both divided by the samples,
+/// and the evaluations of the rays after them are together less than a share of those of rays alone. The
+/// share is less than 1, as rays after cones wait longer for each other.
 pub struct Rule {
     /// What an evaluation of a cone weighs.
     pub price: f64,
+    /// What the passes of the cones cost for each pixel, however few their steps, in evaluations.
+    passes: f64,
     /// The share for one sample of each pixel, and for several.
     shares: [f64; 2],
 }
@@ -43,10 +45,11 @@ impl Rule {
     }
 }
 
-/// Over a formula. Price and shares are fitted to the times of all built-in presets, with one sample and
+/// Over a formula. Price, passes and shares are fitted to the times of all built-in presets, with one sample and
 /// with 16 (`bench formula_cones`).
 const DISTANCE: Rule = Rule {
     price: 1.8,
+    passes: 0.3,
     shares: [0.72, 0.85],
 };
 /// In mode `proven`, where rays go by balls as cones do (`bench formula_cones -- march.mode=proven`).
@@ -59,6 +62,7 @@ const PROVEN: Rule = Rule {
 /// 0.90, and rays alone from 0.97 on.
 const HEIGHTS: Rule = Rule {
     price: 0.0,
+    passes: 0.0,
     shares: [0.84, 0.9],
 };
 
@@ -93,7 +97,9 @@ pub fn pay(plan: &Plan, assets: &Assets) -> bool {
         let rays = alone.run(follow(&[])).rays;
         let after = with.run(follow(&levels));
         needed += rays;
-        saved += share * rays - after.rays - rule.price * after.cones / samples;
+        let passes = rule.passes * f64::from(RAYS[0] * RAYS[1] / PARTS);
+        let cones = rule.price * after.cones + passes;
+        saved += share * rays - after.rays - cones / samples;
         if saved.abs() > SURE * needed {
             break;
         }
