@@ -1,8 +1,8 @@
 //! Where cones over the pixels of a formula pay: `cargo bench --bench formula_cones`. With `-- --write` it
 //! writes its tables into docs/benchmarks.md. `-- [KEY=VALUE...] [PRESET...]` changes the presets, or chooses some.
 //!
-//! Each preset is traced by rays alone and with cones from 1/16 on, in turns. The tables have the number by
-//! which the program chooses, here from all pixels instead of a few, least first.
+//! Each preset is traced by rays alone and with cones from 1/16 on, in turns. The tables have the number that
+//! the program estimates from a few rays to choose, here from all pixels, least first.
 
 use anyhow::{Result, ensure};
 use conemarch::command::executor::Executor;
@@ -29,7 +29,7 @@ const BEFORE: usize = 2;
 /// The coarsest level of rays alone, and of cones.
 const COARSEST: [u32; 2] = [1, 16];
 
-/// The number by which the program chooses, and a row with it.
+/// The number that the program estimates to choose, and a row with it.
 type Row = (f64, String);
 
 /// Compares rays alone with cones, `runs` times.
@@ -65,9 +65,10 @@ fn row(executors: &mut [Executor], name: &str, plan: &Plan, runs: usize) -> Resu
         }
     }
     let [alone, with] = times.map(median);
-    let [cones, left] = [cones, rays[1]].map(|n| n / rays[0]);
-    let number = Rule::of(plan).price * cones + left;
-    let [w, h] = plan.size;
+    let (rule, [w, h]) = (Rule::of(plan), plan.size);
+    let passes = rule.passes * f64::from(w * h);
+    let [cones, passes, left] = [cones, passes, rays[1]].map(|n| n / rays[0]);
+    let number = rule.price * cones + passes + left;
     // Through a lens, the centre of a pixel has one more ray.
     let per_ray = rays[0] / f64::from(w * h * plan.visits());
     let chosen = if chosen > 0 { "cones" } else { "none" };

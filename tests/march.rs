@@ -467,6 +467,8 @@ fn cones_are_left_out_where_they_cost_more_than_they_save() {
         ("bench-graze", 0, 0),
         ("mandelbox-gate", 0, 4),
         ("mandelbox-hall", 4, 4),
+        ("mandelbox-lantern", 0, 0),
+        ("mandelbox-shell", 0, 4),
         ("bricks", 0, 0),
         ("spikes", 4, 4),
         ("stones", 4, 4),

@@ -22,14 +22,14 @@ const STRIDE: u32 = 89;
 /// alone need.
 const SURE: f64 = 0.2;
 
-/// When cones pay: if `price` times the evaluations of the cones and `passes`, both divided by the samples,
-/// and the evaluations of the rays after them are together less than a share of those of rays alone. The
-/// share is less than 1, as rays after cones wait longer for each other.
+/// When cones pay: `(price * cones + passes) / samples + after < share * alone`, in evaluations for each pixel.
+/// `cones` are those of the cones, `after` those of the rays after them, and `alone` those of rays alone.
+/// The share is less than 1, as rays after cones wait longer for each other.
 pub struct Rule {
     /// What an evaluation of a cone weighs.
     pub price: f64,
     /// What the passes of the cones cost for each pixel, however few their steps, in evaluations.
-    passes: f64,
+    pub passes: f64,
     /// The share for one sample of each pixel, and for several.
     shares: [f64; 2],
 }
@@ -46,13 +46,13 @@ impl Rule {
 }
 
 /// Over a formula. Price, passes and shares are fitted to the times of all built-in presets, with one sample and
-/// with 16 (`bench formula_cones`).
+/// with 16 (`cargo bench --bench formula_cones`).
 const DISTANCE: Rule = Rule {
     price: 1.8,
     passes: 0.3,
     shares: [0.72, 0.85],
 };
-/// In mode `proven`, where rays go by balls as cones do (`bench formula_cones -- march.mode=proven`).
+/// In mode `proven`, where rays go by balls as cones do (`cargo bench --bench formula_cones -- march.mode=proven`).
 const PROVEN: Rule = Rule {
     price: 1.4,
     ..DISTANCE

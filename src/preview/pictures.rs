@@ -75,8 +75,9 @@ pub struct Pictures {
     small: Picture,
     full: Picture,
     fine: Picture,
-    /// How much of the fine picture of what is wanted is shown: a share, or blocks if it has several.
-    refined: (f64, usize),
+    /// The share of the fine picture that is shown, if it is of one block, else the number of its blocks.
+    fine_share: f64,
+    fine_blocks: usize,
 }
 
 impl Pictures {
@@ -97,7 +98,8 @@ impl Pictures {
             small: Picture::default(),
             full: Picture::default(),
             fine: Picture::default(),
-            refined: (0.0, 0),
+            fine_share: 0.0,
+            fine_blocks: 0,
         }
     }
 
@@ -159,9 +161,10 @@ impl Pictures {
     fn fail(&mut self) {
         self.small.under_way = None;
         self.full.under_way = None;
-        self.fine.under_way = None;
-        // A full picture with some blocks of the fine one is neither.
-        self.full.made.take_if(|_| self.refined.1 > 0);
+        if self.fine.under_way.take().is_some() && self.fine_blocks > 0 {
+            // A full picture with some blocks of the fine one is neither.
+            self.full.made = None;
+        }
         self.failed = Some(self.wish);
     }
 
@@ -292,7 +295,7 @@ impl Pictures {
             return Ok(false);
         }
         if self.fine.under_way.is_none() {
-            self.refined = (0.0, 0);
+            (self.fine_share, self.fine_blocks) = (0.0, 0);
             let fine = (self.wish, plan.clone());
             let assets = &self.assets;
             self.fine
@@ -303,28 +306,33 @@ impl Pictures {
         if finished || !self.extras.unread {
             return Ok(finished);
         }
-        let edge = u64::from(self.renderer.cutting.block);
-        if u64::from(plan.size[0]) * u64::from(plan.size[1]) > edge * edge {
-            return Ok(self.take_blocks().unwrap_or(false));
-        }
-        let done = self.fine.work.as_ref().map_or(0.0, |w| w.progress().done);
-        // A first sample off the centre is no better than the full picture.
-        let is_finer = done >= self.refined.0 + FINER && done * f64::from(plan.samples) > 2.0;
-        if is_finer {
-            self.refined.0 = done;
-        }
-        Ok(is_finer)
+        Ok(self.show_finer(plan.samples).unwrap_or(false))
     }
 
-    /// Puts more finished blocks of the fine picture into the full one. Returns whether there were any.
-    fn take_blocks(&mut self) -> Option<bool> {
+    /// Shows more of the fine picture: all of it if it is of one block, else what more blocks have all their
+    /// samples, which it puts into the full picture. Returns whether there is more, and `None` as long as
+    /// the fine picture is prepared.
+    fn show_finer(&mut self, samples: u32) -> Option<bool> {
         let (fine, full) = (self.fine.work.as_ref()?, self.full.work.as_ref()?);
-        let (from, to) = (fine.picture()?, full.picture()?);
-        let blocks = fine.finished_blocks();
-        let more = blocks.get(self.refined.1..)?;
-        copy_blocks(&self.renderer.device, from, to, more);
-        self.refined.1 += more.len();
-        Some(!more.is_empty())
+        let (blocks, finished) = fine.blocks()?;
+        if blocks.len() > 1 {
+            let more = blocks.get(self.fine_blocks..finished)?;
+            copy_blocks(
+                &self.renderer.device,
+                fine.picture()?,
+                full.picture()?,
+                more,
+            );
+            self.fine_blocks = finished;
+            return Some(!more.is_empty());
+        }
+        let done = fine.progress().done;
+        // A first sample off the centre is no better than the full picture.
+        let is_finer = done >= self.fine_share + FINER && done * f64::from(samples) > 2.0;
+        if is_finer {
+            self.fine_share = done;
+        }
+        Some(is_finer)
     }
 
     /// Chooses the size of small pictures by the middle of the last times. Other sizes need other
@@ -352,7 +360,7 @@ impl Pictures {
         let picture = if is_full { &self.full } else { &self.small };
         let (wish, plan) = picture.made.as_ref()?;
         let under_way = matches!(self.fine.under_way, Some((of, _)) if of == self.wish);
-        let is_finer = (under_way && self.refined.0 > 0.0) || self.fine.is_made(self.wish);
+        let is_finer = (under_way && self.fine_share > 0.0) || self.fine.is_made(self.wish);
         let shown = match is_full && is_finer {
             true => &self.fine,
             false => picture,

@@ -215,5 +215,8 @@ fn a_large_window_is_refined_block_by_block() {
             .iter()
             .any(|shown| shown[..row] == all[..row] && shown[2 * row..] == one[2 * row..]);
         assert!(half, "{} pictures", seen.len());
+        // What is finished stays.
+        pictures.rest();
+        assert!(pictures.is_full());
     }
 }

@@ -112,8 +112,9 @@ impl Job {
 
     /// The blocks of the image. They are visited one after the other, each as often as a pixel has
     /// samples.
-    pub(super) fn blocks(&self) -> usize {
-        (self.made.blocks.len() - self.firsts) / self.visits as usize
+    pub(super) fn blocks(&self) -> impl ExactSizeIterator<Item = Block> {
+        let visits = self.made.blocks[self.firsts..].chunks(self.visits as usize);
+        visits.map(|of| of[0].block)
     }
 
     /// The number of the block of a visit, and how many samples it has before; `None` for a first
@@ -130,13 +131,6 @@ impl Job {
         self.sampled(visit)
             .filter(|(_, before)| *before == last)
             .map(|(block, _)| block)
-    }
-
-    /// The blocks that have all their samples before a visit.
-    pub(super) fn finished(&self, visit: usize) -> Vec<Block> {
-        let ended = visit.saturating_sub(self.firsts) / self.visits as usize;
-        let visits = self.made.blocks[self.firsts..].chunks(self.visits as usize);
-        visits.take(ended).map(|of| of[0].block).collect()
     }
 
     /// Whether a stage of a visit is left out.

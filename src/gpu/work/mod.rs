@@ -205,12 +205,11 @@ impl Work {
         self.run.as_ref()?.picture()
     }
 
-    /// The blocks of the picture that have all their samples, row by row.
-    pub fn finished_blocks(&self) -> Vec<Block> {
-        match &self.run {
-            Some(run) if !self.is_preparing() => run.job.finished(run.place(run.reached).0),
-            _ => Vec::new(),
-        }
+    /// The blocks of the picture, row by row, and how many of them, from the first on, have all their
+    /// samples. `None` before the run of the last plan.
+    pub fn blocks(&self) -> Option<(Vec<Block>, usize)> {
+        let run = self.run.as_ref().filter(|_| !self.is_preparing())?;
+        Some((run.job.blocks().collect(), run.collected))
     }
 
     /// Waits for the device and reads the picture, row by row, four bytes to a pixel.

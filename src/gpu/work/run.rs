@@ -195,7 +195,7 @@ impl Run {
             Some((block, _)) => self.job.firsts + block,
             None => visit,
         };
-        let later = self.job.firsts + self.job.blocks() - 1 - number;
+        let later = self.job.firsts + self.job.blocks().len() - 1 - number;
         let target = self.reusable.target.as_ref();
         target.map_or(0, |target| target.generation(later))
     }
@@ -345,7 +345,7 @@ impl Run {
         if !std::mem::take(&mut self.received) {
             self.receive()?;
         }
-        if self.collected < self.job.blocks() {
+        if self.collected < self.job.blocks().len() {
             return Ok(None);
         }
         if std::mem::replace(&mut self.delivered, true) {
