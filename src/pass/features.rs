@@ -79,7 +79,7 @@ features![
         by ["glow"], |look| look.glow > 0.0;
     /// Light of the sun that fog scatters.
     Shafts: wgsl!("pass/shafts.wgsl").neutral(), wgsl!("pass/shafts_off.wgsl"),
-        by ["shafts"] with Fog in Path, |look| look.fog > 0.0 && look.shafts > 0.0;
+        by ["shafts"] with Fog, |look| look.fog > 0.0 && look.shafts > 0.0;
 ];
 
 /// The sky: that of a file, or two colours.

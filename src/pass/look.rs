@@ -45,7 +45,7 @@ pub struct LookUniform {
     pub fog: f32,
     /// Sky below.
     pub sky_low: Vec3,
-    /// 1 if shadow rays of mode quick go to points of a light's disc, 0 if they go to its middle.
+    /// 1 if rays to lights go to points of their discs, 0 if they go to the middle.
     pub discs: u32,
     /// Unit vector up.
     pub world_up: Vec3,
@@ -115,8 +115,8 @@ pub struct Light {
     pub look: Look,
     /// Tangent of the light's angular radius.
     pub softness: f64,
-    /// Whether there are shadow rays of mode quick that go to points of a light's disc. A single sample has
-    /// no mean, so its rays go to the middle.
+    /// Whether rays to lights go to points of their discs. A single sample of quick light has no mean, so
+    /// its rays go to the middle.
     pub discs: bool,
     /// Step limit of a shadow ray.
     pub shadow_steps: u32,
@@ -190,7 +190,10 @@ impl Light {
         };
         Self {
             softness: look.light_size.to_radians().tan(),
-            discs: plan.samples > 1 && LookFeature::Shadow.is_on(&look),
+            discs: match look.mode {
+                LightMode::Quick => plan.samples > 1 && LookFeature::Shadow.is_on(&look),
+                LightMode::Path => true,
+            },
             shadow_steps,
             // Over a heightfield the rays' own limits are enough: few steps have many rounds.
             path_steps: match solid.twin().most_steps() {

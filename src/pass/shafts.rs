@@ -1,5 +1,5 @@
 //! Sun shafts: light of the sun that fog scatters toward the eye once, by one point and one shadow ray
-//! for each sample, in mode path. Twins: `wgsl/pass/shafts.wgsl`, `shafts_off.wgsl`.
+//! for each sample. Twins: `wgsl/pass/shafts.wgsl`, `shafts_off.wgsl`.
 //!
 //! Fog blends a colour toward the sky, whose wide halo about the sun stands for this light. Here
 //! the halo is taken out of the fog, and what the sun sends to the points of the ray takes its place:
@@ -84,13 +84,14 @@ pub fn shafts<S: Solid>(
         return (color, true);
     }
     let share = 1.0 - (-fog_depth(light, ray, end)).exp();
-    let seed = random_seed(pixel);
-    let at = random_pair(seed, before, SHAFTS_PURPOSE);
-    let t = shafts_way(light, ray, end, -(1.0 - at.x * share).ln());
-    let toward = aim(
-        &light.sun(solid.bounds_far()),
-        random_pair(seed, before, SHAFTS_PURPOSE + 1),
-    );
+    let (seed, sun) = (random_seed(pixel), light.sun(solid.bounds_far()));
+    let pair = |nth| random_pair(seed, before, SHAFTS_PURPOSE + nth);
+    let (at, toward) = match light.discs {
+        true => (pair(0).x, aim(&sun, pair(1))),
+        // A picture without noise: the middle of the fog and of the sun.
+        false => (0.5, sun.axis),
+    };
+    let t = shafts_way(light, ray, end, -(1.0 - at * share).ln());
     let to = Beam {
         origin: ray.at(t),
         axis: toward,
@@ -100,8 +101,7 @@ pub fn shafts<S: Solid>(
         grain: 0.0,
     };
     let left = &mut (light.path_steps / SHAFTS_STEPS);
-    let far = 2.0 * solid.bounds_far();
-    let (step, _) = path_sight((solid, light), &to, far, left);
+    let (step, _) = path_sight((solid, light), &to, sun.far, left);
     let mut c = color - share * light.halo(ray.axis);
     if step == Step::Out {
         c += share * shafts_phase(ray.axis.dot(light.look.light)) * shafts_light(&light.look);

@@ -113,7 +113,7 @@ settings! {
         fog_level: f64 = 0.0, number(-1000.0, 1000.0),
             "height above the target at which the fog has its density, as a share of the distance from eye to target; only for fog_height";
         shafts: f64 = 0.0, number(0.0, 20.0),
-            "in mode path and with fog, the share of the light's rays that fog scatters, so that shafts of light are seen between shadows; 1 is fog that absorbs nothing, 0 is fog that shows the sky's colour alone" => Program;
+            "with fog, the share of the light's rays that fog scatters, so that shafts of light are seen between shadows; 1 is fog that absorbs nothing, 0 is fog that shows the sky's colour alone" => Program;
         glow: f64 = 0.0, number(0.0, 100.0),
             "strength of light that the air of a formula sends out near the surface, 0 for none: a ray that meets a flat wall gains this much radiance, and one that passes close by more; a transparent background has it only before hits" => Program;
         glow_width: f64 = 0.02, number(0.005, 1.0),

@@ -317,12 +317,8 @@ impl Pictures {
         let (blocks, finished) = fine.blocks()?;
         if blocks.len() > 1 {
             let more = blocks.get(self.fine_blocks..finished)?;
-            copy_blocks(
-                &self.renderer.device,
-                fine.picture()?,
-                full.picture()?,
-                more,
-            );
+            let (from, to) = (fine.picture()?, full.picture()?);
+            copy_blocks(&self.renderer.device, from, to, more);
             self.fine_blocks = finished;
             return Some(!more.is_empty());
         }

@@ -117,6 +117,31 @@ fn the_mean_of_the_shafts_is_the_light_that_one_scattering_brings() {
 }
 
 #[test]
+fn quick_light_has_the_shafts_of_paths() {
+    let mut paths = shaded();
+    paths.samples = 3;
+    let mut quick = paths.clone();
+    quick.look.mode = LightMode::Quick;
+    // Both take the same points of the fog and of the sun.
+    for (a, b) in both(&paths).iter().zip(&both(&quick)) {
+        assert!(a.radiance == b.radiance);
+    }
+    // One sample has no noise.
+    quick.samples = 1;
+    let far = solid(&quick).run(Far);
+    for frame in both(&quick) {
+        let lit = frame.radiance.iter().filter(|c| c[0] > 0.05).count();
+        assert!(lit > 3_000, "{lit}");
+        let (width, row) = (quick.size[0] as usize, 95);
+        let light = |x: usize| f64::from(frame.radiance[row * width + x][0]);
+        let jumps = (1..width).filter(|&x| (light(x) - light(x - 1)).abs() > 0.02);
+        assert!(jumps.count() <= 2);
+        let one = summed(&quick, &frame, row * width, far);
+        assert!((light(0) - one).abs() < 0.02, "{} {one}", light(0));
+    }
+}
+
+#[test]
 fn shafts_are_the_same_in_blocks_and_cost_nothing_when_off() {
     let mut plan = sized("mandelbox-gate", [70, 44]);
     let explained = |plan: &Plan| {
@@ -128,11 +153,7 @@ fn shafts_are_the_same_in_blocks_and_cost_nothing_when_off() {
     plan.samples = 3;
     assert!(explained(&plan));
     let whole = bits_however_cut(&plan);
-    let off: [fn(&mut Plan); 3] = [
-        |plan| plan.look.shafts = 0.0,
-        |plan| plan.look.fog = 0.0,
-        |plan| plan.look.mode = LightMode::Quick,
-    ];
+    let off: [fn(&mut Plan); 2] = [|plan| plan.look.shafts = 0.0, |plan| plan.look.fog = 0.0];
     for off in off {
         let mut plan = plan.clone();
         off(&mut plan);

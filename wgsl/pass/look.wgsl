@@ -10,7 +10,7 @@ struct LookUniform {
     /// Extinction per unit of length.
     fog: f32,
     sky_low: vec3<f32>,
-    /// 1 if shadow rays of mode quick go to points of a light's disc, 0 if they go to its middle.
+    /// 1 if rays to lights go to points of their discs, 0 if they go to the middle.
     discs: u32,
     world_up: vec3<f32>,
     /// Tangent of the sun's angular radius.

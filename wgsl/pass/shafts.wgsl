@@ -43,19 +43,30 @@ fn shafts(color: vec3<f32>, ray: Beam, end: f32, pixel: vec2<u32>) -> vec4<f32> 
     }
     let share = 1.0 - exp(-fog_depth(ray, end));
     let seed = random_seed(pixel);
-    let at = random_pair(seed, turn.stage.before, SHAFTS_PURPOSE);
-    let t = shafts_way(ray, end, -log(1.0 - at.x * share));
     let sun = Lamp(look.light, 2.0 * bounds_far(), look.softness);
-    let toward = aim(sun, random_pair(seed, turn.stage.before, SHAFTS_PURPOSE + 1u));
-    let start = ray.origin + t * ray.axis;
-    var left = look.path_steps / SHAFTS_STEPS;
-    let grain = footprint(ray, t);
-    let beam = Beam(start, toward, 0.0, 0.0, grain, 0.0);
-    let sight = path_sight(beam, sun.far, opening(start, grain), &left);
+    // A picture without noise: the middle of the fog and of the sun.
+    var at = 0.5;
+    var toward = sun.axis;
+    if look.discs != 0u {
+        at = random_pair(seed, turn.stage.before, SHAFTS_PURPOSE).x;
+        toward = aim(sun, random_pair(seed, turn.stage.before, SHAFTS_PURPOSE + 1u));
+    }
+    let t = shafts_way(ray, end, -log(1.0 - at * share));
+    let beam = Beam(ray.origin + t * ray.axis, toward, 0.0, 0.0, footprint(ray, t), 0.0);
+    var walk = begin(beam, 0.0, sun.far);
+    var state = STATE_UNCONVERGED;
+    let most = min(look.shadow_steps, look.path_steps / SHAFTS_STEPS);
+    for (var i = 0u; i < most; i++) {
+        let now = walk_step(beam, &walk);
+        if now != STATE_MOVING {
+            state = now;
+            break;
+        }
+    }
     var c = color - share * sky_halo(ray.axis);
-    if sight.state == STATE_SKY {
+    if state == STATE_SKY {
         c += share * shafts_phase(dot(ray.axis, look.light)) * full;
     }
     // The difference may round below nothing.
-    return vec4<f32>(max(c, vec3<f32>(0.0)), select(1.0, 0.0, sight.state == STATE_UNCONVERGED));
+    return vec4<f32>(max(c, vec3<f32>(0.0)), select(1.0, 0.0, state == STATE_UNCONVERGED));
 }
