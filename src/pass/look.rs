@@ -191,7 +191,10 @@ impl Light {
         Self {
             softness: look.light_size.to_radians().tan(),
             discs: match look.mode {
-                LightMode::Quick => plan.samples > 1 && LookFeature::Shadow.is_on(&look),
+                LightMode::Quick => {
+                    let rays = [LookFeature::Shadow, LookFeature::Shafts];
+                    plan.samples > 1 && rays.iter().any(|feature| feature.is_on(&look))
+                }
                 LightMode::Path => true,
             },
             shadow_steps,

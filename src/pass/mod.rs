@@ -6,7 +6,7 @@
 //!   their results are
 //! - [`color`]: light and colour, with [`look`], [`layers`] and [`fog`], which may thin out with the height
 //!   ([`fog_height`]), and [`glow`]: by formulas, [`quick`] with [`shadow`] and [`occlusion`], or by paths,
-//!   [`path`] with [`material`] and [`shafts`]; [`lamp`], [`aim`], [`sky`] and [`emission`] for both
+//!   [`path`]; [`material`], [`shafts`], [`lamp`], [`aim`], [`sky`] and [`emission`] for both
 //! - [`pick`]: what there is at a pixel or at a point
 //! - [`tone_map`], [`tone`]: from light to display values, and from these to the bytes of a picture
 //! - [`until`]: which tiles have enough samples; [`variance`]: how much the samples of a pixel differ

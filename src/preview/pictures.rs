@@ -75,7 +75,7 @@ pub struct Pictures {
     small: Picture,
     full: Picture,
     fine: Picture,
-    /// The share of the fine picture that is shown, if it is of one block, else the number of its blocks.
+    /// The share that is shown of a fine picture of one block, and the blocks of a larger one.
     fine_share: f64,
     fine_blocks: usize,
 }
@@ -309,9 +309,9 @@ impl Pictures {
         Ok(self.show_finer(plan.samples).unwrap_or(false))
     }
 
-    /// Shows more of the fine picture: all of it if it is of one block, else what more blocks have all their
-    /// samples, which it puts into the full picture. Returns whether there is more, and `None` as long as
-    /// the fine picture is prepared.
+    /// Shows more of the fine picture: all of it if it is of one block. Else the further blocks that have all
+    /// their samples are copied into the full picture. Returns whether there is more, and `None` while
+    /// the fine picture is still prepared.
     fn show_finer(&mut self, samples: u32) -> Option<bool> {
         let (fine, full) = (self.fine.work.as_ref()?, self.full.work.as_ref()?);
         let (blocks, finished) = fine.blocks()?;

@@ -215,8 +215,15 @@ fn a_large_window_is_refined_block_by_block() {
             .iter()
             .any(|shown| shown[..row] == all[..row] && shown[2 * row..] == one[2 * row..]);
         assert!(half, "{} pictures", seen.len());
-        // What is finished stays.
+        // What is finished stays. A mixture of samples does not count as full.
         pictures.rest();
         assert!(pictures.is_full());
+        plan.samples = 41;
+        pictures.want(&plan);
+        for _ in 0..2 {
+            while !(pictures.advance().unwrap() && pictures.is_full()) {}
+        }
+        pictures.rest();
+        assert!(!pictures.is_full());
     }
 }

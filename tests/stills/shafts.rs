@@ -123,8 +123,11 @@ fn quick_light_has_the_shafts_of_paths() {
     let mut quick = paths.clone();
     quick.look.mode = LightMode::Quick;
     // Both take the same points of the fog and of the sun.
-    for (a, b) in both(&paths).iter().zip(&both(&quick)) {
-        assert!(a.radiance == b.radiance);
+    for shadow in [true, false] {
+        quick.look.shadow = shadow;
+        for (a, b) in both(&paths).iter().zip(&both(&quick)) {
+            assert!(a.radiance == b.radiance);
+        }
     }
     // One sample has no noise.
     quick.samples = 1;
