@@ -220,8 +220,10 @@ fn a_large_window_is_refined_block_by_block() {
         assert!(pictures.is_full());
         plan.samples = 41;
         pictures.want(&plan);
-        for _ in 0..2 {
-            while !(pictures.advance().unwrap() && pictures.is_full()) {}
+        let mut shown = 0;
+        while shown < 2 {
+            assert!(pictures.is_busy());
+            shown += u32::from(pictures.advance().unwrap() && pictures.is_full());
         }
         pictures.rest();
         assert!(!pictures.is_full());
