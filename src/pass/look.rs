@@ -14,7 +14,7 @@ use crate::pass::LookFeature;
 use crate::pass::glow::{Glow, GlowUniform};
 use crate::pass::lamp::{Lamp, LampSource, LampUniform};
 use crate::pass::material::{MaterialUniform, Substance};
-use crate::pass::shafts::{ShaftsUniform, shafts_light};
+use crate::pass::shafts::{SHAFTS_STEPS, ShaftsUniform, shafts_light};
 use crate::pass::sky::{SkyLight, SkyUniform};
 use crate::plan::Plan;
 use crate::plan::lamps::MOST_LAMPS;
@@ -122,6 +122,8 @@ pub struct Light {
     pub shadow_steps: u32,
     /// The most steps of a path of light.
     pub path_steps: u32,
+    /// Step limit of a ray from the fog to the sun.
+    pub shafts_steps: u32,
     /// Unit vector up.
     pub world_up: DVec3,
     /// The lamps that shine, at most [`MOST_LAMPS`].
@@ -177,9 +179,14 @@ impl Light {
         let auto = crossing.clamp(least, MOST_SHADOW_STEPS);
         let shadow_steps = look.shadow_steps.unwrap_or(auto);
         // The truth has short steps, and its shadows are as whole as those of other modes.
-        let shadow_steps = match plan.march.mode {
-            Mode::Truth => (f64::from(shadow_steps) / plan.march.stride()).min(1e6) as u32,
-            _ => shadow_steps,
+        let steps = |most: u32| match plan.march.mode {
+            Mode::Truth => (f64::from(most) / plan.march.stride()).min(1e6) as u32,
+            _ => most,
+        };
+        // Over a heightfield the rays' own limits are enough: few steps have many rounds.
+        let path_steps = match solid.twin().most_steps() {
+            Some(most) => 64 * most,
+            None => PATH_ROUNDS / (solid.twin().rounds() + 1),
         };
         let world_up = plan.camera.up.normalize();
         let above =
@@ -197,12 +204,9 @@ impl Light {
                 }
                 LightMode::Path => true,
             },
-            shadow_steps,
-            // Over a heightfield the rays' own limits are enough: few steps have many rounds.
-            path_steps: match solid.twin().most_steps() {
-                Some(most) => 64 * most,
-                None => PATH_ROUNDS / (solid.twin().rounds() + 1),
-            },
+            shadow_steps: steps(shadow_steps),
+            path_steps,
+            shafts_steps: steps(shadow_steps.min(path_steps / SHAFTS_STEPS)),
             world_up,
             lamps: LampSource::all(plan),
             substance: Substance::of(&look),
@@ -282,7 +286,7 @@ impl Light {
             glow: self.glow.uniform(),
             shafts: ShaftsUniform {
                 light: shafts_light(&self.look).as_vec3(),
-                pad: 0,
+                steps: self.shafts_steps,
             },
             sky: self
                 .sky

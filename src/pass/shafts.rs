@@ -29,7 +29,7 @@ pub(super) const SHAFTS_PURPOSE: u32 = 128;
 /// Halvings of the way: what is left is less than its rounding in f32.
 const SHAFTS_HALVINGS: u32 = 24;
 /// A ray from the fog to the sun has this part of the steps of a path.
-const SHAFTS_STEPS: u32 = 4;
+pub(super) const SHAFTS_STEPS: u32 = 4;
 
 /// The shafts as WGSL reads them.
 #[repr(C)]
@@ -37,8 +37,8 @@ const SHAFTS_STEPS: u32 = 4;
 pub struct ShaftsUniform {
     /// What lit fog scatters into all directions together.
     pub light: Vec3,
-    /// Unused.
-    pub pad: u32,
+    /// Step limit of a ray from the fog to the sun.
+    pub steps: u32,
 }
 
 /// What lit fog scatters into all directions together. A white wall that faces a light of the
@@ -80,7 +80,8 @@ pub fn shafts<S: Solid>(
     ray: &Beam,
     end: f64,
 ) -> (DVec3, bool) {
-    if !light.has(LookFeature::Shafts) {
+    let full = shafts_light(&light.look);
+    if full == DVec3::ZERO {
         return (color, true);
     }
     let share = 1.0 - (-fog_depth(light, ray, end)).exp();
@@ -100,11 +101,11 @@ pub fn shafts<S: Solid>(
         grain0: footprint(ray, t),
         grain: 0.0,
     };
-    let left = &mut (light.path_steps / SHAFTS_STEPS);
-    let (step, _) = path_sight((solid, light), &to, sun.far, left);
+    let mut steps = light.shafts_steps;
+    let (step, _) = path_sight((solid, light), &to, sun.far, &mut steps);
     let mut c = color - share * light.halo(ray.axis);
     if step == Step::Out {
-        c += share * shafts_phase(ray.axis.dot(light.look.light)) * shafts_light(&light.look);
+        c += share * shafts_phase(ray.axis.dot(light.look.light)) * full;
     }
     // The difference may round below nothing.
     (c.max(DVec3::ZERO), matches!(step, Step::Hit | Step::Out))

@@ -102,7 +102,7 @@ settings! {
         shadow: bool = true, switch(), "in mode quick, whether the light casts shadows" => Program;
         light_size: f64 = 2.0, number(0.05, 45.0), "angular radius of the light in degrees; a larger one makes softer shadows, if there are several samples";
         shadow_steps: Option<u32> = None, auto_count(1, MOST_SHADOW_STEPS),
-            "step limit of a ray from a hit or from the fog to the light, in mode path also of one to another surface; auto is 96 for a formula, or 512 in mode path, and over a heightfield as many as a ray can need, up to 2048; a formula allows at most 512";
+            "step limit of a ray from a hit or from the fog to the light, in mode path also of one to another surface; a formula allows at most 512. With auto, a formula has 96, or 512 in mode path, and a heightfield as many as a ray can need, up to 2048";
         occlusion: f64 = 1.0, number(0.0, 2.0), "in mode quick, strength of ambient occlusion, which darkens hollows; 0 for none" => Program;
         occlusion_reach: f64 = 0.05, number(1e-4, 1.0),
             "how far ambient occlusion looks for neighbours, as a share of the distance from eye to target";
@@ -137,7 +137,7 @@ settings! {
         saturation: f64 = 1.0, number(0.0, 4.0), "strength of the colours before the tone map, 0 for grey" => Tone;
         bloom: f64 = 0.0, number(0.0, 1.0), "share of the light that the lens spreads over the picture, so that bright places shine; 0 for none, 0.04 is a good lens, 0.2 a misty one; an EXR has none" => Tone;
         flag_unconverged: bool = false, switch(),
-            "whether pixels are magenta if their ray, their shadow ray or their ray from the fog to the sun reached its step limit; the default is true for heightfields";
+            "whether pixels are magenta if their ray reached its step limit, and in mode quick those of surfaces also if their shadow ray or their ray from the fog to the sun did; the default is true for heightfields";
         /// A sky in a file.
         ..sky: SkySettings;
         /// Traps and layers.

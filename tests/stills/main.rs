@@ -278,19 +278,23 @@ fn safe_is_no_worse_than_the_rival_and_the_slides_are() {
     }
 }
 
-/// The truth's steps are short, so its shadow rays need many more of them.
+/// The truth's steps are short, so its rays to the light need many more of them.
 #[test]
 fn shadow_rays_of_the_truth_reach_the_light() {
     let mut plan = sized("mandelbox-gate", [96, 54]);
     plan.march.mode = Mode::Ray;
-    let plain = on_cpu(&plan, Extras::default()).undecided;
-    let truth = truth(&plan, &Assets::default(), &mut |_| true).unwrap();
-    let own = truth.frame.undecided;
-    assert!(
-        own <= plain,
-        "{own} and {plain} of {}",
-        truth.frame.state.len()
-    );
+    for shafts in [0.0, 1.0] {
+        (plan.look.fog, plan.look.shafts) = (shafts, shafts);
+        let plain = on_cpu(&plan, Extras::default()).undecided;
+        let truth = truth(&plan, &Assets::default(), &mut |_| true).unwrap();
+        let own = truth.frame.undecided;
+        println!("{own} and {plain}");
+        assert!(
+            own <= plain,
+            "{own} and {plain} of {}",
+            truth.frame.state.len()
+        );
+    }
 }
 
 /// Where rays start at the eye, no pixel has a width yet.

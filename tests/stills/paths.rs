@@ -230,6 +230,7 @@ fn paths_are_the_same_in_blocks_and_slices() {
 fn quick_light_is_about_as_bright_in_each_colour() {
     let views = [
         "mandelbox",
+        "mandelbox-avenue",
         "mandelbox-canyon",
         "mandelbox-clay",
         "mandelbox-ember",
@@ -241,6 +242,7 @@ fn quick_light_is_about_as_bright_in_each_colour() {
         "mandelbox-vault",
         "terrain",
         "stones",
+        "valley-mist",
     ];
     for name in views {
         let mut plan = followed(sized(name, [48, 27]), 32);

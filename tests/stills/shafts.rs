@@ -144,6 +144,20 @@ fn quick_light_has_the_shafts_of_paths() {
     }
 }
 
+/// A sun without strength has no shafts, and the fog keeps the sky's halo.
+#[test]
+fn a_dark_sun_leaves_the_fog_as_it_is() {
+    let mut plan = shaded();
+    plan.look.mode = LightMode::Quick;
+    plan.look.key = 0.0;
+    let with = both(&plan);
+    plan.look.shafts = 0.0;
+    for (with, without) in with.iter().zip(&both(&plan)) {
+        assert!(with.radiance == without.radiance);
+        assert!(with.radiance.iter().any(|c| c[0] > 0.0));
+    }
+}
+
 #[test]
 fn shafts_are_the_same_in_blocks_and_cost_nothing_when_off() {
     let mut plan = sized("mandelbox-gate", [70, 44]);
@@ -151,20 +165,23 @@ fn shafts_are_the_same_in_blocks_and_cost_nothing_when_off() {
         let text = pass::explain(plan, &Assets::default(), Extras::default()).unwrap();
         text.contains("wgsl/pass/shafts.wgsl")
     };
-    let look = &mut plan.look;
-    (look.mode, look.fog, look.shafts) = (LightMode::Path, 1.0, 1.0);
+    plan.look.fog = 1.0;
     plan.samples = 3;
-    assert!(explained(&plan));
-    let whole = bits_however_cut(&plan);
-    let off: [fn(&mut Plan); 2] = [|plan| plan.look.shafts = 0.0, |plan| plan.look.fog = 0.0];
-    for off in off {
-        let mut plan = plan.clone();
-        off(&mut plan);
+    for mode in [LightMode::Quick, LightMode::Path] {
+        plan.look.mode = mode;
+        plan.look.shafts = 0.0;
         assert!(!explained(&plan));
-        let clear = bits(&render(&plan, EVERYTHING));
-        assert!(clear != whole);
-        plan.look.shafts = if plan.look.shafts == 0.0 { 0.0 } else { 2.0 };
-        assert!(clear == bits(&render(&plan, EVERYTHING)));
+        let foggy = bits(&render(&plan, EVERYTHING));
+        plan.look.shafts = 1.0;
+        assert!(explained(&plan));
+        assert!(bits_however_cut(&plan) != foggy);
+        // Without fog nothing scatters.
+        let mut clear = plan.clone();
+        clear.look.fog = 0.0;
+        assert!(!explained(&clear));
+        let unlit = bits(&render(&clear, EVERYTHING));
+        clear.look.shafts = 0.0;
+        assert!(unlit == bits(&render(&clear, EVERYTHING)));
     }
     // A plan of the defaults has none.
     assert!(!explained(&preset("mandelbox", &[])));

@@ -106,7 +106,8 @@ struct GlowUniform {
 struct ShaftsUniform {
     /// What lit fog scatters into all directions together.
     light: vec3<f32>,
-    pad: u32,
+    /// Step limit of a ray from the fog to the sun.
+    steps: u32,
 }
 
 /// The sky of a file (`sky_file.wgsl`).

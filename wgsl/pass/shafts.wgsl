@@ -7,8 +7,6 @@ const SHAFTS_FORWARD = 0.6;
 const SHAFTS_PURPOSE = 128u;
 /// Halvings of the way: what is left is less than its rounding.
 const SHAFTS_HALVINGS = 24u;
-/// A ray from the fog to the sun has this part of the steps of a path.
-const SHAFTS_STEPS = 4u;
 
 /// The share of light that fog scatters into a direction, per steradian, for the cosine of the
 /// angle by which it turns.
@@ -55,8 +53,7 @@ fn shafts(color: vec3<f32>, ray: Beam, end: f32, pixel: vec2<u32>) -> vec4<f32> 
     let beam = Beam(ray.origin + t * ray.axis, toward, 0.0, 0.0, footprint(ray, t), 0.0);
     var walk = begin(beam, 0.0, sun.far);
     var state = STATE_UNCONVERGED;
-    let most = min(look.shadow_steps, look.path_steps / SHAFTS_STEPS);
-    for (var i = 0u; i < most; i++) {
+    for (var i = 0u; i < look_parameters.shafts.steps; i++) {
         let now = walk_step(beam, &walk);
         if now != STATE_MOVING {
             state = now;
