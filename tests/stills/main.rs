@@ -281,17 +281,18 @@ fn safe_is_no_worse_than_the_rival_and_the_slides_are() {
 /// The truth's steps are short, so its rays to the light need many more of them.
 #[test]
 fn shadow_rays_of_the_truth_reach_the_light() {
-    let mut plan = sized("mandelbox-gate", [96, 54]);
-    plan.march.mode = Mode::Ray;
-    for shafts in [0.0, 1.0] {
-        (plan.look.fog, plan.look.shafts) = (shafts, shafts);
+    // Shadow rays alone, and rays from the fog alone.
+    for (name, shadow) in [("mandelbox-gate", true), ("mandelbox-avenue", false)] {
+        let mut plan = sized(name, [96, 54]);
+        plan.march.mode = Mode::Ray;
+        (plan.look.mode, plan.look.shadow) = (LightMode::Quick, shadow);
         let plain = on_cpu(&plan, Extras::default()).undecided;
         let truth = truth(&plan, &Assets::default(), &mut |_| true).unwrap();
         let own = truth.frame.undecided;
-        println!("{own} and {plain}");
+        println!("{name}: {own} and {plain}");
         assert!(
             own <= plain,
-            "{own} and {plain} of {}",
+            "{name}: {own} and {plain} of {}",
             truth.frame.state.len()
         );
     }
