@@ -188,6 +188,11 @@ impl Light {
             Some(most) => 64 * most,
             None => PATH_ROUNDS / (solid.twin().rounds() + 1),
         };
+        let shafts_steps = match look.mode {
+            LightMode::Quick => steps(shadow_steps.min(path_steps / SHAFTS_STEPS)),
+            // A path has its limit in all modes, and so has its ray from the fog.
+            LightMode::Path => steps(shadow_steps).min(path_steps / SHAFTS_STEPS),
+        };
         let world_up = plan.camera.up.normalize();
         let above =
             (plan.camera.eye - plan.camera.target).dot(world_up) - look.fog_level * distance;
@@ -206,7 +211,7 @@ impl Light {
             },
             shadow_steps: steps(shadow_steps),
             path_steps,
-            shafts_steps: steps(shadow_steps.min(path_steps / SHAFTS_STEPS)),
+            shafts_steps,
             world_up,
             lamps: LampSource::all(plan),
             substance: Substance::of(&look),

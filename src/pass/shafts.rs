@@ -28,7 +28,7 @@ const SHAFTS_FORWARD: f64 = 0.6;
 pub(super) const SHAFTS_PURPOSE: u32 = 128;
 /// Halvings of the way: what is left is less than its rounding in f32.
 const SHAFTS_HALVINGS: u32 = 24;
-/// A ray from the fog to the sun has this part of the steps of a path.
+/// A ray from the fog to the sun has at most this part of the steps of a path.
 pub(super) const SHAFTS_STEPS: u32 = 4;
 
 /// The shafts as WGSL reads them.
